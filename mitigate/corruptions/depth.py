@@ -121,10 +121,14 @@ def _echo(views, reach, polynomial, z_max, out):
             _add_echo(views[v, y], far[y], polynomial, z_max, out[v, y])
 
 
+def echo_reach(height: int, width: int) -> int:
+    """Return half the side of the square that ``multipath`` searches, in pixels."""
+    return max(1, round(ECHO_REACH * min(height, width)))
+
+
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Over-estimate depth next to farther surfaces, as if light took a second path."""
-    reach = max(1, round(ECHO_REACH * min(views.shape[1:])))
-    out = np.empty_like(views)
+    reach, out = echo_reach(*views.shape[1:]), np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
@@ -186,6 +190,11 @@ def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.nda
     return view_streams(Key(seed, episode, placement), "missing_offset", views)
 
 
+def hole_streams(key: Key, views: int) -> np.ndarray:
+    """Return the digests of the offsets of ``hole_map`` for each view, uint64 [views]."""
+    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
+
+
 @njit(cache=True)
 def _drop_row(source, holes, missing, z_max, target):
     for x in range(source.size):
@@ -212,8 +221,7 @@ def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     """
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
-    placement = int(key.frame) // HOLE_FRAMES
-    streams = _hole_streams(int(key.seed), str(key.episode), placement, count)
+    streams = hole_streams(key, count)
     out = np.empty_like(views)
     missing, z_max = np.float32(sensor.missing), np.float32(sensor.z_max)
     _drop(views, holes, streams, missing, z_max, out)
@@ -228,10 +236,15 @@ def _round_off(views, step, z_max, out):
         out[i] = min(max(stepped, NEAREST), z_max) if is_valid(z) else z
 
 
+def depth_step(severity: float) -> float:
+    """Return the step of ``quantization`` in metres."""
+    return max(STEP * severity, STEP_LEAST)
+
+
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Round depth to multiples of 0.5 s metres."""
     out = np.empty_like(views)
-    step, z_max = np.float32(max(STEP * severity, STEP_LEAST)), np.float32(sensor.z_max)
+    step, z_max = np.float32(depth_step(severity)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))
     return out
 

@@ -240,6 +240,21 @@ def _resize_torus(cells, height, width):
     return out
 
 
+def field_grid(height: int, width: int) -> tuple[int, int]:
+    """Return the number of rows and columns of cells of a random field."""
+    scale = FIELD_SIDE / min(height, width)
+    rows, cols = (min(round(side * scale), FIELD_LONGEST) for side in (height, width))
+    return rows, cols
+
+
+def field_weights(correlation: float) -> np.ndarray:
+    """Return the smoothing kernel of a random field, float32 [2 radius + 1] with a norm of 1."""
+    sigma = correlation * FIELD_SIDE
+    radius = int(np.ceil(3.0 * sigma))
+    weights = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
+    return (weights / np.sqrt(np.sum(weights**2))).astype(np.float32)
+
+
 @cached
 def field(value: int, height: int, width: int, correlation: float) -> tuple:
     """Sample a Gaussian random field on a torus.
@@ -258,19 +273,20 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
         The field, float32 [height, width] with unit standard deviation, and the cells before
         resampling, float32 [cells].
     """
-    scale = FIELD_SIDE / min(height, width)
-    rows, cols = (min(round(side * scale), FIELD_LONGEST) for side in (height, width))
-    sigma = correlation * FIELD_SIDE
-    radius = int(np.ceil(3.0 * sigma))
-    weights = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
-    weights = (weights / np.sqrt(np.sum(weights**2))).astype(np.float32)
-    cells = _blur_torus(normals(value, rows * cols).reshape(rows, cols), weights)
+    rows, cols = field_grid(height, width)
+    noise = normals(value, rows * cols).reshape(rows, cols)
+    cells = _blur_torus(noise, field_weights(correlation))
     smooth = _resize_torus(cells, height, width)
     smooth.flags.writeable = cells.flags.writeable = False
     return smooth, cells.ravel()
 
 
+def top_place(cells: int, share: float) -> int:
+    """Return the place, in rising order, of the first of the highest fraction of the cells."""
+    return cells - round(share * cells)
+
+
 def top_share(cells: np.ndarray, share: float) -> float:
     """Return the level that a fraction ``share`` of the cells reach; infinity for a share of 0."""
-    place = cells.size - round(share * cells.size)
+    place = top_place(cells.size, share)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

@@ -82,19 +82,31 @@ def cover(views, alpha, colour, out):
                 target[i] = source[i] + ((part[i] + 32) >> 6)
 
 
-@cached
-def light_ramp(value: int, height: int, width: int) -> np.ndarray:
-    """Return a gradient float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
+def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Return the terms of ``light_ramp``.
+
+    Returns:
+        The term of each row, float32 [H], the term of each column, float32 [W], and whether the
+        ramp is the square root of their sum.
+    """
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
         angle = 2.0 * math.pi * uniform(value, 1)
         reach = abs(math.cos(angle)) + abs(math.sin(angle))
         down, right = (y - 0.5) * (math.sin(angle) / reach), (x - 0.5) * (math.cos(angle) / reach)
-        return np.add.outer((0.5 + down).astype(np.float32), right.astype(np.float32))
+        return (0.5 + down).astype(np.float32), right.astype(np.float32), False
     u, v = uniform(value, 2), uniform(value, 3)
     far = math.hypot(max(u, 1.0 - u) * width, max(v, 1.0 - v) * height)
     down, right = ((y - v) * (height / far)) ** 2, ((x - u) * (width / far)) ** 2
-    return np.sqrt(np.add.outer(down.astype(np.float32), right.astype(np.float32)))
+    return down.astype(np.float32), right.astype(np.float32), True
+
+
+@cached
+def light_ramp(value: int, height: int, width: int) -> np.ndarray:
+    """Return a gradient float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
+    down, right, radial = ramp_terms(value, height, width)
+    ramp = np.add.outer(down, right)
+    return np.sqrt(ramp) if radial else ramp
 
 
 def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
@@ -118,10 +130,15 @@ def spatter_mask(value: int, severity: float, height: int, width: int) -> np.nda
     return opacity_mask(share, 0.5 + 0.5 * severity, NEUTRAL)
 
 
+def spatter_colour(value: int) -> tuple[int, int, int]:
+    """Return the colour of mud or water."""
+    return SPATTER_COLOURS[uniform(value) < 0.5]
+
+
 @lru_cache(maxsize=64)
 def spatter_row(value: int, width: int) -> np.ndarray:
     """Return a ``colour_row`` of mud or water, int16 [3 W]."""
-    return colour_row(SPATTER_COLOURS[uniform(value) < 0.5], width)
+    return colour_row(spatter_colour(value), width)
 
 
 @lru_cache(maxsize=64)
@@ -155,7 +172,7 @@ def flare_centres(
 
 
 @lru_cache(maxsize=1)
-def _glow_table() -> np.ndarray:
+def glow_table() -> np.ndarray:
     """Return the glow at distances of 0 to 1.5 diagonals at severity 1, float32 [GLOW_CELLS +
     1].
     """
@@ -172,16 +189,25 @@ def _look_up(down, right, table, out):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
+def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return squared distances to the pixel (x, y) along each axis, in cells of ``glow_table``.
+
+    Returns:
+        The term of each row, float32 [H], and of each column, float32 [W].
+    """
+    cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
+    down = ((np.arange(height) + 0.5 - y) * cells) ** 2
+    right = ((np.arange(width) + 0.5 - x) * cells) ** 2
+    return down.astype(np.float32), right.astype(np.float32)
+
+
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
     """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W] in units of
     1/32768.
     """
-    cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
-    down = ((np.arange(height) + 0.5 - y) * cells) ** 2
-    right = ((np.arange(width) + 0.5 - x) * cells) ** 2
     glow = np.empty((height, width), np.float32)
-    _look_up(down.astype(np.float32), right.astype(np.float32), _glow_table(), glow)
+    _look_up(*glow_terms(x, y, height, width), glow_table(), glow)
     return opacity_mask(glow, severity, FLARE_TINT)
 
 

@@ -57,15 +57,25 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
     return places[:, 0].copy(), places[:, 1].copy(), weights
 
 
+def blur_line(severity: float, key: Key, width: int) -> tuple[float, float]:
+    """Return the length in pixels and the angle in radians of the line of ``motion_blur``."""
+    angle = math.radians(BLUR_ANGLE * (2.0 * uniform(digest(key, "motion_blur")) - 1.0))
+    return BLUR_LENGTH * severity * width, angle
+
+
+def tap_step(length: float) -> int:
+    """Return the distance of the taps of a line of ``length`` pixels along x."""
+    return 1 if length < LONG_BLUR else 2
+
+
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend with a nearly horizontal line blur of length 0.10 s W; lengths below 1 px have no
     effect.
     """
-    length = BLUR_LENGTH * severity * views.shape[2]
+    length, angle = blur_line(severity, key, views.shape[2])
     if length < 1.0:
         return views.copy()
-    angle = math.radians(BLUR_ANGLE * (2.0 * uniform(digest(key, "motion_blur")) - 1.0))
-    step = 1 if length < LONG_BLUR else 2
+    step = tap_step(length)
     out = np.empty_like(views)
     dy, dx, weights = line_taps(length, angle, step)
     blur.line(views, dy, dx, weights, step, 0.5 + 0.5 * severity, out)
@@ -129,10 +139,15 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
     return weights.astype(np.int16), levels
 
 
+def defocus_sigma(severity: float, key: Key, height: int, width: int) -> float:
+    """Return the sigma of ``defocus`` in pixels."""
+    spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
+    return DEFOCUS_SIGMA * severity * spread * min(height, width)
+
+
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blur with a Gaussian of sigma = 5 s u min(H, W) / 224, with u ~ U(0.8, 1.2) per episode."""
-    spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
-    sigma = DEFOCUS_SIGMA * severity * spread * min(views.shape[1:3])
+    sigma = defocus_sigma(severity, key, *views.shape[1:3])
     if sigma < DEFOCUS_LEAST:
         return views.copy()
     out = np.empty_like(views)

@@ -85,7 +85,7 @@ def corrupt_habitat(
     modality = corruption.modality
     if modality in (RGB, DEPTH):
         check_cameras(obs, [corruption.name])
-    views = _views(obs, modality, turn)
+    views = camera_views(obs, modality, turn)
     frames = {} if not views else {modality: _panorama(obs, views)}
     if heading is not None:
         frames[POSE] = np.array([0.0, 0.0, heading])
@@ -112,7 +112,7 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
     check_available(names, available, lack, "add or rename a camera")
 
 
-def _views(obs: dict, modality: str, turn: str) -> dict[str, int]:
+def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]:
     """Return the view number (``mitigate.core.observation``) of each camera of a modality."""
     views: dict[str, int] = {}
     for entry in obs:

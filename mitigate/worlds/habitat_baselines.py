@@ -22,7 +22,8 @@ from mitigate.core.names import unknown
 from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule
 from mitigate.corruptions.keying import digest
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.worlds.habitat import TURNS, check_cameras, corrupt_habitat, is_camera
+from mitigate.worlds.habitat import TURNS, check_cameras, is_camera
+from mitigate.worlds.habitat_tensors import corrupt_habitat_tensors
 
 try:
     from habitat_baselines.common.baseline_registry import baseline_registry
@@ -41,7 +42,8 @@ class CorruptObservation(ObservationTransformer):
     """Corrupt the cameras of a batch of Habitat observations (see ``corrupt_habitat``).
 
     A batch has ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
-    [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]; tensors stay on their device. The
+    [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]. Tensors on a GPU are corrupted
+    there. The
     ``compass`` or ``heading`` sensor, if present, keeps a flare at its position in the world.
 
     Args:
@@ -111,30 +113,19 @@ class CorruptObservation(ObservationTransformer):
         keys = _keys(observations)
         self._check(observations)
         heading = next((observations[h] for h in _HEADINGS if h in observations), None)
-        frames = {
-            entry: tensor.cpu().numpy()
-            for entry, tensor in observations.items()
-            if is_camera(entry)
-        }
-        corrupted: dict[str, np.ndarray] = {}
-        for row, (episode, frame) in enumerate(keys):
-            corruption, key = self.schedule.draw(self.seed, str(episode), frame)
-            instant = {entry: views[row] for entry, views in frames.items()}
-            result = corrupt_habitat(
-                instant,
-                corruption,
-                key,
-                self.sensor,
-                heading=None if heading is None else float(heading[row].reshape(-1)[0]),
-                turn=self.turn,
-            )
-            for entry, view in result.items():
-                if view is not instant[entry]:
-                    corrupted.setdefault(entry, frames[entry].copy())[row] = view
+        drawn = [self.schedule.draw(self.seed, str(episode), frame) for episode, frame in keys]
+        corrupted = corrupt_habitat_tensors(
+            observations,
+            [corruption for corruption, _ in drawn],
+            [key for _, key in drawn],
+            self.sensor,
+            headings=None if heading is None else heading.reshape(len(keys), -1)[:, 0].tolist(),
+            turn=self.turn,
+        )
         out = copy.copy(observations)
         del out[KEY]
-        for entry, views in corrupted.items():
-            out[entry] = torch.from_numpy(views).to(observations[entry].device)
+        for entry in filter(is_camera, observations):
+            out[entry] = corrupted[entry]
         return out
 
     def _check(self, entries: Iterable[str]) -> None:

@@ -12,15 +12,18 @@ from torchrl.envs import Transform
 
 from mitigate.core.observation import DEPTH, EPISODE, FRAME, POSE, RGB
 from mitigate.corruptions import (
+    CLEAN,
     Corruption,
     DepthSensor,
     FrameStream,
     Key,
     Schedule,
 )
-from mitigate.corruptions.registry import modality
+from mitigate.corruptions.registry import family, modality
 from mitigate.corruptions.schedule import drawn, names_of
 from mitigate.corruptions.stream import is_timed
+from mitigate.corruptions.tensors import corrupt_observations
+from mitigate.corruptions.tensors.suite import check_backend
 from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
@@ -39,7 +42,8 @@ class CorruptObservation(Transform):
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
     [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
-    Any batch shape and device are supported; the corruption is computed on the CPU.
+    Any batch shape and device are supported. Frames on a GPU are corrupted there
+    (``mitigate.corruptions.tensors``), except by faults, which are computed on the CPU.
 
     Args:
         schedule: The schedule that selects a corruption per frame, or one corruption for all
@@ -50,6 +54,8 @@ class CorruptObservation(Transform):
         sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
         hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
+        backend: "torch" computes on the device of the frames, "numpy" on the CPU. None selects
+            torch for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
         ValueError: Raised for data in which the episode or frame is missing, if the schedule
@@ -67,12 +73,14 @@ class CorruptObservation(Transform):
         sensor: DepthSensor | None = None,
         normalised: bool = False,
         hfov: float | None = None,
+        backend: str | None = None,
     ) -> None:
         super().__init__(in_keys=[rgb, depth], out_keys=[rgb, depth])
         self.schedule, self.seed = schedule, seed
         self.entries = {RGB: rgb, DEPTH: depth, POSE: POSE}
         self.sensor = sensor or DepthSensor()
         self._normalised = normalised
+        self._backend = check_backend(backend)
         self._hfov = dict.fromkeys((RGB, DEPTH), hfov)
         self._streams: dict[int, FrameStream] = {}  # by row
 
@@ -127,6 +135,8 @@ class CorruptObservation(Transform):
         drawn = self._draw(data)
         batch = len(data.batch_size)
         stored = {name: data.get(entry, None) for name, entry in self.entries.items()}
+        if self._uses_torch(stored):
+            return self._corrupt_on_device(data, drawn, rows)
         frames = {
             name: value.detach().cpu().reshape(-1, *value.shape[batch:]).numpy()
             for name, value in stored.items()
@@ -151,6 +161,44 @@ class CorruptObservation(Transform):
             data.set(
                 self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
             )
+        return data
+
+    def _uses_torch(self, stored: dict[str, torch.Tensor | None]) -> bool:
+        """Return whether the frames are corrupted on their device."""
+        if isinstance(self.schedule, Corruption) and family(self.schedule.name):
+            return False
+        if self._backend is not None:
+            return self._backend == "torch"
+        return any(value is not None and value.device.type != "cpu" for value in stored.values())
+
+    def _corrupt_on_device(
+        self, data: TensorDictBase, drawn: list[tuple[Corruption, Key]], rows: list[int] | None
+    ) -> TensorDictBase:
+        corruptions = [corruption for corruption, _ in drawn]
+        if rows is not None:
+            reset = set(rows)
+            corruptions = [c if row in reset else CLEAN for row, c in enumerate(corruptions)]
+        frames, batch = {}, len(data.batch_size)
+        for name in (RGB, DEPTH):
+            value = data.get(self.entries[name], None)
+            if value is not None:
+                views = value.reshape(-1, *value.shape[batch:])
+                frames[name] = views.unsqueeze(1) if views.dim() == 4 else views
+        check_available(names_of(self.schedule), frames, "the data have no {0}", ENTRY_FIX)
+        pose = data.get(POSE, None)
+        corrupted = corrupt_observations(
+            frames,
+            corruptions,
+            [key for _, key in drawn],
+            headings=None if pose is None else pose.reshape(-1, 3)[:, 2].tolist(),
+            sensor=self.sensor,
+            normalised=self._normalised,
+            backend="torch",
+        )
+        for name, views in corrupted.items():
+            if views is not frames[name]:
+                entry = self.entries[name]
+                data.set(entry, views.reshape(data.get(entry).shape))
         return data
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:

@@ -187,11 +187,37 @@ def test_corrupt_observation_explains_a_missing_modality():
     CorruptObservation(Schedule("clean", 0.0))(data)
 
 
+def test_torch_backend_equals_the_numpy_backend():
+    rollouts = {}
+    for backend in ("numpy", "torch"):
+        transform = CorruptObservation(HURT, seed=4, backend=backend)
+        env = TransformedEnv(Corridor(), Compose(EpisodeCounter(), transform))
+        rollouts[backend] = env.rollout(9, break_when_any_done=False)
+    clean = Corridor().rollout(9, break_when_any_done=False)
+    for name, most in (("rgb", 1), ("depth", 1e-4)):
+        for part in (name, ("next", name)):
+            pair = rollouts["torch"][part].double(), rollouts["numpy"][part].double()
+            far = ((pair[0] - pair[1]).abs() > most).any(-1)
+            assert far.sum() <= 0.001 * far.numel()
+            assert not torch.equal(rollouts["torch"][part], clean[part])
+
+
+def test_torch_backend_leaves_faults_to_numpy():
+    fault = Corruption("frozen_frame", 1.0)
+    seen_by = [
+        TransformedEnv(
+            Corridor(), Compose(EpisodeCounter(), CorruptObservation(fault, backend=backend))
+        ).rollout(4)["rgb"]
+        for backend in ("numpy", "torch")
+    ]
+    assert torch.equal(*seen_by)
+
+
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
 def test_corrupt_observation_keeps_the_device():
     data = hurt_env().rollout(3, break_when_any_done=False).exclude("next")
     stored = TransformedEnv(Corridor(), EpisodeCounter()).rollout(3, break_when_any_done=False)
-    moved = CorruptObservation(HURT, seed=4)(stored.exclude("next").to("cuda"))
+    moved = CorruptObservation(HURT, seed=4, backend="numpy")(stored.exclude("next").to("cuda"))
     assert moved["rgb"].device.type == "cuda" and torch.equal(moved["rgb"].cpu(), data["rgb"])
 
 

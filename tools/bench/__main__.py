@@ -21,7 +21,7 @@ import cv2  # noqa: E402
 import torch  # noqa: E402
 
 from mitigate.core.files import write_bytes  # noqa: E402
-from tools.bench import evaluation, renderers, report, suite, training  # noqa: E402
+from tools.bench import evaluation, renderers, report, suite, tensors, training  # noqa: E402
 
 PAGE = Path(__file__).resolve().parents[2] / "docs" / "benchmarks.md"
 
@@ -56,6 +56,7 @@ def main(arguments: list[str] | None = None) -> None:
         options.seconds,
         evaluation.paces(options.episodes),
         evaluation.seconds_by_workers(options.episodes),
+        tensors.measure(options.seconds),
         shlex.join(sys.argv[1:] if arguments is None else arguments),
     )
     print(text)

@@ -77,13 +77,13 @@ def albumentations(views: np.ndarray, severity: float) -> Calls:
     return {name: partial(call, transform) for name, transform in transforms.items()}
 
 
-def kornia(views: np.ndarray, severity: float) -> Calls:
-    """Return calls with all views in one float tensor [V, 3, H, W] in [0, 1]."""
+def kornia(views: np.ndarray, severity: float, device: str = "cpu") -> Calls:
+    """Return calls with all views in one float tensor [V, 3, H, W] in [0, 1] on ``device``."""
     import kornia.augmentation as k
 
     kernel, sigma = sizes(views, severity)
     side = max(3, 2 * int(np.ceil(3 * sigma)) + 1)
-    batch = torch.from_numpy(views).permute(0, 3, 1, 2).contiguous().float() / 255
+    batch = torch.from_numpy(views).to(device).permute(0, 3, 1, 2).contiguous().float() / 255
     area = (0.25 * np.pi * severity**2,) * 2
     transforms = {
         "motion_blur": k.RandomMotionBlur(kernel, 10.0, 0.0, p=1.0),

@@ -9,6 +9,7 @@ from tools.bench.evaluation import Pace
 from tools.bench.renderers import OURS
 from tools.bench.suite import PANORAMA_BAR, SEED, SEVERITY, TINY, Cost
 from tools.bench.targets import REASONS
+from tools.bench.tensors import Batch
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
@@ -36,6 +37,7 @@ def page(
     seconds: float,
     paces: dict[str, Pace],
     by_workers: dict[int, float],
+    batches: dict[str, list[Batch]],
     arguments: str = "",
 ) -> str:
     """Return all parts of the page as Markdown. ``arguments`` are the arguments of the command."""
@@ -52,6 +54,7 @@ def page(
         _corruptions(costs),
         _panorama(pair),
         _over(costs),
+        tensor_lines(batches),
         _training(stages),
         _evaluation(paces, by_workers),
         _rendering(rates, size),
@@ -134,6 +137,39 @@ def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
         markdown_table(head, rows, words=2),
         "",
     ]
+
+
+def tensor_lines(batches: dict[str, list[Batch]]) -> list[str]:
+    """Return the section on batches of tensors, with one table per device."""
+    lines = [
+        "## Batches of torch tensors",
+        "",
+        f"Milliseconds per batch at severity {SEVERITY}: the fastest of many calls with the same "
+        "keys.",
+        "",
+        "- **kornia**: kornia's similar transform, if it has one, for float tensors in [0, 1].",
+        '- **numpy**: `corrupt_tensors(..., backend="numpy")`, the default for tensors on the CPU.',
+        '- **torch**: `corrupt_tensors(..., backend="torch")`, the default for tensors on a GPU.',
+    ]
+    head = ("corruption", "batch", "kornia", "numpy", "kornia / numpy", "torch", "kornia / torch")
+    for device, rows in batches.items():
+        cells = [
+            [f"`{row.name}`", row.shape, _ms(row.kornia), _ms(row.numpy)]
+            + [_ratio(row.kornia, row.numpy), _ms(row.torch), _ratio(row.kornia, row.torch)]
+            for row in rows
+        ]
+        lines += ["", f"### {device}", "", markdown_table(head, cells, words=2)]
+    if len(batches) == 1:
+        lines += ["", "No GPU was available, so there are no times of a GPU."]
+    return [*lines, ""]
+
+
+def _ms(milliseconds: float | None) -> str:
+    return "" if milliseconds is None else f"{milliseconds:.2f}"
+
+
+def _ratio(peer: float | None, ours: float | None) -> str:
+    return "" if peer is None or ours is None else f"{peer / ours:.2f}"
 
 
 def _training(stages: dict[bool, list[Stage]]) -> list[str]:

@@ -38,20 +38,30 @@ def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.
     return np.where(valid(views), inside, views)
 
 
+def scale_factor(severity: float, key: Key) -> float:
+    """Return the factor of ``scale_error``."""
+    value = digest(key, "scale_error")
+    change = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
+    return 1.0 + severity * change * (1 if uniform(value, 1) < 0.5 else -1)
+
+
 def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Scale depth by 1 +- s k, with sign and k ~ U(0.25, 0.4) per episode."""
-    value = digest(key, "scale_error")
-    factor = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
-    factor = 1.0 + severity * factor * (1 if uniform(value, 1) < 0.5 else -1)
+    factor = scale_factor(severity, key)
     return clip_valid(views, np.where(valid(views), views, 0) * np.float32(factor), sensor)
+
+
+def depth_offset(severity: float, key: Key, width: int) -> tuple[int, int]:
+    """Return from how many pixels below and to the right ``misalignment`` takes its depth."""
+    value = digest(key, "misalignment")
+    reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
+    return round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0)), round(reach)
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Shift depth by 0.12 s W at pixels whose source is valid; edges are repeated."""
     _, height, width = views.shape
-    value = digest(key, "misalignment")
-    reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
-    across, down = round(reach), round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0))
+    down, across = depth_offset(severity, key, width)
     rows = np.clip(np.arange(height) + down, 0, height - 1)
     columns = np.clip(np.arange(width) + across, 0, width - 1)
     moved = np.take(np.take(views, rows, axis=1), columns, axis=2)

@@ -6,6 +6,7 @@ Functions have the same arguments and results as in ``corruptions/rgb.py``.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import lru_cache, partial
 
 import numpy as np
@@ -119,27 +120,40 @@ def _code(views, colours, matrix, back, least, out):
                     out[v, y, x, c] = int(min(max(level, np.float32(0)), np.float32(255)))
 
 
+def dead_zones(severity: float, side: int) -> np.ndarray:
+    """Return the smallest DCT coefficients that remain, for each opponent colour, float32 [3]."""
+    zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
+    return zones.astype(np.float32)
+
+
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Remove the DCT coefficients of blocks that lie in a dead zone of width 0.4 s."""
     side = block_side(*views.shape[1:3])
-    zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
-    least = zones.astype(np.float32)
+    least = dead_zones(severity, side)
     matrix, out = cosines(side), np.empty_like(views)
     _code(views, opponents(), matrix, np.ascontiguousarray(matrix.T), least, out)
     return out
+
+
+def lost_parts(
+    severity: float, key: Key, views: int, height: int, width: int
+) -> Iterator[tuple[int, slice, int]]:
+    """Yield each part of ``lost_slices``: its view, its rows and its first column."""
+    edges = np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
+    for view, stream in enumerate(view_streams(key, "lost_slices", views)):
+        for number in range(SLICES):
+            if uniform(int(stream), 2 * number) < LOST * severity:
+                start = int(uniform(int(stream), 2 * number + 1) * width)
+                yield view, slice(edges[number], edges[number + 1]), start
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Replace a fraction 0.8 s of the 14 slices of every view by grey, starting at a random
     column.
     """
-    count, height, width, _ = views.shape
-    out, edges = views.copy(), np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
-    for view, stream in enumerate(view_streams(key, "lost_slices", count)):
-        for number in range(SLICES):
-            if uniform(int(stream), 2 * number) < LOST * severity:
-                start = int(uniform(int(stream), 2 * number + 1) * width)
-                out[view, edges[number] : edges[number + 1], start:] = NOTHING
+    out = views.copy()
+    for view, rows, start in lost_parts(severity, key, *views.shape[:3]):
+        out[view, rows, start:] = NOTHING
     return out
 
 

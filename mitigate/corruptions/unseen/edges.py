@@ -63,9 +63,14 @@ def _fly(views, streams, reach, least, z_max, out):
                 out[v, y, x] = min(max(moved, NEAREST), z_max) if is_valid(z) else z
 
 
+def footprint(height: int, width: int) -> int:
+    """Return half the side of the square over which ``flying_pixels`` mixes depth, in pixels."""
+    return max(1, round(FOOTPRINT * min(height, width)))
+
+
 def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Set a fraction s of pixels to random depths between the nearest and farthest around them."""
-    reach = max(1, round(FOOTPRINT * min(views.shape[1:])))
+    reach = footprint(*views.shape[1:])
     streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
     _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
     return out
@@ -90,15 +95,21 @@ def _shade(views, offset, side, missing, z_max, out):
                 out[v, y, x] = min(max(z, NEAREST), z_max) if lit else missing
 
 
+def projector(severity: float, key: Key, width: int) -> tuple[float, int]:
+    """Return the offset of the projector of ``edge_shadow`` in pixels at one metre, and its side
+    (1 or -1).
+    """
+    focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
+    return BASELINE * severity * focal, 1 if uniform(digest(key, "edge_shadow")) < 0.5 else -1
+
+
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Remove pixels in the shadow of nearer surfaces, for a projector that is 0.5 s metres to the
     side.
     """
-    width, out = views.shape[2], np.empty_like(views)
-    focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
-    offset = np.float32(BASELINE * severity * focal)
-    side = 1 if uniform(digest(key, "edge_shadow")) < 0.5 else -1
-    _shade(views, offset, side, np.float32(sensor.missing), np.float32(sensor.z_max), out)
+    offset, side = projector(severity, key, views.shape[2])
+    missing, z_max, out = np.float32(sensor.missing), np.float32(sensor.z_max), np.empty_like(views)
+    _shade(views, np.float32(offset), side, missing, z_max, out)
     return out
 
 

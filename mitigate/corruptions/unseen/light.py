@@ -40,18 +40,28 @@ def _amplified(stops: float) -> np.ndarray:
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
-def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Apply gains of red, green and blue for a wrong light colour, fixed per episode."""
+def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
+    """Return the tables of red, green and blue of ``white_balance``, each uint8 [256]."""
     angle = 2.0 * math.pi * uniform(digest(key, "white_balance"))
     warm, green = 0.5 * CAST * math.cos(angle), 0.5 * CAST * TINT * math.sin(angle)
     stops = (warm - green, green, -warm - green)
-    return _by_table(views, [_amplified(severity * each) for each in stops])
+    return [_amplified(severity * each) for each in stops]
+
+
+def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Apply gains of red, green and blue for a wrong light colour, fixed per episode."""
+    return _by_table(views, balance_tables(severity, key))
+
+
+def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
+    """Return the three equal tables of ``overexposure``, each uint8 [256]."""
+    spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
+    return [_amplified(STOPS * spread * severity)] * 3
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Multiply light by 2^(2 s u), with u ~ U(0.8, 1.2) per episode, and clip at white."""
-    spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
-    return _by_table(views, [_amplified(STOPS * spread * severity)] * 3)
+    return _by_table(views, exposure_tables(severity, key))
 
 
 @cached
@@ -73,19 +83,29 @@ def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarra
     return masks.opacity_mask((1.0 - lost).astype(np.float32), 1.0, masks.NEUTRAL)
 
 
+def haze_offset(key: Key, view: int, width: int) -> int:
+    """Return by how many columns the haze of a view is moved to the right."""
+    return int(uniform(scramble(digest(key, "haze"), view)) * width)
+
+
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend each view with haze, x t + A (1 - t), as from smoke; views show different parts of the
     field.
     """
     count, height, width, _ = views.shape
-    value, out = digest(key, "haze"), np.empty_like(views)
-    mask = haze_mask(value, severity, height, width)
+    out = np.empty_like(views)
+    mask = haze_mask(digest(key, "haze"), severity, height, width)
     grey = masks.colour_row(HAZE_COLOUR, width)
     for view in range(count):
-        shift = int(uniform(scramble(value, view)) * width)
-        shifted = np.roll(mask, 3 * shift, axis=1)
+        shifted = np.roll(mask, 3 * haze_offset(key, view, width), axis=1)
         masks.cover(views[view : view + 1], shifted, grey, out[view : view + 1])
     return out
+
+
+def hue_degrees(severity: float, key: Key) -> float:
+    """Return the angle of ``hue_shift`` in degrees."""
+    sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
+    return sign * HUE_DEGREES * severity
 
 
 @lru_cache(maxsize=32)
@@ -100,8 +120,7 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Rotate all hues by +-180 s degrees, with the sign fixed per episode; grey does not change."""
-    sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
-    matrix = hue_matrix(sign * HUE_DEGREES * severity)
+    matrix = hue_matrix(hue_degrees(severity, key))
     colours = [views[..., c].astype(np.int32) for c in range(3)]
     out = np.empty_like(views)
     for c, row in enumerate(matrix):

@@ -23,23 +23,33 @@ BEND = 0.045  # rms displacement as a fraction of the side, at s = 1
 SCRATCHES = 14  # number of scratches at s = 1
 SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths as fractions of the side
 SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
+SCRATCH_PARTS = ((SCRATCH_CORE, SCRATCH_OPACITY), (SCRATCH_GLOW, GLOW_OPACITY))
 SCRATCH_LONG = (0.3, 1.0)  # length as a fraction of the side
 SCRATCH_COLOUR = (226, 226, 222)
+
+
+def ghost_offset(key: Key, height: int, width: int) -> tuple[int, int]:
+    """Return the offset of the ghost image in pixels, down and to the right."""
+    value = digest(key, "ghosting")
+    away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
+    across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))
+    return round(GHOST_DOWN * height * (2.0 * uniform(value, 2) - 1.0)), across
+
+
+def ghost_weight(severity: float) -> int:
+    """Return the weight of the ghost image, in units of 1/65536."""
+    return round(65536 * GHOST * severity)
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend (1 - a) x + a x' with a = 0.5 s, where x' is the shifted image with repeated edges."""
     _, height, width, _ = views.shape
-    value = digest(key, "ghosting")
-    away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
-    across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))
-    down = round(GHOST_DOWN * height * (2.0 * uniform(value, 2) - 1.0))
+    down, across = ghost_offset(key, height, width)
     rows = np.clip(np.arange(height) + down, 0, height - 1)
     columns = np.clip(np.arange(width) + across, 0, width - 1)
     moved = np.take(np.take(views, rows, axis=1), columns, axis=2).astype(np.int32)
-    weight = round(65536 * GHOST * severity)
     gap = moved - views
-    return (views + ((gap * weight + 32768) >> 16)).astype(np.uint8)
+    return (views + ((gap * ghost_weight(severity) + 32768) >> 16)).astype(np.uint8)
 
 
 @njit(cache=True)
@@ -85,15 +95,28 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
     return out
 
 
+def scratch_strength(severity: float, number: int) -> float:
+    """Return the visibility of a scratch, in [0, 1]."""
+    return min(max(SCRATCHES * severity - number, 0.0), 1.0)
+
+
+def scratch_line(value: int, number: int) -> tuple[float, float, float, float]:
+    """Return the centre of a scratch (row and column as fractions of the image), its angle in
+    radians and half its length in image sides.
+    """
+    draw = [uniform(value, 5 * number + part) for part in range(4)]
+    half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
+    return draw[0], draw[1], math.pi * draw[2], half
+
+
 def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the distances to a scratch's line and beyond its ends, float64 [H, W], in image
     sides.
     """
-    draw = [uniform(value, 5 * number + part) for part in range(4)]
-    side, angle = min(height, width), math.pi * draw[2]
-    half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
-    y = ((np.arange(height) + 0.5 - draw[0] * height) / side)[:, None]
-    x = ((np.arange(width) + 0.5 - draw[1] * width) / side)[None, :]
+    row, column, angle, half = scratch_line(value, number)
+    side = min(height, width)
+    y = ((np.arange(height) + 0.5 - row * height) / side)[:, None]
+    x = ((np.arange(width) + 0.5 - column * width) / side)[None, :]
     along = x * math.cos(angle) + y * math.sin(angle)
     across = y * math.cos(angle) - x * math.sin(angle)
     return np.abs(across), np.maximum(np.abs(along) - half, 0.0)
@@ -104,14 +127,11 @@ def scratch_mask(value: int, severity: float, height: int, width: int) -> np.nda
     """Return the opacity of the scratches, int16 [H, 3 W] in units of 1/32768."""
     clear = np.ones((height, width))
     for number in range(SCRATCHES):
-        strength = min(max(SCRATCHES * severity - number, 0.0), 1.0)
+        strength = scratch_strength(severity, number)
         if strength > 0.0:
             across, beyond = _along(value, number, height, width)
             far = np.hypot(across, beyond)
-            for reach, most in (
-                (SCRATCH_CORE, SCRATCH_OPACITY),
-                (SCRATCH_GLOW, GLOW_OPACITY),
-            ):
+            for reach, most in SCRATCH_PARTS:
                 clear *= 1.0 - strength * most * np.exp(-0.5 * (far / reach) ** 2)
     return masks.opacity_mask((1.0 - clear).astype(np.float32), 1.0, masks.NEUTRAL)
 

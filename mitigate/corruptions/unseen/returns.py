@@ -38,6 +38,14 @@ UPSIDE_DOWN = 3.0
 _U = np.uint64
 
 
+def ripple_offsets(key: Key, views: int, height: int, width: int) -> list[tuple[int, int]]:
+    """Return by how many pixels the field of each view is moved, down and to the right."""
+    return [
+        (int(uniform(int(stream), 0) * height), int(uniform(int(stream), 1) * width))
+        for stream in view_streams(key, "ripple_offset", views)
+    ]
+
+
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Add waves to walls: the error is 0.06 s z^2 F for a random field F. The field F is shifted
     for every view and frame.
@@ -46,9 +54,8 @@ def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) ->
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
     moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)
     strength = np.float32(RIPPLE * severity)
-    for view, stream in enumerate(view_streams(key, "ripple_offset", count)):
-        down, right = (int(uniform(int(stream), i) * n) for i, n in enumerate((height, width)))
-        shifted = np.roll(waves, (down, right), axis=(0, 1))
+    for view, offset in enumerate(ripple_offsets(key, count, height, width)):
+        shifted = np.roll(waves, offset, axis=(0, 1))
         moved[view] += strength * moved[view] * moved[view] * shifted
     return clip_valid(views, moved, sensor)
 
@@ -72,9 +79,14 @@ def _mismatch(views, streams, cell, least, z_max, out):
                 out[v, y, x] = min(max(read, NEAREST), z_max) if is_valid(z) else z
 
 
+def speckle_side(height: int, width: int) -> int:
+    """Return the side of a patch of ``mismatches``, in pixels."""
+    return max(1, round(SPECKLE * min(height, width)))
+
+
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Set a fraction 0.3 s of the pixels, in patches of 0.02 of the side, to random depths."""
-    cell = max(1, round(SPECKLE * min(views.shape[1:])))
+    cell = speckle_side(*views.shape[1:])
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
     least = _U(round(WRONG * severity * 2**32))
     _mismatch(views, streams, cell, least, np.float32(sensor.z_max), out)
@@ -91,6 +103,11 @@ def below_camera(views: np.ndarray) -> np.ndarray:
     return np.where(valid(views), views, 0) * down.astype(np.float32)[:, None]
 
 
+def gloss_offset(key: Key, view: int, width: int) -> int:
+    """Return by how many columns the gloss of a view is moved to the right."""
+    return int(uniform(scramble(digest(key, "glossy_floor"), view)) * width)
+
+
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Set a fraction s of the floor to the depth of the room that the floor mirrors."""
     _, height, width = views.shape
@@ -103,7 +120,7 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     gloss = smooth >= top_share(cells, severity)
     for view, clean in enumerate(out):
         floor = (depth[view] > 0) & (depth[view] >= FLOOR * depth[view].max())
-        floor &= np.roll(gloss, int(uniform(scramble(value, view)) * width), axis=1)
+        floor &= np.roll(gloss, gloss_offset(key, view, width), axis=1)
         wall = np.where(valid(clean), clean, 0).max(axis=0)
         mirrored = np.minimum(np.float32(UPSIDE_DOWN) * clean, wall)
         out[view] = np.where(floor & (mirrored > clean), mirrored, clean)

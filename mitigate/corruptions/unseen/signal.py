@@ -28,29 +28,38 @@ def _between(value: int, counter: int, ends: tuple[float, float]) -> float:
     return ends[0] + (ends[1] - ends[0]) * uniform(value, counter)
 
 
-def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Shift each row by 0.05 s W sin(...), as if the camera vibrated during read-out."""
-    _, height, width, _ = views.shape
+def wobble(severity: float, key: Key, height: int, width: int) -> np.ndarray:
+    """Return the shift of each row of ``rolling_shutter`` in pixels, float32 [H]."""
     waves = _between(digest(key, "rolling_shutter"), 0, WOBBLE_WAVES)
     phase = uniform(digest(key, "rolling_shutter", frame=True))
     row = (np.arange(height) + 0.5) / height
     aside = WOBBLE * severity * width * np.sin(2.0 * math.pi * (waves * row + phase))
-    right = np.repeat(aside.astype(np.float32)[:, None], width, axis=1)
+    return aside.astype(np.float32)
+
+
+def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Shift each row by 0.05 s W sin(...), as if the camera vibrated during read-out."""
+    _, height, width, _ = views.shape
+    right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
     level, out = np.zeros_like(right), np.empty_like(views)
     for view, into in zip(views, out, strict=True):
         displaced(view, level, right, into)
     return out
 
 
-def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Scale the brightness of each row by 1 + 0.8 s cos(...), as from lamps on mains power."""
-    count, height, _, _ = views.shape
+def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray:
+    """Return the gain of each row of ``flicker_bands``, int32 [V, H] in units of 1/4096."""
     bands = _between(digest(key, "flicker_bands"), 0, BANDS)
     value = digest(key, "flicker_bands", frame=True)
-    phase = np.array([uniform(value, view) for view in range(count)])
+    phase = np.array([uniform(value, view) for view in range(views)])
     turns = bands * (np.arange(height) + 0.5) / height + phase[:, None]
     share = FLICKER * severity * np.cos(2.0 * math.pi * turns)
-    gain = np.rint(4096.0 * (1.0 + share)).astype(np.int32)[:, :, None, None]
+    return np.rint(4096.0 * (1.0 + share)).astype(np.int32)
+
+
+def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
+    """Scale the brightness of each row by 1 + 0.8 s cos(...), as from lamps on mains power."""
+    gain = band_gains(severity, key, *views.shape[:2])[:, :, None, None]
     return np.minimum((views * gain + 2048) >> 12, 255).astype(np.uint8)
 
 
@@ -66,12 +75,17 @@ def _strike(views, streams, least, out):
                 out[v, i, c] = level if struck else views[v, i, c]
 
 
+def impulse_limit(severity: float) -> int:
+    """Return the 32-bit hash below which ``impulse_noise`` changes a pixel."""
+    return round(IMPULSES * severity * 2**32)
+
+
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Set a fraction 0.3 s of the pixels of every frame to 0 or 255, separately per colour
     channel.
     """
     out, count = np.empty_like(views), len(views)
-    least = _U(round(IMPULSES * severity * 2**32))
+    least = _U(impulse_limit(severity))
     streams = view_streams(key, "impulse_noise", count)
     _strike(views.reshape(count, -1, 3), streams, least, out.reshape(count, -1, 3))
     return out

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from mitigate.corruptions import DEPTH, NAMES
-from tools.bench import evaluation, report, suite, timing, training
+from tools.bench import evaluation, report, suite, tensors, timing, training
 from tools.bench.peers import plain
 from tools.bench.renderers import OURS
 from tools.bench.targets import BARS
@@ -57,20 +57,33 @@ def test_page_lists_corruptions_over_the_bar():
     stages = {False: [stage], True: []}
     costs = {"224x224": {"low_light": good, "quantization": missed}}
     paces = {"base": evaluation.Pace(26, 5.2, 2.6, True)}
-    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, {1: 9.0, 2: 5.0}, "--steps 3")
+    batches = {"cpu": [tensors.Batch("low_light", "8x1x224x224", 4.0, 1.0, 8.0)]}
+    batches["cpu"] += [tensors.Batch("spatter", "8x1x224x224", None, 1.0, 8.0)]
+    workers = {1: 9.0, 2: 5.0}
+    text = report.page(costs, 3.9, stages, rates, 64, 0.2, paces, workers, batches, "--steps 3")
     assert '`make bench ARGS="--steps 3"` on' in text
     assert (
         "| `low_light` | 0.1000 | 0.2000 | 0.3000 | peer 1: 0.400 | 4.0 | 2.0 | 0.2 | 0.50 | 2.0"
         in text
     )
-    over = text.split("### Above the target")[1].split("## Training")[0]
+    over = text.split("### Above the target")[1].split("## Batches")[0]
     assert "`quantization` | 224x224 | 0.3000" in over and "low_light" not in over
     assert (
         "| `da_per_frame` | imitation | fp32 | 0.50 | 2000 | 80% | 20% | 4.00 | 20% | 900" in text
     )
     assert "| other | 50 | 25 | 4 | 2.0 times |" in text
     assert "| `base` | 26 | 5.0 | 10.0 | 2.00 | equal |" in text
+    assert "| `low_light` | 8x1x224x224 | 4.00 | 1.00 | 4.00 | 8.00 | 0.50 |" in text
+    assert "| `spatter` | 8x1x224x224 |  | 1.00 |  | 8.00 |  |" in text
+    assert "No GPU was available" in text
     assert "9.0 s with 1, 5.0 s with 2 (1.80 times)." in text
+
+
+@pytest.mark.slow
+def test_batches_are_measured_with_both_backends():
+    rows = tensors.costs("cpu", "2x1x16x20", (2, 1, 16, 20), 1e-3)
+    assert [row.name for row in rows] == list(NAMES)
+    assert all(row.numpy > 0 and row.torch > 0 for row in rows)
 
 
 @pytest.mark.slow

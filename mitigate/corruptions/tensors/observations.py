@@ -1,0 +1,101 @@
+"""Corrupt batches of RGB and depth frames, with one corruption per row."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import torch
+from torch import Tensor
+
+from mitigate.core.observation import DEPTH
+from mitigate.corruptions.depth_sensor import LEAST, DepthSensor
+from mitigate.corruptions.keying import Key
+from mitigate.corruptions.normalised import check_sensor
+from mitigate.corruptions.record import ACTION
+from mitigate.corruptions.suite import SENSOR, Corruption, changed_entries, check_corruption
+from mitigate.corruptions.tensors.pixels import is_valid
+from mitigate.corruptions.tensors.suite import corrupt_tensors
+
+OF_NO_FRAME = ("instruction", ACTION)  # modalities of corruptions that do not change frames
+
+
+@torch.no_grad()
+def corrupt_observations(
+    frames: Mapping[str, Tensor],
+    corruptions: Sequence[Corruption],
+    keys: Sequence[Key],
+    *,
+    headings: Sequence[float | None] | None = None,
+    sensor: DepthSensor = SENSOR,
+    normalised: bool = False,
+    backend: str | None = None,
+) -> dict[str, Tensor]:
+    """Corrupt the frames of a batch of observations, such as the next step of vector environments.
+
+    Args:
+        frames: Any of ``rgb`` uint8 [B, V, H, W, 3] and ``depth`` float32 [B, V, H, W, 1].
+        corruptions: Corruption, pair of corruptions or CLEAN of each row, for example from
+            ``Schedule.draw``. Corruptions of instructions change nothing here.
+        keys: Key of each row.
+        headings: Heading of each row in radians, or None where it is unknown.
+        sensor: Depth range and value for no reading.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        backend: As in ``corrupt_tensors``.
+
+    Returns:
+        A new dict; entries that no row corrupts are the same objects.
+
+    Raises:
+        ValueError: A modality is missing, normalised depth is above 1, or an error of
+            ``corrupt_tensors``.
+    """
+    result = dict(frames)
+    if headings is None:
+        headings = [None] * len(keys)
+    parts = [check_corruption(corruption).parts for corruption in corruptions]
+    if normalised and DEPTH in frames and any(DEPTH in c.modalities for c in corruptions):
+        result[DEPTH] = _to_metres(frames[DEPTH], sensor)
+    metres = result.get(DEPTH)
+    for position in range(max(map(len, parts), default=0)):
+        groups: dict[str, list[int]] = {}
+        for row, of_row in enumerate(parts):
+            if position < len(of_row) and of_row[position].modality not in OF_NO_FRAME:
+                groups.setdefault(of_row[position].name, []).append(row)
+        for name, rows in groups.items():
+            for entry in changed_entries(result, Corruption(name, 0.0)):
+                if result[entry] is frames[entry] or result[entry] is metres:
+                    result[entry] = result[entry].clone()
+                index = torch.tensor(rows, device=result[entry].device)
+                result[entry][index] = corrupt_tensors(
+                    result[entry][index],
+                    name,
+                    [corruptions[row].severity for row in rows],
+                    keys=[keys[row] for row in rows],
+                    headings=[headings[row] for row in rows],
+                    sensor=sensor,
+                    backend=backend,
+                )
+    if metres is not None and metres is not frames[DEPTH]:
+        result[DEPTH] = _normalise(result[DEPTH], metres, frames[DEPTH], sensor)
+    return result
+
+
+def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
+    """Return normalised depth in metres, with 0 at invalid pixels, as ``corrupt_normalised``."""
+    check_sensor(sensor)
+    valid = is_valid(depth)
+    most = float(depth.masked_fill(~valid, 0.0).amax()) if depth.numel() else 0.0
+    if most > 1.0:
+        raise ValueError(
+            f"Normalised depth must be in 0-1, got {most:g}. For depth in metres, set "
+            "normalised=False."
+        )
+    metres = sensor.z_min + depth * (sensor.z_max - sensor.z_min)
+    return metres.masked_fill(~valid, 0.0)
+
+
+def _normalise(corrupted: Tensor, metres: Tensor, clean: Tensor, sensor: DepthSensor) -> Tensor:
+    """Return depth in [0, 1]; pixels that did not change keep their clean values."""
+    unit = (corrupted - sensor.z_min) / (sensor.z_max - sensor.z_min)
+    unit = unit.clamp(float(LEAST), 1.0).masked_fill(corrupted <= 0, 0.0)
+    return torch.where(corrupted == metres, clean, unit)

@@ -1,0 +1,120 @@
+"""Operations on the pixels of batches of views that several corruptions share.
+
+Batches of RGB are uint8 [B, V, H, W, 3], and batches of depth float32 metres [B, V, H, W]. Blends
+use the integers of the numpy kernels, so they give the same pixels.
+"""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor
+from torch.nn import functional
+
+from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
+
+
+def opacity(share: Tensor, scale: Tensor | float) -> Tensor:
+    """Return min(share scale, 1) as int32 in units of 1/32768, as in ``masks.opacity_mask``.
+
+    Args:
+        share: Opacity >= 0, float32.
+        scale: Factor in units of 1/32768; a tensor float32 broadcasts with ``share``.
+    """
+    return (share * scale + 0.5).clamp(max=32767.0).int()
+
+
+def cover(views: Tensor, alpha: Tensor, colours: Tensor) -> Tensor:
+    """Blend RGB with a colour, as in ``masks.cover``.
+
+    Args:
+        views: uint8 [B, V, H, W, 3].
+        alpha: Opacity in units of 1/32768, int32 that broadcasts with ``views``.
+        colours: int32 that broadcasts with ``views``.
+    """
+    source = views.int()
+    part = ((colours - source) * 128 * alpha) >> 16
+    return (source + ((part + 32) >> 6)).to(torch.uint8)
+
+
+def look_up(table: Tensor, places: Tensor) -> Tensor:
+    """Return the entries of a table [n] at ``places`` (integers of any shape)."""
+    return table.index_select(0, places.flatten()).reshape(places.shape)
+
+
+def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
+    """Return pixels of [B, V, H, W, ...] at rows and columns that broadcast to [B, V, h, w]."""
+    batch, count = views.shape[:2]
+    row = torch.arange(batch, device=views.device).reshape(-1, 1, 1, 1)
+    view = torch.arange(count, device=views.device).reshape(1, -1, 1, 1)
+    return views[row, view, rows, columns]
+
+
+def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
+    """Return [B, V, H, W, ...] at (y + down, x + right), with repeated edges.
+
+    ``down`` and ``right`` are int64 [B, 1, 1, 1].
+    """
+    height, width = views.shape[2:4]
+    rows = torch.arange(height, device=views.device).reshape(-1, 1) + down
+    columns = torch.arange(width, device=views.device) + right
+    return at(views, rows.clamp(0, height - 1), columns.clamp(0, width - 1))
+
+
+def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
+    """Return maps [B, H, W] at (y + down, x + right) on a torus, [B, V, H, W].
+
+    ``down`` and ``right`` are int64 [B, V, 1, 1].
+    """
+    batch, height, width = maps.shape
+    rows = (torch.arange(height, device=maps.device).reshape(-1, 1) + down) % height
+    columns = (torch.arange(width, device=maps.device) + right) % width
+    row = torch.arange(batch, device=maps.device).reshape(-1, 1, 1, 1)
+    return maps[row, rows, columns]
+
+
+def displaced(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
+    """Return RGB at (y + down, x + right), bilinear, as in ``unseen.optics.displaced``.
+
+    ``down`` and ``right`` are float32 in pixels and broadcast with [B, V, H, W].
+    """
+    height, width = views.shape[2:4]
+    y = 256 * torch.arange(height, device=views.device).reshape(-1, 1)
+    x = 256 * torch.arange(width, device=views.device)
+    v = (y + (down * 256).floor().long()).clamp(0, (height - 1) * 256)
+    u = (x + (right * 256).floor().long()).clamp(0, (width - 1) * 256)
+    top, left = v >> 8, u >> 8
+    below, beside = (top + 1).clamp(max=height - 1), (left + 1).clamp(max=width - 1)
+    b, a = (v & 255).int().unsqueeze(-1), (u & 255).int().unsqueeze(-1)
+    upper = at(views, top, left) * (256 - a) + at(views, top, beside) * a
+    lower = at(views, below, left) * (256 - a) + at(views, below, beside) * a
+    return ((upper * (256 - b) + lower * b + 32768) >> 16).to(torch.uint8)
+
+
+def is_valid(depth: Tensor) -> Tensor:
+    """Return a mask of valid depth: positive and finite."""
+    return (depth > 0) & (depth < torch.inf)
+
+
+def clip_valid(views: Tensor, changed: Tensor, sensor: DepthSensor) -> Tensor:
+    """Return ``changed``, clipped to the range, where ``views`` is valid, else ``views``."""
+    return torch.where(is_valid(views), changed.clamp(float(NEAREST), sensor.z_max), views)
+
+
+def farthest(views: Tensor, reach: int) -> Tensor:
+    """Return the maximum of valid depth [B, V, H, W] in squares of 2 reach + 1, -inf if none is
+    valid.
+    """
+    return _largest(views.masked_fill(~is_valid(views), -torch.inf), reach)
+
+
+def nearest(views: Tensor, reach: int) -> Tensor:
+    """Return the minimum of valid depth [B, V, H, W] in squares of 2 reach + 1, inf if none is
+    valid.
+    """
+    return -_largest((-views).masked_fill(~is_valid(views), -torch.inf), reach)
+
+
+def _largest(views: Tensor, reach: int) -> Tensor:
+    side = 2 * reach + 1
+    along = functional.max_pool2d(views, (1, side), 1, (0, reach))
+    return functional.max_pool2d(along, (side, 1), 1, (reach, 0))

@@ -1,0 +1,94 @@
+"""Corrupt batches of Habitat observations whose frames are torch tensors, on their device.
+
+Habitat's batch renderer and ``HABITAT_SIM`` with ``gpu_gpu: True`` keep frames on the GPU.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from torch import Tensor
+
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import Corruption, DepthSensor, Key
+from mitigate.corruptions.suite import SENSOR
+from mitigate.corruptions.tensors import corrupt_observations
+from mitigate.worlds.habitat import TURNS, camera_views, check_cameras
+
+
+def corrupt_habitat_tensors(
+    observations: Mapping[str, Tensor],
+    corruptions: Sequence[Corruption],
+    keys: Sequence[Key],
+    sensor: DepthSensor = SENSOR,
+    *,
+    headings: Sequence[float | None] | None = None,
+    turn: str = "left",
+    normalised: bool = True,
+    backend: str | None = None,
+) -> dict[str, Tensor]:
+    """Corrupt the cameras of a batch of observations. Row b equals ``corrupt_habitat`` of row b.
+
+    Args:
+        observations: ``rgb*`` uint8 [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] or [B, H, W],
+            on any device. All cameras of a modality have the same size.
+        corruptions: Corruption of each row.
+        keys: Key of each row: Key(seed, episode id, step).
+        sensor: 0-10 m for R2R-CE (the default), ``DepthSensor(0.5, 5.0)`` for RxR-CE.
+        headings: Heading of each row in radians, counter-clockwise, or None where it is unknown.
+        turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
+        normalised: Whether depth is normalised; False for depth in metres.
+        backend: As in ``corrupt_tensors``.
+
+    Returns:
+        A new dictionary with the same entries, dtypes, shapes and devices. Entries that no row
+        corrupts are the same objects.
+
+    Raises:
+        ValueError: No camera has the modality, a camera is not at a multiple of 30 degrees below
+            360, the cameras of a modality differ in size, or an error of ``corrupt_observations``.
+    """
+    if turn not in TURNS:
+        raise ValueError(
+            f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
+        )
+    parts = [part for corruption in corruptions for part in corruption.parts]
+    check_cameras(observations, {part.name for part in parts})
+    cameras = {
+        modality: camera_views(observations, modality, turn)
+        for modality in (RGB, DEPTH)
+        if any(modality in part.modalities for part in parts)
+    }
+    frames = {modality: _panoramas(observations, views) for modality, views in cameras.items()}
+    corrupted = corrupt_observations(
+        frames,
+        corruptions,
+        keys,
+        headings=headings,
+        sensor=sensor,
+        normalised=normalised,
+        backend=backend,
+    )
+    result = dict(observations)
+    for modality, views in cameras.items():
+        for entry, view in views.items():
+            result[entry] = corrupted[modality][:, view].reshape(observations[entry].shape)
+    return result
+
+
+def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
+    """Return the cameras by view, [B, 1 + last view, H, W, C]; views without a camera are 0."""
+    first = observations[next(iter(views))]
+    for entry in views:
+        frames = observations[entry]
+        if frames.shape != first.shape or frames.dtype != first.dtype or frames.dim() not in (3, 4):
+            raise ValueError(
+                "All cameras of a panorama must have the same dtype and shape [B, H, W, channels], "
+                f"got {frames.dtype} {list(frames.shape)} for {entry!r} and {first.dtype} "
+                f"{list(first.shape)} for {next(iter(views))!r}."
+            )
+    shape = (*first.shape[:3], first.shape[3] if first.dim() == 4 else 1)
+    panorama = first.new_zeros((shape[0], 1 + max(views.values()), *shape[1:]))
+    for entry, view in views.items():
+        panorama[:, view] = observations[entry].reshape(shape)
+    return panorama

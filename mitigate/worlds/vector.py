@@ -1,0 +1,149 @@
+"""Provide a wrapper for gymnasium vector environments whose observations are torch tensors.
+
+Needs gymnasium 1.1 or newer. For vector environments of numpy arrays, wrap each environment with
+``mitigate.worlds.wrappers.CorruptObservation``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import torch
+from torch import Tensor
+
+try:
+    from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
+except ImportError as error:
+    raise ImportError(
+        "The wrapper for vector environments needs gymnasium 1.1 or newer: "
+        "pip install 'gymnasium>=1.1'."
+    ) from error
+
+from mitigate.core.observation import DEPTH, RGB
+from mitigate.corruptions import Corruption, DepthSensor, Schedule
+from mitigate.corruptions.schedule import drawn, names_of
+from mitigate.corruptions.suite import SENSOR
+from mitigate.corruptions.tensors import corrupt_observations
+from mitigate.corruptions.tensors.suite import check_backend
+from mitigate.worlds.modalities import ENTRY_FIX, check_available
+
+
+class CorruptVectorObservation(VectorWrapper):
+    """Corrupt the frames of a vector environment on their device.
+
+    An observation is a mapping whose entries ``rgb`` and ``depth`` are tensors: uint8
+    [N, H, W, 3] or [N, V, H, W, 3], and float32 [N, H, W, 1] or [N, V, H, W, 1]. Other entries do
+    not change, and neither do the final observations in ``info``.
+
+    Environment i of N runs the episodes i, i + N, i + 2 N, ..., so the numbers of one environment
+    do not depend on the others. They key every random number, as with ``EpisodeCounter`` of
+    ``mitigate.worlds.transforms``. A reset with a seed restarts them. A reset with
+    ``options={"reset_mask": mask}`` begins episodes in the rows of the mask only.
+
+    Args:
+        env: The vector environment.
+        schedule: The schedule that selects a corruption per frame, or one corruption for all
+            frames, which is not a fault.
+        seed: Corruption seed.
+        rgb: Name of the RGB entry, which the observation need not contain.
+        depth: Name of the depth entry, which the observation need not contain.
+        sensor: Depth range, and value that marks missing depth.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        autoreset_mode: When an environment resets itself after the end of an episode. None reads
+            ``env.metadata["autoreset_mode"]``. ManiSkill and Isaac Lab use SAME_STEP.
+        backend: As in ``mitigate.corruptions.tensors.corrupt_tensors``.
+
+    Raises:
+        ValueError: ``autoreset_mode`` is missing, the observation has no frames for a corruption,
+            or an error of ``corrupt_observations``.
+    """
+
+    def __init__(
+        self,
+        env: VectorEnv,
+        schedule: Schedule | Corruption,
+        seed: int = 0,
+        *,
+        rgb: str = RGB,
+        depth: str = DEPTH,
+        sensor: DepthSensor = SENSOR,
+        normalised: bool = False,
+        autoreset_mode: AutoresetMode | None = None,
+        backend: str | None = None,
+    ) -> None:
+        super().__init__(env)
+        mode = autoreset_mode or (env.metadata or {}).get("autoreset_mode")
+        if not isinstance(mode, AutoresetMode):
+            raise ValueError(
+                "autoreset_mode must be a gymnasium.vector.AutoresetMode, because it determines "
+                f"which step begins an episode, got {mode!r}. Pass it to the wrapper, or set "
+                "metadata['autoreset_mode'] of the environment."
+            )
+        self.schedule, self.seed, self.sensor = schedule, seed, sensor
+        self.entries = {RGB: rgb, DEPTH: depth}
+        self._normalised = normalised
+        self._mode = mode
+        self._backend = check_backend(backend)
+        self._resets = torch.zeros(self.num_envs, dtype=torch.int64)
+        self._steps = torch.zeros(self.num_envs, dtype=torch.int64)
+        self._over = torch.zeros(self.num_envs, dtype=torch.bool)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """Start the next episode in all environments, or in those of the reset mask."""
+        observations, info = self.env.reset(seed=seed, options=options)
+        if seed is not None:
+            self._resets.zero_()
+        mask = (options or {}).get("reset_mask")
+        self._begin(torch.ones_like(self._over) if mask is None else _on_host(mask))
+        return self._corrupt(observations), info
+
+    def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
+        """Step the environments and corrupt the observations."""
+        observations, rewards, terminated, truncated, info = self.env.step(actions)
+        over = _on_host(terminated) | _on_host(truncated)
+        self._steps += 1
+        if self._mode is AutoresetMode.SAME_STEP:
+            self._begin(over)
+        elif self._mode is AutoresetMode.NEXT_STEP:
+            self._begin(self._over)
+            self._over = over
+        return self._corrupt(observations), rewards, terminated, truncated, info
+
+    def _begin(self, mask: Tensor) -> None:
+        self._resets += mask
+        self._steps[mask] = 0
+        self._over = self._over & ~mask
+
+    def _corrupt(self, observations: Mapping[str, Any]) -> dict[str, Any]:
+        frames = {}
+        for name, entry in self.entries.items():
+            if entry in observations:
+                frames[name] = observations[entry]
+                if isinstance(frames[name], Tensor) and frames[name].dim() == 4:
+                    frames[name] = frames[name].unsqueeze(1)
+        check_available(names_of(self.schedule), frames, "the observation has no {0}", ENTRY_FIX)
+        numbers = torch.arange(self.num_envs) + (self._resets - 1).clamp(min=0) * self.num_envs
+        instants = zip(numbers.tolist(), self._steps.tolist(), strict=True)
+        draws = [drawn(self.schedule, self.seed, str(number), step) for number, step in instants]
+        corrupted = corrupt_observations(
+            frames,
+            [corruption for corruption, _ in draws],
+            [key for _, key in draws],
+            sensor=self.sensor,
+            normalised=self._normalised,
+            backend=self._backend,
+        )
+        changed = {
+            self.entries[name]: views.reshape(observations[self.entries[name]].shape)
+            for name, views in corrupted.items()
+            if views is not frames[name]
+        }
+        return {**observations, **changed}
+
+
+def _on_host(mask: Any) -> Tensor:
+    """Return a mask of the environments, bool [N] on the CPU."""
+    return torch.as_tensor(mask).cpu().bool()

@@ -1,0 +1,112 @@
+"""Measure corruptions of batches of torch tensors, on the CPU and on a GPU if there is one.
+
+    python -m tools.bench.tensors --seconds 0.3
+
+prints only this part of the benchmark, on one thread.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import torch
+
+from mitigate.corruptions import NAMES, Key
+from mitigate.corruptions.registry import modality
+from mitigate.corruptions.tensors import corrupt_tensors
+from tools.bench.peers import Calls, kornia
+from tools.bench.suite import SEED, SEVERITY, frames
+from tools.bench.timing import steady
+
+SHAPES = {"8x1x224x224": (8, 1, 224, 224), "2x1x480x640": (2, 1, 480, 640)}
+GPU_SHAPES = {**SHAPES, "256x1x224x224": (256, 1, 224, 224)}
+
+
+@dataclass(frozen=True)
+class Batch:
+    """Milliseconds per batch of one corruption.
+
+    Attributes:
+        name: Name of the corruption.
+        shape: Rows, views, height and width.
+        kornia: Time of kornia's transform, or None if it has none or is not installed.
+        numpy: Time of the numpy backend; None for frames on a GPU.
+        torch: Time of the torch backend.
+    """
+
+    name: str
+    shape: str
+    kornia: float | None
+    numpy: float | None
+    torch: float
+
+
+def measure(seconds: float) -> dict[str, list[Batch]]:
+    """Return the times by device."""
+    results = {"CPU": [row for item in SHAPES.items() for row in costs("cpu", *item, seconds)]}
+    if torch.cuda.is_available():
+        rows = [row for item in GPU_SHAPES.items() for row in costs("cuda", *item, seconds)]
+        results[torch.cuda.get_device_name()] = rows
+    return results
+
+
+def costs(device: str, label: str, shape: tuple[int, int, int, int], seconds: float) -> list[Batch]:
+    """Time the standard suite for a batch [B, V, H, W] on one device."""
+    rows, views, height, width = shape
+    rgb, depth = frames(views, height, width)
+    batches = {
+        "rgb": torch.from_numpy(np.stack([rgb] * rows)).to(device),
+        "depth": torch.from_numpy(np.stack([depth[..., None]] * rows)).to(device),
+    }
+    peers = _kornia(np.concatenate([rgb] * rows), device)
+
+    def timed(call: Callable[[], object]) -> float:
+        def synchronised(_: int) -> None:
+            call()
+            if device != "cpu":
+                torch.cuda.synchronize()
+
+        return steady(synchronised, seconds)
+
+    def ours(name: str, backend: str) -> float:
+        batch = batches[modality(name)]
+        keys = [Key(SEED, str(row)) for row in range(rows)]
+        return timed(lambda: corrupt_tensors(batch, name, SEVERITY, keys=keys, backend=backend))
+
+    return [
+        Batch(
+            name,
+            label,
+            timed(peers[name]) if name in peers else None,
+            ours(name, "numpy") if device == "cpu" else None,
+            ours(name, "torch"),
+        )
+        for name in NAMES
+    ]
+
+
+def _kornia(views: np.ndarray, device: str) -> Calls:
+    """Return kornia's calls, or none if it is not installed."""
+    try:
+        return kornia(views, SEVERITY, device)
+    except ImportError as error:
+        print(f"kornia is not measured: {error}. Install it with `pip install -e '.[bench]'`.")
+        return {}
+
+
+def main() -> None:
+    """Run from the command line."""
+    from tools.bench.report import tensor_lines
+
+    parser = argparse.ArgumentParser(prog="tools.bench.tensors", description=__doc__)
+    parser.add_argument("--seconds", type=float, default=0.3, help="per measurement (default 0.3)")
+    options = parser.parse_args()
+    torch.set_num_threads(1)
+    print("\n".join(tensor_lines(measure(options.seconds))))
+
+
+if __name__ == "__main__":
+    main()
