@@ -129,9 +129,9 @@ def _normal_table(device: torch.device) -> Tensor:
 
 def normals(words: Tensor, count: int) -> Tensor:
     """Return ``count`` standard normal numbers, four per word, float32 [..., count]."""
-    bits = torch.tensor([4, 20, 36, 52], device=words.device)
-    places = (words.unsqueeze(-1) >> bits) & 0xFFF
-    return _normal_table(words.device)[places].flatten(-2)[..., :count]
+    quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits come first
+    places = (quarters >> 4) & 0xFFF
+    return _normal_table(words.device).index_select(0, places.flatten()).reshape(places.shape)
 
 
 @lru_cache(maxsize=32)

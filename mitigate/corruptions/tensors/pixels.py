@@ -1,7 +1,8 @@
 """Operations on the pixels of batches of views that several corruptions share.
 
 Batches of RGB are uint8 [B, V, H, W, 3], and batches of depth float32 metres [B, V, H, W]. Blends
-use the integers of the numpy kernels, so they give the same pixels.
+use the integers of the numpy kernels, so they give the same pixels. They work on rows of 3 W colour
+values, because broadcasting over a last axis of 3 is slow.
 """
 
 from __future__ import annotations
@@ -20,7 +21,17 @@ def opacity(share: Tensor, scale: Tensor | float) -> Tensor:
         share: Opacity >= 0, float32.
         scale: Factor in units of 1/32768; a tensor float32 broadcasts with ``share``.
     """
-    return (share * scale + 0.5).clamp(max=32767.0).int()
+    return (share * scale).add_(0.5).clamp_(max=32767.0).int()
+
+
+def per_colour(pixels: Tensor) -> Tensor:
+    """Return values of pixels [..., W] for their colour values, [..., 3 W]."""
+    return pixels.repeat_interleave(3, -1)
+
+
+def colour_rows(colours: Tensor, width: int) -> Tensor:
+    """Return image rows of one colour each, [B, 1, 1, 3 W], from colours [B, 3]."""
+    return colours.repeat(1, width)[:, None, None]
 
 
 def cover(views: Tensor, alpha: Tensor, colours: Tensor) -> Tensor:
@@ -28,12 +39,12 @@ def cover(views: Tensor, alpha: Tensor, colours: Tensor) -> Tensor:
 
     Args:
         views: uint8 [B, V, H, W, 3].
-        alpha: Opacity in units of 1/32768, int32 that broadcasts with ``views``.
-        colours: int32 that broadcasts with ``views``.
+        alpha: Opacity in units of 1/32768, int32 [B, V or 1, H, 3 W].
+        colours: int32 [B or 1, 3].
     """
-    source = views.int()
-    part = ((colours - source) * 128 * alpha) >> 16
-    return (source + ((part + 32) >> 6)).to(torch.uint8)
+    blend = views.flatten(3).int() * (32768 - alpha)
+    blend += colour_rows(colours, views.shape[3]) * alpha + 16384
+    return (blend >> 15).to(torch.uint8).reshape(views.shape)
 
 
 def look_up(table: Tensor, places: Tensor) -> Tensor:

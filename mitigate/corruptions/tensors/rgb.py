@@ -22,7 +22,7 @@ from mitigate.corruptions.tensors.draws import (
     shifted,
     view_words,
 )
-from mitigate.corruptions.tensors.pixels import cover, look_up, opacity
+from mitigate.corruptions.tensors.pixels import cover, look_up, opacity, per_colour
 
 UNIT = 32768.0  # an opacity of 1 in ``cover``
 ONE_TAP = np.array([0]), np.array([0]), np.array([1])  # a line that is shorter than a pixel
@@ -47,30 +47,37 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
     padded = functional.pad(planes, (right + 1, right + 1, down, down), mode="replicate")
     smooth = padded[..., :-2] + 2.0 * padded[..., 1:-1] + padded[..., 2:]
     smooth = (smooth.add_(2.0) * 0.25).floor_()
-    source = torch.where(on_device(steps == 2, views, 2), smooth, padded[..., 1:-1])
-    total = _filtered(source, on_device(kernels, views)).int() * on_device(blurred, views, 2).int()
-    rest = on_device(65536 - blurred * units, views, 2).int()
+    every_second = _per_plane(steps == 2, views)[:, None, None]
+    source = torch.where(every_second, smooth, padded[..., 1:-1])
+    total = _filtered(source, _per_plane(kernels, views)).int()
+    total *= _per_plane(blurred, views).int()[:, None, None]
+    rest = _per_plane(65536 - blurred * units, views).int()[:, None, None]
     return _frames((total + planes.int() * rest + 32768) >> 16, views)
 
 
 def _planes(views: Tensor) -> Tensor:
-    """Return the colours of RGB, float32 [V 3, B, H, W], with one row of the batch per channel."""
-    return views.permute(1, 4, 0, 2, 3).flatten(0, 1).float()
+    """Return the colours of RGB as channels, float32 [1, B V 3, H, W]."""
+    return views.permute(0, 1, 4, 2, 3).flatten(0, 2).float().unsqueeze(0)
+
+
+def _per_plane(values: np.ndarray, views: Tensor) -> Tensor:
+    """Copy values of rows [B, ...] to the device, once for each plane, [B V 3, ...]."""
+    return on_device(values, views).repeat_interleave(3 * views.shape[1], 0)
 
 
 def _frames(planes: Tensor, views: Tensor) -> Tensor:
-    """Return integer planes [V 3, B, H, W] as a batch of the shape of ``views``."""
-    apart = planes.to(torch.uint8).unflatten(0, (views.shape[1], 3))
-    return apart.permute(2, 0, 3, 4, 1).contiguous()
+    """Return integer planes [1, B V 3, H, W] as a batch of the shape of ``views``."""
+    apart = planes.to(torch.uint8).reshape(*views.shape[:2], 3, *views.shape[2:4])
+    return apart.permute(0, 1, 3, 4, 2).contiguous()
 
 
 def _filtered(planes: Tensor, kernels: Tensor) -> Tensor:
-    """Correlate channel b of planes [n, B, h, w] with kernel b of [B, 1, y, x]."""
+    """Correlate each plane of [1, n, h, w] with its kernel of [n, 1, y, x]."""
     return functional.conv2d(planes, kernels, groups=len(kernels))
 
 
 def darkness(views: Tensor, rows: Rows) -> Tensor:
-    """Return the opacity of ``masks.low_light_mask``, int32 [B, 1, H, W, 1]."""
+    """Return the opacity of ``masks.low_light_mask``, int32 [B, 1, H, W]."""
     height, width = views.shape[2:4]
     terms = [masks.ramp_terms(value, height, width) for value in rows.digests("low_light")]
     down = on_device(np.stack([term[0] for term in terms]), views, 1)
@@ -79,13 +86,12 @@ def darkness(views: Tensor, rows: Rows) -> Tensor:
     ramp = torch.where(on_device([term[2] for term in terms], views, 2), ramp.sqrt(), ramp)
     share = ramp * on_device(rows.scaled(masks.DARK_RAMP), views, 2)
     share += on_device(rows.scaled(masks.DARK_BASE), views, 2)
-    return opacity(share, UNIT)[:, None, :, :, None]
+    return opacity(share, UNIT).unsqueeze(1)
 
 
 def low_light(views: Tensor, rows: Rows) -> Tensor:
     """Darken with a gradient."""
-    black = torch.zeros(1, dtype=torch.int32, device=views.device)
-    return cover(views, darkness(views, rows), black)
+    return cover(views, per_colour(darkness(views, rows)), on_device([rgb.BLACK], views).int())
 
 
 def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
@@ -101,18 +107,19 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     decode = on_device([np.pad(t.decode, (0, span - t.decode.size)) for t in tables], views)
     offsets = on_device([256 * table.offset + 128 for table in tables], views).int()[number]
 
-    source = views.int()
-    part = (source * -128 * darkness(views, rows)) >> 16
-    level = ((source * 64 + part + 8) >> 4).long() + number.unsqueeze(-1) * eld.LEVELS
+    light = 32768 - darkness(views, rows)
     lines = torch.arange(views.shape[2], device=views.device).unsqueeze(1)
     place = shifted(view_words(rows, "row_noise", views, lines), 52)
     shift = look_up(row, place + number * (row.numel() // len(each))) + offsets
     words = pixel_words(rows, "low_light_noise", views)
     out = torch.empty_like(views)
+    number = number.int()
     for colour in range(3):
-        place = (level[..., colour] << 8) | ((words >> (20 * colour)) & 0xFF)
-        digital = look_up(photons, place) + shift
-        place = ((words >> (20 * colour + 8)) & 0xFFF) + number * (1 << eld.READ_BITS)
+        level = (views[..., colour].int() * light).add_(4096) >> 13  # in quarters of a grey level
+        bits = (words >> (20 * colour)).int()
+        place = ((level + number * eld.LEVELS) << eld.PHOTON_BITS) + (bits & 0xFF)
+        digital = look_up(photons, place).add_(shift)
+        place = ((bits >> eld.PHOTON_BITS) & 0xFFF) + number * (1 << eld.READ_BITS)
         digital += look_up(read, place)
         out[..., colour] = look_up(decode.flatten(), (digital >> 8) + number * span)
     return out
@@ -127,15 +134,14 @@ def spatter(views: Tensor, rows: Rows) -> Tensor:
     share = ((smooth - level) * float(np.float32(1.0 / masks.SPATTER_EDGE))).clamp(0.0, 1.0)
     alpha = opacity(share, on_device([UNIT * (0.5 + 0.5 * s) for s in rows.severities], views, 2))
     colours = [masks.spatter_colour(value) for value in rows.digests("spatter_colour")]
-    colour = on_device(colours, views).int()[:, None, None, None]
-    return cover(views, alpha[:, None, :, :, None], colour)
+    return cover(views, per_colour(alpha).unsqueeze(1), on_device(colours, views).int())
 
 
 def flare(views: Tensor, rows: Rows) -> Tensor:
     """Add a glow to the views that see the light."""
     count, height, width = views.shape[1:4]
     batch = len(views)
-    scales = np.zeros((batch, count, 1, 1, 3))  # 0 in views that do not see the light
+    scales = np.zeros((batch, count, 1, 3))  # 0 in views that do not see the light
     down = np.zeros((batch, count, height, 1), np.float32)
     right = np.zeros((batch, count, 1, width), np.float32)
     values = zip(rows.digests("flare"), rows.headings, strict=True)
@@ -148,8 +154,9 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
                 scales[row, view] = UNIT * rows.severities[row] * np.array(masks.FLARE_TINT)
     table = on_device(masks.glow_table(), views)
     places = ((on_device(down, views) + on_device(right, views)).sqrt() + 0.5).int()
-    alpha = opacity(look_up(table, places).unsqueeze(-1), on_device(scales, views))
-    return cover(views, alpha, torch.full((1,), 255, dtype=torch.int32, device=views.device))
+    glow = per_colour(look_up(table, places))
+    alpha = opacity(glow, on_device(np.tile(scales, width), views))
+    return cover(views, alpha, on_device([rgb.WHITE], views).int())
 
 
 def blur_kernel(sigma: float) -> np.ndarray:
@@ -174,7 +181,7 @@ def defocus(views: Tensor, rows: Rows) -> Tensor:
     kernels = [blur_kernel(sigma) for sigma in rows.draw(rgb.defocus_sigma, *views.shape[2:4])]
     reach = max(kernel.size for kernel in kernels) // 2
     padded = [np.pad(kernel, reach - kernel.size // 2) for kernel in kernels]
-    weights = on_device(np.stack(padded), views)[:, None]
+    weights = _per_plane(np.stack(padded), views).unsqueeze(1)
     planes = functional.pad(_planes(views), (reach,) * 4, mode="replicate")
     blurred = _filtered(_filtered(planes, weights[..., None]), weights[:, :, None])
     return _frames((blurred + 0.5).clamp(0.0, 255.0), views)
@@ -186,18 +193,18 @@ def foreign_object(views: Tensor, rows: Rows) -> Tensor:
     spans = [masks.disk_spans(severity, height, width) for severity in rows.severities]
     first, end = on_device(np.stack(spans), views, 1)[:, None].unbind(3)
     columns = torch.arange(width, device=views.device)
-    inside = (columns >= first) & (columns < end)
-    return views.masked_fill(inside.unsqueeze(-1), 0)
+    outside = (columns < first) | (columns >= end)
+    return (views.flatten(3) * per_colour(outside).to(torch.uint8)).reshape(views.shape)
 
 
 def black_out(views: Tensor, rows: Rows) -> Tensor:
     """Make views black."""
     values = rows.digests("black_out", frame=True)
-    dropped = [
-        [uniform(scramble(value, view)) < severity for view in range(views.shape[1])]
+    visible = [
+        [uniform(scramble(value, view)) >= severity for view in range(views.shape[1])]
         for value, severity in zip(values, rows.severities, strict=True)
     ]
-    return views.masked_fill(on_device(dropped, views, 3), 0)
+    return views * on_device(visible, views, 3).to(torch.uint8)
 
 
 FUNCTIONS = (

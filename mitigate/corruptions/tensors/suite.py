@@ -108,21 +108,26 @@ def _corrupt_on_host(frames: Tensor, name: str, rows: Rows) -> Tensor:
 
 
 def _corrupt_on_device(frames: Tensor, name: str, rows: Rows) -> Tensor:
-    is_depth = registry.modality(name) == "depth"
-    if is_depth:
+    if registry.modality(name) == "depth":
         _check_unit(frames, rows.sensor)
-    out = frames.clone(memory_format=torch.contiguous_format)
     corrupted = [row for row, severity in enumerate(rows.severities) if severity > 0.0]
     size = max(1, MAX_PIXELS // frames.shape[1:4].numel())
+    if 0 < len(corrupted) == len(frames) <= size:
+        return _apply(name, frames, rows)
+    out = frames.clone(memory_format=torch.contiguous_format)
     for start in range(0, len(corrupted), size):
         chunk = corrupted[start : start + size]
         index = torch.tensor(chunk, device=frames.device)
-        views = frames[index].squeeze(-1) if is_depth else frames[index]
-        # reduced precision would change random fields and thresholds
-        with torch.autocast(frames.device.type, enabled=False):
-            changed = FUNCTIONS[name](views, rows.only(chunk))
-        out[index] = changed.unsqueeze(-1) if is_depth else changed
+        out[index] = _apply(name, frames[index], rows.only(chunk))
     return out
+
+
+def _apply(name: str, frames: Tensor, rows: Rows) -> Tensor:
+    is_depth = registry.modality(name) == "depth"
+    # reduced precision would change random fields and thresholds
+    with torch.autocast(frames.device.type, enabled=False):
+        changed = FUNCTIONS[name](frames.squeeze(-1) if is_depth else frames, rows)
+    return changed.unsqueeze(-1) if is_depth else changed
 
 
 def check_backend(backend: str | None) -> str | None:

@@ -15,7 +15,16 @@ from torch.nn import functional
 
 from mitigate.corruptions.keying import scramble
 from mitigate.corruptions.tensors.draws import Rows, fields, on_device, pixel_words, shifted
-from mitigate.corruptions.tensors.pixels import cover, displaced, look_up, moved, opacity, rolled
+from mitigate.corruptions.tensors.pixels import (
+    colour_rows,
+    cover,
+    displaced,
+    look_up,
+    moved,
+    opacity,
+    per_colour,
+    rolled,
+)
 from mitigate.corruptions.tensors.rgb import UNIT
 from mitigate.corruptions.unseen import codec, light, optics, signal
 
@@ -23,8 +32,8 @@ from mitigate.corruptions.unseen import codec, light, optics, signal
 def _by_tables(views: Tensor, tables: list[list[np.ndarray]]) -> Tensor:
     """Map each colour channel of a row with its own table of 256 grey levels."""
     first = torch.arange(0, 768 * len(views), 256, dtype=torch.int32, device=views.device)
-    places = views.int() + first.reshape(-1, 1, 1, 1, 3)
-    return look_up(on_device(np.array(tables), views).flatten(), places)
+    places = views.flatten(3).int() + colour_rows(first.reshape(-1, 3), views.shape[3])
+    return look_up(on_device(np.array(tables), views).flatten(), places).reshape(views.shape)
 
 
 def white_balance(views: Tensor, rows: Rows) -> Tensor:
@@ -50,8 +59,8 @@ def haze(views: Tensor, rows: Rows) -> Tensor:
     alpha = opacity(1.0 - (strength * density).exp(), UNIT)
     offsets = [[-light.haze_offset(key, view, width) for view in range(count)] for key in rows.keys]
     right = on_device(offsets, views, 2)
-    colour = on_device(light.HAZE_COLOUR, views).int()
-    return cover(views, rolled(alpha, torch.zeros_like(right), right).unsqueeze(-1), colour)
+    shifted_alpha = rolled(alpha, torch.zeros_like(right), right)
+    return cover(views, per_colour(shifted_alpha), on_device([light.HAZE_COLOUR], views).int())
 
 
 def hue_shift(views: Tensor, rows: Rows) -> Tensor:
@@ -106,8 +115,8 @@ def scratches(views: Tensor, rows: Rows) -> Tensor:
         for reach, most in optics.SCRATCH_PARTS:
             strength = on_device(np.array(strengths) * most, views, 2)
             clear *= 1.0 - strength * (squared * (-0.5 / reach**2)).exp()
-    alpha = opacity(1.0 - clear, UNIT)[:, None, :, :, None]
-    return cover(views, alpha, on_device(optics.SCRATCH_COLOUR, views).int())
+    alpha = per_colour(opacity(1.0 - clear, UNIT)).unsqueeze(1)
+    return cover(views, alpha, on_device([optics.SCRATCH_COLOUR], views).int())
 
 
 def rolling_shutter(views: Tensor, rows: Rows) -> Tensor:
@@ -159,7 +168,7 @@ def lost_slices(views: Tensor, rows: Rows) -> Tensor:
         for view, lines, start in parts:
             starts[view, lines] = start
     lost = torch.arange(width, device=views.device) >= on_device(first, views, 1)
-    return views.masked_fill(lost.unsqueeze(-1), codec.NOTHING)
+    return views.flatten(3).masked_fill(per_colour(lost), codec.NOTHING).reshape(views.shape)
 
 
 FUNCTIONS = (
