@@ -1,8 +1,7 @@
 """Operations on the pixels of batches of views that several corruptions share.
 
-Batches of RGB are uint8 [B, V, H, W, 3], and batches of depth float32 metres [B, V, H, W]. Blends
-use the integers of the numpy kernels, so they give the same pixels. They work on rows of 3 W colour
-values, because broadcasting over a last axis of 3 is slow.
+Batches of RGB are uint8 [B, V, H, W, 3], and batches of depth float32 metres [B, V, H, W]. Several
+functions work on rows of 3 W colour values, because broadcasting over a last axis of 3 is slow.
 """
 
 from __future__ import annotations
@@ -12,16 +11,6 @@ from torch import Tensor
 from torch.nn import functional
 
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
-
-
-def opacity(share: Tensor, scale: Tensor | float) -> Tensor:
-    """Return min(share scale, 1) as int32 in units of 1/32768, as in ``masks.opacity_mask``.
-
-    Args:
-        share: Opacity >= 0, float32.
-        scale: Factor in units of 1/32768; a tensor float32 broadcasts with ``share``.
-    """
-    return (share * scale).add_(0.5).clamp_(max=32767.0).int()
 
 
 def per_colour(pixels: Tensor) -> Tensor:
@@ -34,17 +23,22 @@ def colour_rows(colours: Tensor, width: int) -> Tensor:
     return colours.repeat(1, width)[:, None, None]
 
 
-def cover(views: Tensor, alpha: Tensor, colours: Tensor) -> Tensor:
+def grey_levels(values: Tensor) -> Tensor:
+    """Return the nearest grey levels, uint8."""
+    return (values + 0.5).clamp_(0.0, 255.0).to(torch.uint8)
+
+
+def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
     """Blend RGB with a colour, as in ``masks.cover``.
 
     Args:
         views: uint8 [B, V, H, W, 3].
-        alpha: Opacity in units of 1/32768, int32 [B, V or 1, H, 3 W].
-        colours: int32 [B or 1, 3].
+        opacity: In [0, 1], float32 [B, V or 1, H, 3 W].
+        colours: float32 [B or 1, 3].
     """
-    blend = views.flatten(3).int() * (32768 - alpha)
-    blend += colour_rows(colours, views.shape[3]) * alpha + 16384
-    return (blend >> 15).to(torch.uint8).reshape(views.shape)
+    source = views.flatten(3).float()
+    blend = torch.lerp(source, colour_rows(colours, views.shape[3]), opacity)
+    return grey_levels(blend).reshape(views.shape)
 
 
 def look_up(table: Tensor, places: Tensor) -> Tensor:

@@ -22,9 +22,10 @@ from mitigate.corruptions.tensors.draws import (
     shifted,
     view_words,
 )
-from mitigate.corruptions.tensors.pixels import cover, look_up, opacity, per_colour
+from mitigate.corruptions.tensors.pixels import cover, grey_levels, look_up, per_colour
 
-UNIT = 32768.0  # an opacity of 1 in ``cover``
+UNIT = 32768  # an opacity of 1 in the masks of numpy
+HAT = np.array([[0.25, 0.5, 0.25]])
 ONE_TAP = np.array([0]), np.array([0]), np.array([1])  # a line that is shorter than a pixel
 
 
@@ -77,7 +78,7 @@ def _filtered(planes: Tensor, kernels: Tensor) -> Tensor:
 
 
 def darkness(views: Tensor, rows: Rows) -> Tensor:
-    """Return the opacity of ``masks.low_light_mask``, int32 [B, 1, H, W]."""
+    """Return the fraction of light that is lost, float32 [B, 1, H, W]."""
     height, width = views.shape[2:4]
     terms = [masks.ramp_terms(value, height, width) for value in rows.digests("low_light")]
     down = on_device(np.stack([term[0] for term in terms]), views, 1)
@@ -86,12 +87,12 @@ def darkness(views: Tensor, rows: Rows) -> Tensor:
     ramp = torch.where(on_device([term[2] for term in terms], views, 2), ramp.sqrt(), ramp)
     share = ramp * on_device(rows.scaled(masks.DARK_RAMP), views, 2)
     share += on_device(rows.scaled(masks.DARK_BASE), views, 2)
-    return opacity(share, UNIT).unsqueeze(1)
+    return share.unsqueeze(1)
 
 
 def low_light(views: Tensor, rows: Rows) -> Tensor:
     """Darken with a gradient."""
-    return cover(views, per_colour(darkness(views, rows)), on_device([rgb.BLACK], views).int())
+    return cover(views, per_colour(darkness(views, rows)), on_device([rgb.BLACK], views).float())
 
 
 def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
@@ -107,7 +108,8 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     decode = on_device([np.pad(t.decode, (0, span - t.decode.size)) for t in tables], views)
     offsets = on_device([256 * table.offset + 128 for table in tables], views).int()[number]
 
-    light = 32768 - darkness(views, rows)
+    # in integers, because a different signal level may change the grey level by more than one
+    light = UNIT - (darkness(views, rows) * UNIT + 0.5).clamp_(max=UNIT - 1.0).int()
     lines = torch.arange(views.shape[2], device=views.device).unsqueeze(1)
     place = shifted(view_words(rows, "row_noise", views, lines), 52)
     shift = look_up(row, place + number * (row.numel() // len(each))) + offsets
@@ -132,9 +134,9 @@ def spatter(views: Tensor, rows: Rows) -> Tensor:
     smooth, cells = fields(digests, height, width, masks.SPATTER_CORRELATION, views)
     level = levels(cells, rows.scaled(masks.SPATTER_COVER))
     share = ((smooth - level) * float(np.float32(1.0 / masks.SPATTER_EDGE))).clamp(0.0, 1.0)
-    alpha = opacity(share, on_device([UNIT * (0.5 + 0.5 * s) for s in rows.severities], views, 2))
+    share *= on_device(0.5 + rows.scaled(0.5), views, 2)
     colours = [masks.spatter_colour(value) for value in rows.digests("spatter_colour")]
-    return cover(views, per_colour(alpha).unsqueeze(1), on_device(colours, views).int())
+    return cover(views, per_colour(share).unsqueeze(1), on_device(colours, views).float())
 
 
 def flare(views: Tensor, rows: Rows) -> Tensor:
@@ -151,50 +153,71 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
             if centre is not None:
                 terms = masks.glow_terms(*centre, height, width)
                 down[row, view, :, 0], right[row, view, 0] = terms
-                scales[row, view] = UNIT * rows.severities[row] * np.array(masks.FLARE_TINT)
+                scales[row, view] = rows.severities[row] * np.array(masks.FLARE_TINT)
     table = on_device(masks.glow_table(), views)
     places = ((on_device(down, views) + on_device(right, views)).sqrt() + 0.5).int()
     glow = per_colour(look_up(table, places))
-    alpha = opacity(glow, on_device(np.tile(scales, width), views))
-    return cover(views, alpha, on_device([rgb.WHITE], views).int())
+    opacity = (glow * on_device(np.tile(scales, width), views)).clamp_(max=1.0)
+    return cover(views, opacity, on_device([rgb.WHITE], views).float())
 
 
-def blur_kernel(sigma: float) -> np.ndarray:
-    """Return the kernel of ``blur.gaussian`` along one axis, float64 [n] with a sum of 1."""
+def blur_kernel(sigma: float, first: int) -> np.ndarray:
+    """Return the rest of the kernel of ``blur.gaussian`` along one axis, float64 [n].
+
+    The kernel follows the smoothing at the levels before ``first``. Its taps are 2^first pixels
+    apart, and their sum is 1.
+    """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)
-    half, level_count = rgb.gaussian_weights(sigma)
+    half, count = rgb.gaussian_weights(sigma)
     weights = half.astype(float)
     weights[0] *= 2.0  # the table has half of the centre weight
     taps = np.concatenate([weights[:0:-1], weights])
-    kernel = np.zeros((taps.size - 1) * 2**level_count + 1)
-    kernel[:: 2**level_count] = taps / taps.sum()
-    for level in range(level_count):
+    kernel = np.zeros((taps.size - 1) * 2 ** (count - first) + 1)
+    kernel[:: 2 ** (count - first)] = taps / taps.sum()
+    for level in range(count - first):
         hat = np.zeros(2 * 2**level + 1)
-        hat[[0, 2**level, -1]] = 0.25, 0.5, 0.25
+        hat[:: 2**level] = HAT
         kernel = np.convolve(kernel, hat)
     return kernel
 
 
+def _correlated(values: Tensor, weights: Tensor, step: int, axis: int) -> Tensor:
+    """Correlate with weights [B or 1, n] whose taps are ``step`` values apart along an axis."""
+    size = values.shape[axis] - step * (weights.shape[1] - 1)
+    taps = weights[..., None, None, None].unbind(1)
+    total = values.narrow(axis, 0, size) * taps[0]
+    for number, tap in enumerate(taps[1:], start=1):
+        total.addcmul_(values.narrow(axis, number * step, size), tap)
+    return total
+
+
 def defocus(views: Tensor, rows: Rows) -> Tensor:
     """Blur with a Gaussian kernel, which is that of the numpy filter; rounding may differ."""
-    kernels = [blur_kernel(sigma) for sigma in rows.draw(rgb.defocus_sigma, *views.shape[2:4])]
+    sigmas = rows.draw(rgb.defocus_sigma, *views.shape[2:4])
+    first = min(0 if s < rgb.DEFOCUS_LEAST else rgb.gaussian_weights(s)[1] for s in sigmas)
+    kernels = [blur_kernel(sigma, first) for sigma in sigmas]
     reach = max(kernel.size for kernel in kernels) // 2
     padded = [np.pad(kernel, reach - kernel.size // 2) for kernel in kernels]
-    weights = _per_plane(np.stack(padded), views).unsqueeze(1)
-    planes = functional.pad(_planes(views), (reach,) * 4, mode="replicate")
-    blurred = _filtered(_filtered(planes, weights[..., None]), weights[:, :, None])
-    return _frames((blurred + 0.5).clamp(0.0, 255.0), views)
+    weights, hat = on_device(np.stack(padded), views), on_device(HAT, views)
+    border = (reach + 1) * 2**first - 1
+    sides = (0, 0, border, border, border, border)
+    values = functional.pad(views.float(), sides, mode="replicate").flatten(3)
+    for axis, values_apart in ((2, 1), (3, 3)):
+        for level in range(first):
+            values = _correlated(values, hat, values_apart * 2**level, axis)
+        values = _correlated(values, weights, values_apart * 2**first, axis)
+    return grey_levels(values).reshape(views.shape)
 
 
 def foreign_object(views: Tensor, rows: Rows) -> Tensor:
     """Draw a black disk at the centre."""
     height, width = views.shape[2:4]
     spans = [masks.disk_spans(severity, height, width) for severity in rows.severities]
-    first, end = on_device(np.stack(spans), views, 1)[:, None].unbind(3)
-    columns = torch.arange(width, device=views.device)
+    first, end = on_device(3 * np.stack(spans), views, 1)[:, None].unbind(3)
+    columns = torch.arange(3 * width, device=views.device)
     outside = (columns < first) | (columns >= end)
-    return (views.flatten(3) * per_colour(outside).to(torch.uint8)).reshape(views.shape)
+    return (views.flatten(3) * outside.to(torch.uint8)).reshape(views.shape)
 
 
 def black_out(views: Tensor, rows: Rows) -> Tensor:

@@ -19,13 +19,12 @@ from mitigate.corruptions.tensors.pixels import (
     colour_rows,
     cover,
     displaced,
+    grey_levels,
     look_up,
     moved,
-    opacity,
     per_colour,
     rolled,
 )
-from mitigate.corruptions.tensors.rgb import UNIT
 from mitigate.corruptions.unseen import codec, light, optics, signal
 
 
@@ -56,11 +55,11 @@ def haze(views: Tensor, rows: Rows) -> Tensor:
     spread = light.HAZE_UNEVEN / math.hypot(*(weight for _, weight in light.HAZE_OCTAVES))
     density = (1.0 + spread * total).clamp(light.HAZE_THIN, light.HAZE_THICK)
     strength = on_device([-light.HAZE_DEPTH * severity for severity in rows.severities], views, 2)
-    alpha = opacity(1.0 - (strength * density).exp(), UNIT)
+    opacity = 1.0 - (strength * density).exp()
     offsets = [[-light.haze_offset(key, view, width) for view in range(count)] for key in rows.keys]
     right = on_device(offsets, views, 2)
-    shifted_alpha = rolled(alpha, torch.zeros_like(right), right)
-    return cover(views, per_colour(shifted_alpha), on_device([light.HAZE_COLOUR], views).int())
+    opacity = per_colour(rolled(opacity, torch.zeros_like(right), right))
+    return cover(views, opacity, on_device([light.HAZE_COLOUR], views).float())
 
 
 def hue_shift(views: Tensor, rows: Rows) -> Tensor:
@@ -115,8 +114,8 @@ def scratches(views: Tensor, rows: Rows) -> Tensor:
         for reach, most in optics.SCRATCH_PARTS:
             strength = on_device(np.array(strengths) * most, views, 2)
             clear *= 1.0 - strength * (squared * (-0.5 / reach**2)).exp()
-    alpha = per_colour(opacity(1.0 - clear, UNIT)).unsqueeze(1)
-    return cover(views, alpha, on_device([optics.SCRATCH_COLOUR], views).int())
+    opacity = per_colour(1.0 - clear).unsqueeze(1)
+    return cover(views, opacity, on_device([optics.SCRATCH_COLOUR], views).float())
 
 
 def rolling_shutter(views: Tensor, rows: Rows) -> Tensor:
@@ -157,7 +156,7 @@ def compression(views: Tensor, rows: Rows) -> Tensor:
     kept[..., 0, 0] = cells[..., 0, 0]
     decoded = (matrix.T @ kept @ matrix).transpose(4, 5).flatten(5, 6).flatten(3, 4)
     decoded = decoded[..., :height, :width].permute(0, 1, 3, 4, 2) @ colours
-    return (decoded + 0.5).clamp(0.0, 255.0).to(torch.uint8)
+    return grey_levels(decoded)
 
 
 def lost_slices(views: Tensor, rows: Rows) -> Tensor:
