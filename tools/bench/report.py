@@ -145,7 +145,7 @@ def tensor_lines(batches: dict[str, list[Batch]]) -> list[str]:
         "## Batches of torch tensors",
         "",
         f"Milliseconds per batch at severity {SEVERITY}: the fastest of many calls with the same "
-        "keys.",
+        "keys, on one thread. For the CPU it is the CPU time of the process.",
         "",
         "- **kornia**: kornia's similar transform, if it has one, for float tensors in [0, 1].",
         '- **numpy**: `corrupt_tensors(..., backend="numpy")`, the default for tensors on the CPU.',
@@ -158,7 +158,7 @@ def tensor_lines(batches: dict[str, list[Batch]]) -> list[str]:
             + [_ratio(row.kornia, row.numpy), _ms(row.torch), _ratio(row.kornia, row.torch)]
             for row in rows
         ]
-        lines += ["", f"### {device}", "", markdown_table(head, cells, words=2)]
+        lines += ["", f"On {device}:", "", markdown_table(head, cells, words=2)]
     if len(batches) == 1:
         lines += ["", "No GPU was available, so there are no times of a GPU."]
     return [*lines, ""]
