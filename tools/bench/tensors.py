@@ -21,7 +21,7 @@ from mitigate.corruptions.registry import modality
 from mitigate.corruptions.tensors import corrupt_tensors
 from tools.bench.peers import Calls, kornia
 from tools.bench.suite import SEED, SEVERITY, frames
-from tools.bench.timing import LEAST, machine
+from tools.bench.timing import LEAST, machine, version
 
 SHAPES = {"8x1x224x224": (8, 1, 224, 224), "2x1x480x640": (2, 1, 480, 640)}
 GPU_SHAPES = {**SHAPES, "256x1x224x224": (256, 1, 224, 224)}
@@ -48,7 +48,8 @@ class Batch:
 
 def measure(seconds: float) -> dict[str, list[Batch]]:
     """Return the times by device."""
-    results = {machine(): [row for item in SHAPES.items() for row in costs("cpu", *item, seconds)]}
+    label = f"{machine()}, kornia {version('kornia')}"
+    results = {label: [row for item in SHAPES.items() for row in costs("cpu", *item, seconds)]}
     if torch.cuda.is_available():
         rows = [row for item in GPU_SHAPES.items() for row in costs("cuda", *item, seconds)]
         results[torch.cuda.get_device_name()] = rows

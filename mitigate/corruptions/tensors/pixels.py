@@ -24,8 +24,8 @@ def colour_rows(colours: Tensor, width: int) -> Tensor:
 
 
 def grey_levels(values: Tensor) -> Tensor:
-    """Return the nearest grey levels, uint8."""
-    return (values + 0.5).clamp_(0.0, 255.0).to(torch.uint8)
+    """Return the nearest grey levels of values in [0, 255], uint8."""
+    return (values + 0.5).to(torch.uint8)
 
 
 def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
@@ -119,7 +119,15 @@ def nearest(views: Tensor, reach: int) -> Tensor:
     return -_largest((-views).masked_fill(~is_valid(views), -torch.inf), reach)
 
 
-def _largest(views: Tensor, reach: int) -> Tensor:
-    side = 2 * reach + 1
-    along = functional.max_pool2d(views, (1, side), 1, (0, reach))
-    return functional.max_pool2d(along, (side, 1), 1, (reach, 0))
+def _largest(values: Tensor, reach: int) -> Tensor:
+    """Return the maximum in squares of 2 reach + 1, by doubling the window."""
+    values = functional.pad(values, (reach,) * 4, value=-torch.inf)
+    for axis in (2, 3):
+        window = 1
+        while window <= 2 * reach:
+            step = min(window, 2 * reach + 1 - window)
+            size = values.shape[axis] - step
+            first, second = (values.narrow(axis, start, size) for start in (0, step))
+            values = torch.maximum(first, second)
+            window += step
+    return values

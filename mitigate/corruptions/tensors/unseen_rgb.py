@@ -156,7 +156,7 @@ def compression(views: Tensor, rows: Rows) -> Tensor:
     kept[..., 0, 0] = cells[..., 0, 0]
     decoded = (matrix.T @ kept @ matrix).transpose(4, 5).flatten(5, 6).flatten(3, 4)
     decoded = decoded[..., :height, :width].permute(0, 1, 3, 4, 2) @ colours
-    return grey_levels(decoded)
+    return grey_levels(decoded.clamp(0.0, 255.0))
 
 
 def lost_slices(views: Tensor, rows: Rows) -> Tensor:
