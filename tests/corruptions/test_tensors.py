@@ -243,6 +243,8 @@ def test_corrupt_observations_returns_uncorrupted_entries(scene):
         corrupt_observations({"rgb": frames["rgb"]}, CORRUPTIONS, keys)
     with pytest.raises(ValueError, match="Normalised depth must be in 0-1"):
         corrupt_observations(frames, CORRUPTIONS, keys, normalised=True)
+    with pytest.raises(ValueError, match=r"one corruption, key and heading per row.*4 .*3 keys"):
+        corrupt_observations(frames, CORRUPTIONS, keys[:3])
 
 
 RGB = torch.zeros(2, 1, 8, 9, 3, dtype=torch.uint8)
@@ -288,7 +290,7 @@ def test_the_suite_without_tensors_does_not_import_torch():
     subprocess.run([sys.executable, "-c", code], check=True)
 
 
-@pytest.mark.slow
+@pytest.mark.gpu
 @pytest.mark.skipif(not torch.cuda.is_available(), reason="needs a GPU")
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_gpu_equals_numpy(name, scene):

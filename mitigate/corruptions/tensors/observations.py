@@ -46,14 +46,23 @@ def corrupt_observations(
         A new dict; entries that no row corrupts are the same objects.
 
     Raises:
-        ValueError: A modality is missing, normalised depth is above 1, or an error of
-            ``corrupt_tensors``.
+        ValueError: A modality is missing, normalised depth is above 1, the number of corruptions,
+            keys or headings is not that of the rows, or an error of ``corrupt_tensors``.
     """
     result = dict(frames)
     if headings is None:
         headings = [None] * len(keys)
+    counts = {len(corruptions), len(keys), len(headings), *map(len, frames.values())}
+    if len(counts) > 1:
+        raise ValueError(
+            "There must be one corruption, key and heading per row of the frames, got "
+            f"{len(corruptions)} corruptions, {len(keys)} keys, {len(headings)} headings and "
+            f"{[len(batch) for batch in frames.values()]} rows."
+        )
     parts = [check_corruption(corruption).parts for corruption in corruptions]
-    if normalised and DEPTH in frames and any(DEPTH in c.modalities for c in corruptions):
+    depth_rows = [row for row, c in enumerate(corruptions) if DEPTH in c.modalities]
+    if normalised and DEPTH in frames and depth_rows:
+        _check_normalised(frames[DEPTH][depth_rows], sensor)
         result[DEPTH] = _to_metres(frames[DEPTH], sensor)
     metres = result.get(DEPTH)
     for position in range(max(map(len, parts), default=0)):
@@ -80,18 +89,21 @@ def corrupt_observations(
     return result
 
 
-def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return normalised depth in metres, with 0 at invalid pixels, as ``corrupt_normalised``."""
+def _check_normalised(depth: Tensor, sensor: DepthSensor) -> None:
+    """Raise ValueError if depth is above 1 or ``sensor.missing`` cannot be normalised."""
     check_sensor(sensor)
-    valid = is_valid(depth)
-    most = float(depth.masked_fill(~valid, 0.0).amax()) if depth.numel() else 0.0
+    most = float(depth.masked_fill(~is_valid(depth), 0.0).amax())
     if most > 1.0:
         raise ValueError(
             f"Normalised depth must be in 0-1, got {most:g}. For depth in metres, set "
             "normalised=False."
         )
+
+
+def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
+    """Return normalised depth in metres, with 0 at invalid pixels, as ``corrupt_normalised``."""
     metres = sensor.z_min + depth * (sensor.z_max - sensor.z_min)
-    return metres.masked_fill(~valid, 0.0)
+    return metres.masked_fill(~is_valid(depth), 0.0)
 
 
 def _normalise(corrupted: Tensor, metres: Tensor, clean: Tensor, sensor: DepthSensor) -> Tensor:
