@@ -11,6 +11,7 @@ import shutil
 import socket
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from pathlib import Path
 from typing import IO
 
@@ -37,6 +38,9 @@ class FolderLock:
     While a folder is locked, every write below the folder checks that the folder and the lock file
     are still the same (``core/output.py``). The same check is made at the end of the block.
 
+    If the block raises an error before it has written anything, the folders that the lock created
+    are deleted again.
+
     Args:
         folder: the folder.
         within: names of subfolders to which the process also writes.
@@ -54,8 +58,10 @@ class FolderLock:
         self.path = self.folder.resolve() / NAME
         self._file: IO[str] | None = None
         self._root: output.Root | None = None
+        self._created: list[Path] = []
 
     def __enter__(self) -> FolderLock:
+        self._created = [path for path in (self.folder, *self.folder.parents) if not path.exists()]
         make_folder(self.folder)
         if self.path in _locks:
             raise ValueError(self._in_use_message(_locks[self.path]))
@@ -95,6 +101,8 @@ class FolderLock:
                 self._root.check_expected()
         finally:
             self._leave()
+            if kind is not None:
+                _delete_empty(self._created)
 
     def _leave(self) -> None:
         if self._root is not None:
@@ -121,6 +129,13 @@ class FolderLock:
             f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or choose "
             "another folder (folder=... for a training, out=... for an evaluation)."
         )
+
+
+def _delete_empty(folders: Iterable[Path]) -> None:
+    """Delete ``folders``, innermost first, up to the first that is not empty."""
+    with suppress(OSError):
+        for folder in folders:
+            folder.rmdir()
 
 
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:

@@ -114,6 +114,33 @@ def test_second_run_in_a_folder_is_rejected(tmp_path, name):
     assert not list(tmp_path.iterdir())
 
 
+def test_failed_block_leaves_no_empty_folders(tmp_path):
+    with pytest.raises(KeyError), FolderLock(tmp_path / "runs" / "a"):
+        raise KeyError
+    assert not list(tmp_path.iterdir())
+    with FolderLock(tmp_path / "runs" / "a"):
+        pass
+    assert (tmp_path / "runs" / "a").is_dir()
+
+
+def test_failed_block_keeps_earlier_folders_and_files(tmp_path):
+    (tmp_path / "earlier").mkdir()
+    with pytest.raises(KeyError), FolderLock(tmp_path / "earlier"):
+        raise KeyError
+    with pytest.raises(KeyError), FolderLock(tmp_path / "new"):
+        (tmp_path / "new" / "rows.jsonl").touch()
+        raise KeyError
+    assert (tmp_path / "earlier").is_dir() and (tmp_path / "new" / "rows.jsonl").is_file()
+
+
+def test_rejected_training_leaves_no_folder(tmp_path):
+    folder = tmp_path / "runs" / "rejected"
+    cfg = load_config("train", ["recipe=da_per_episode", f"folder={folder}", "init=missing"])
+    with pytest.raises(FileNotFoundError):
+        train.run(cfg)
+    assert not list(tmp_path.iterdir())
+
+
 def test_folder_that_cannot_be_created_is_named(tmp_path):
     (tmp_path / "file").write_text("x")
     for place in (tmp_path / "file/under", Path("/proc/under")):
