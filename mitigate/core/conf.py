@@ -15,7 +15,7 @@ import signal
 import sys
 import textwrap
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import redirect_stderr
 from itertools import takewhile
 from pathlib import Path
@@ -39,6 +39,8 @@ from mitigate.core.signals import Ended, raise_ended
 
 CONF = PACKAGE / "conf"  # in a checkout, this is a link to its conf/
 TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
+# files of a group that a command rejects, by conf/<name>.yaml and group
+REJECTED: dict[str, Mapping[str, Sequence[str]]] = {}
 FULL = "HYDRA_FULL_ERROR"  # environment variable with which Hydra shows whole tracebacks
 # Variable that main sets together with FULL, so that child programs know that the user did not set
 # FULL.
@@ -54,13 +56,22 @@ KINDS = {
 }
 
 
-def register(primary: str, kind: type, schema: str | None = None) -> None:
+def register(
+    primary: str,
+    kind: type,
+    schema: str | None = None,
+    rejected: Mapping[str, Sequence[str]] | None = None,
+) -> None:
     """Register the dataclass ``kind`` as the types of ``conf/<primary>.yaml``.
 
-    The defaults list of the file must contain ``<schema>_schema``, where ``schema`` defaults to
-    ``primary``.
+    Args:
+        primary: name of the config.
+        kind: the dataclass.
+        schema: the defaults list of the file must contain ``<schema>_schema``; None: ``primary``.
+        rejected: files of a group that the command rejects, which the help leaves out.
     """
     TYPES[primary] = kind
+    REJECTED[primary] = rejected or {}
     ConfigStore.instance().store(name=f"{schema or primary}_schema", node=kind)
 
 
@@ -305,9 +316,8 @@ def _choices(group: str, primary: str) -> str:
     The group ``agent`` lists agents that can run episodes. For training, the other agents are
     listed separately, because recipes exist for them.
     """
-    files = sorted((CONF / group).glob("*.yaml"))
-    if primary == "replay":  # clean frames alone leave nothing to compare
-        files = [path for path in files if path.stem != "clean"]
+    rejected = REJECTED[primary].get(group, ())
+    files = [path for path in sorted((CONF / group).glob("*.yaml")) if path.stem not in rejected]
     if group != "agent":
         return ", ".join(path.stem for path in files)
     others = [path.stem for path in files if not walks(path)]

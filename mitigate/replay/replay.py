@@ -91,7 +91,8 @@ class ReplayConfig:
         return suite_conditions(self.suite) if self.conditions is None else self.conditions
 
 
-conf.register("replay", ReplayConfig)
+# clean frames alone leave nothing to compare
+conf.register("replay", ReplayConfig, rejected={"suite": ["clean"]})
 
 
 def replay_recordings(
