@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
 
+from mitigate.core.files import RECORDING
 from mitigate.core.names import unknown
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.lerobot import is_dataset
 from mitigate.worlds.recorded.bags import Bag
-from mitigate.worlds.recorded.drive_files import Frames
-from mitigate.worlds.recorded.folders import is_drive, open_folder
-from mitigate.worlds.recorded.lerobot import LerobotEpisode, open_episodes
+from mitigate.worlds.recorded.folders import read_frames, read_run
+from mitigate.worlds.recorded.lerobot import open_episodes
+from mitigate.worlds.recorded.options import BAG, DATASET, FRAMES, RUN, TUM, Options
 from mitigate.worlds.recorded.recording import Driven, RecordedWorld, Recording, Step, kinds, load
-from mitigate.worlds.recorded.source import MAX_HFOV, MIN_HFOV, Source
+from mitigate.worlds.recorded.source import Source
 from mitigate.worlds.recorded.topics import Topics
-from mitigate.worlds.recorded.tum import is_tum
+from mitigate.worlds.recorded.tum import is_tum, read_tum
 
 __all__ = [
     "Driven",
@@ -29,6 +31,13 @@ __all__ = [
     "open_recording",
 ]
 
+OPEN: dict[str, Callable[[Path, Options], Sequence[Source]]] = {
+    DATASET: open_episodes,
+    BAG: lambda path, options: [Bag(path, options)],
+    RUN: read_run,
+    TUM: read_tum,
+    FRAMES: read_frames,
+}
 BAGS = (".bag", ".mcap", ".db3")
 COMPRESSED = (".gz", ".zst", ".zip", ".xz", ".bz2")
 
@@ -44,7 +53,7 @@ def open_recording(
     cameras: Sequence[str] | None = None,
     episodes: Sequence[int] | None = None,
     tolerance: float | None = None,
-) -> list[Frames | Bag | LerobotEpisode]:
+) -> list[Source]:
     """Open the drives of a bag, a folder, a LeRobot dataset, or a folder of drives.
 
     Times and poses are read immediately; frames are read later by :func:`load`.
@@ -70,13 +79,42 @@ def open_recording(
         ValueError: A drive is damaged, or an option does not apply to it.
     """
     path = Path(path)
-    topics = _as_topics(topics)
-    _check_options(path, hfov, unit, tolerance)
-    sources = _open_sources(path, topics, hfov, unit, yaw, cameras, episodes, tolerance)
+    options = Options(_as_topics(topics), hfov, unit, yaw, cameras, episodes, tolerance)
+    if not path.exists():
+        raise FileNotFoundError(f"There is no recording {path}. Give a folder or a bag.")
+    inside = not _kind_of(path)
+    if inside and path.is_file():
+        hint = " Unpack it first." if path.suffix in COMPRESSED else ""
+        raise ValueError(f"{path} must be a folder or a bag ({', '.join(BAGS)}).{hint}")
+    places = sorted(path.iterdir()) if inside else [path]
+    drives = {place: kind for place in places if (kind := _kind_of(place))}
+    if not drives:
+        raise FileNotFoundError(
+            f"{path} and its folders contain no drive. A drive is a bag, or a folder with "
+            "recording.json (from mitigate run record=FOLDER), with rgb.txt and depth.txt (TUM "
+            "RGB-D), with the folders rgb/ and depth/, or with meta/info.json (a LeRobot dataset)."
+        )
+    sources: list[Source] = []
+    for drive, kind in drives.items():
+        options.check(drive, kind)
+        sources += OPEN[kind](drive, options)
     if instruction is not None:
         for source in sources:
             source.instruction = instruction
     return sources
+
+
+def _kind_of(path: Path) -> str | None:
+    """Return the kind of the recording at ``path``, or None if it is not a recording."""
+    if is_dataset(path):
+        return DATASET
+    if (path.is_file() and path.suffix in BAGS) or (path / "metadata.yaml").is_file():
+        return BAG
+    if (path / RECORDING).is_file():
+        return RUN
+    if is_tum(path):
+        return TUM
+    return FRAMES if (path / RGB).exists() or (path / DEPTH).exists() else None
 
 
 def _as_topics(topics: Topics | Mapping[str, str] | None) -> Topics:
@@ -87,92 +125,3 @@ def _as_topics(topics: Topics | Mapping[str, str] | None) -> Topics:
         if name not in allowed:
             raise ValueError(unknown("entry of topics", name, allowed))
     return Topics(**topics)
-
-
-def _open_sources(
-    path: Path,
-    topics: Topics,
-    hfov: float | None,
-    unit: float | None,
-    yaw: float,
-    cameras: Sequence[str] | None,
-    episodes: Sequence[int] | None,
-    tolerance: float | None,
-) -> list[Frames | Bag | LerobotEpisode]:
-    """Open the drives at ``path``; the arguments are those of :func:`open_recording`."""
-    if is_dataset(path):
-        if unit is not None or topics.set_options or yaw:
-            raise ValueError(
-                f"unit=, topics.* and yaw= do not apply to {path}, which is a LeRobot dataset. "
-                "Remove them."
-            )
-        return [*open_episodes(path, hfov, cameras, episodes, tolerance)]
-    if _is_bag(path):
-        if cameras:
-            raise ValueError(
-                f"cameras= does not apply to {path}, which is a bag. Choose topics.rgb= and "
-                "topics.depth= instead."
-            )
-        _check_dataset_options(path, episodes)
-        return [Bag(path, topics, hfov, yaw, unit, tolerance)]
-    if path.is_file():
-        hint = " Unpack it first." if path.suffix in COMPRESSED else ""
-        raise ValueError(f"{path} must be a folder or a bag ({', '.join(BAGS)}).{hint}")
-    if not is_drive(path):
-        drives = [p for p in sorted(path.iterdir()) if _is_drive(p)]
-        if not drives:
-            raise FileNotFoundError(
-                f"{path} and its folders contain no drive. A drive is a bag, or a folder with "
-                "recording.json (from mitigate run record=FOLDER), with rgb.txt and depth.txt (TUM "
-                "RGB-D), with the folders rgb/ and depth/, or with meta/info.json (a LeRobot "
-                "dataset)."
-            )
-        return [
-            source
-            for drive in drives
-            for source in _open_sources(
-                drive, topics, hfov, unit, yaw, cameras, episodes, tolerance
-            )
-        ]
-    if topics.set_options or yaw:
-        raise ValueError(
-            f"topics.* and yaw= apply only to a bag, which {path} is not. Remove them."
-        )
-    _check_dataset_options(path, episodes)
-    if tolerance is not None and not is_tum(path):
-        raise ValueError(
-            f"tolerance= does not apply to {path}, whose frames have no times. Remove it."
-        )
-    return list(open_folder(path, hfov, unit, cameras, tolerance))
-
-
-def _is_drive(path: Path) -> bool:
-    return _is_bag(path) or (path.is_dir() and (is_drive(path) or is_dataset(path)))
-
-
-def _check_dataset_options(path: Path, episodes: object) -> None:
-    if episodes is not None:
-        raise ValueError(
-            f"episodes= applies only to a LeRobot dataset, which {path} is not. Remove it."
-        )
-
-
-def _is_bag(path: Path) -> bool:
-    return (path.is_file() and path.suffix in BAGS) or (path / "metadata.yaml").is_file()
-
-
-def _check_options(
-    path: Path, hfov: float | None, unit: float | None, tolerance: float | None
-) -> None:
-    if not path.exists():
-        raise FileNotFoundError(f"There is no recording {path}. Give a folder or a bag.")
-    if hfov is not None and not MIN_HFOV <= hfov <= MAX_HFOV:
-        raise ValueError(
-            f"hfov must be a field of view of {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got {hfov:g}."
-        )
-    if tolerance is not None and not tolerance >= 0:
-        raise ValueError(f"tolerance must be at least 0 seconds, got {tolerance:g}.")
-    if unit is not None and not 0 < unit <= 1:
-        raise ValueError(
-            f"unit= must be above 0 and at most 1 metre per count, such as 0.001, got {unit:g}."
-        )

@@ -30,15 +30,15 @@ from mitigate.worlds.recorded.messages import (
     read_pose,
     read_stamp,
 )
+from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import (
-    MAX_FRAME_GAP,
     MAX_INSTANTS,
     Lens,
     Source,
     match_times,
     read_instruction,
 )
-from mitigate.worlds.recorded.topics import IMAGES, INFO, POSES, Topics, choose_topics
+from mitigate.worlds.recorded.topics import IMAGES, INFO, POSES, choose_topics
 from mitigate.worlds.recorded.unpacking import bounded
 
 # the first bytes of each format, and a program that repairs it
@@ -60,11 +60,7 @@ class Bag(Source):
 
     Args:
         path: Path of the bag, a file or a folder.
-        topics: Topics to read.
-        hfov: Horizontal field of view in degrees of cameras without CameraInfo.
-        yaw: Direction of the cameras in degrees to the right of the robot's heading.
-        unit: Metres per count of depth; None: 0.001 for whole numbers, 1 for 32FC1.
-        tolerance: Maximum seconds between the messages of a time step; None: 0.1.
+        options: Options for opening it.
 
     Raises:
         ValueError: The bag is damaged or lacks a topic, or ``rosbags`` is not installed.
@@ -72,19 +68,11 @@ class Bag(Source):
 
     stepped = False
 
-    def __init__(
-        self,
-        path: Path,
-        topics: Topics,
-        hfov: float | None,
-        yaw: float = 0.0,
-        unit: float | None = None,
-        tolerance: float | None = None,
-    ) -> None:
+    def __init__(self, path: Path, options: Options) -> None:
         resolved = path.resolve()  # resolved, because `.` has no name
         self.path = path
-        self.unit = unit
-        self.tolerance = MAX_FRAME_GAP if tolerance is None else tolerance
+        self.unit = options.unit  # None: 0.001 for whole numbers, 1 for 32FC1
+        self.tolerance = options.frame_gap
         self.signals = {}
         self.damaged = []
         self.name = resolved.name if path.is_dir() else path.stem
@@ -93,16 +81,16 @@ class Bag(Source):
             available = {name: info.msgtype for name, info in reader.topics.items()}
             counts = {name: info.msgcount for name, info in reader.topics.items()}
             encodings = self._read_encodings(reader)
-            self.topics = choose_topics(path, available, topics, counts, encodings)
+            self.topics = choose_topics(path, available, options.topics, counts, encodings)
             self.kinds = [kind for kind in KINDS if kind in self.topics]
-            stamps, poses, lenses = self._index(reader, hfov)
-        if hfov is not None and all(kind in lenses for kind in self.kinds):
+            stamps, poses, lenses = self._index(reader, options.hfov)
+        if options.hfov is not None and all(kind in lenses for kind in self.kinds):
             raise ValueError(f"{path} contains the field of view of its cameras. Remove hfov=.")
-        if unit is not None and DEPTH not in self.kinds:
+        if self.unit is not None and DEPTH not in self.kinds:
             raise ValueError(f"{path} is read without depth. Remove unit=, or set topics.depth=.")
-        self._match(stamps, poses, yaw)
+        self._match(stamps, poses, options.yaw)
         self.cameras = {
-            kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, hfov)
+            kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, options.hfov)
             for kind in self.kinds
         }
         self.formats = self._describe(encodings)

@@ -34,15 +34,15 @@ from mitigate.worlds.recorded.drive_files import (
     number,
     read_rows,
 )
+from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import (
-    MAX_FRAME_GAP,
     MAX_INSTANTS,
     MAX_INSTRUCTION_BYTES,
     Lens,
     read_instruction,
     read_text,
 )
-from mitigate.worlds.recorded.tum import ASSOCIATIONS, LISTS, TRAJECTORY, is_tum, read_tum
+from mitigate.worlds.recorded.tum import LISTS, TRAJECTORY
 
 # The layout of `mitigate run record=`.
 CAMERAS = "cameras.json"
@@ -55,56 +55,20 @@ MAX_NUMBER = 1e6  # maximum of a number in a recording, in metres or degrees (he
 MAX_HEADING = 50.0  # in radians (heuristic): eight turns; larger headings must be in degrees
 
 
-def open_folder(
-    path: Path,
-    hfov: float | None,
-    unit: float | None,
-    cameras: Sequence[str] | None = None,
-    tolerance: float | None = None,
-) -> list[Frames]:
-    """Open the drives of a folder in one of the three layouts.
-
-    Args:
-        path: The folder.
-        hfov: Horizontal field of view in degrees, if the folder does not contain it.
-        unit: Metres per count of 16-bit depth, if the folder does not contain it.
-        cameras: Cameras to read from a recording by ``mitigate run``, or None for all.
-        tolerance: Maximum seconds between the frames of a time step of a TUM folder; None: 0.1.
-
-    Returns:
-        The drives without their frames.
+def read_run(path: Path, options: Options) -> list[Frames]:
+    """Read the episodes of a recording by ``mitigate run``.
 
     Raises:
         FileNotFoundError: A file is missing.
-        ValueError: The folder is damaged, or an option does not apply to it.
+        ValueError: The recording is damaged, or an option does not apply to it.
     """
-    if (path / RECORDING).is_file():
-        if unit is not None:
-            raise ValueError(f"{path} contains the unit of its depth. Remove unit=.")
-        # a hidden folder is an episode that is still being recorded or whose program was killed
-        episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
-        drives = (_read_recorded(folder, path, hfov, cameras) for folder in episodes)
-        return [drive for drive in drives if drive is not None]
-    if cameras:
-        raise ValueError(
-            f"cameras= applies only to a recording by mitigate run, which {path} is not. Remove "
-            "cameras=."
-        )
-    if is_tum(path):
-        return [read_tum(path, hfov, unit, MAX_FRAME_GAP if tolerance is None else tolerance)]
-    if (path / TRAJECTORY).is_file():
-        raise ValueError(
-            f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
-        )
-    return [_read_simple(path, hfov, unit)]
+    # a hidden folder is an episode that is still being recorded or whose program was killed
+    episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
+    drives = (_read_episode(folder, path, options.hfov, options.cameras) for folder in episodes)
+    return [drive for drive in drives if drive is not None]
 
 
-def is_drive(folder: Path) -> bool:
-    """Return whether a folder contains frames in one of the three layouts."""
-    return any((folder / name).exists() for name in (RECORDING, *LISTS, ASSOCIATIONS, RGB, DEPTH))
-
-
-def _read_recorded(
+def _read_episode(
     folder: Path, recording: Path, hfov: float | None, chosen: Sequence[str] | None
 ) -> Frames | None:
     """Read an episode of a recording by ``mitigate run``; return None if it has no frames.
@@ -237,8 +201,16 @@ def _has_pose(step: Any) -> bool:
     return all(isinstance(n, (int, float)) and abs(n) <= MAX_NUMBER for n in numbers)
 
 
-def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
-    """Read a drive from ``rgb/``, ``depth/`` and ``poses.csv``; each file is a step."""
+def read_frames(path: Path, options: Options) -> list[Frames]:
+    """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``; each file is a step.
+
+    Raises:
+        ValueError: The folder is damaged.
+    """
+    if (path / TRAJECTORY).is_file():
+        raise ValueError(
+            f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
+        )
     files = {kind: _list_frames(path / kind) for kind in (RGB, DEPTH)}
     files = {kind: paths for kind, paths in files.items() if paths}
     counts = {f"{kind}/": len(paths) for kind, paths in files.items()}
@@ -251,7 +223,7 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
             f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
             "files that do not match."
         )
-    if unit is None and DEPTH in files:
+    if options.unit is None and DEPTH in files:
         try:
             frame_files.check_scale(files[DEPTH], 0.001, Z_MAX)
         except ValueError as error:
@@ -262,18 +234,19 @@ def _read_simple(path: Path, hfov: float | None, unit: float | None) -> Frames:
             f"{path}: some frames of rgb/ have no frame of the same name in depth/. Give both the "
             "same names."
         )
-    return Frames(
+    drive = Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: assumed_lens(kind, hfov) for kind in files},
+        cameras={kind: assumed_lens(kind, options.hfov) for kind in files},
         files=files,
         times=np.arange(len(stems[0])) * 1.0,
         poses=poses,
         stepped=True,
         dropped=0,
-        unit=0.001 if unit is None else unit,
-        unit_given=unit is not None,
+        unit=0.001 if options.unit is None else options.unit,
+        unit_given=options.unit is not None,
     )
+    return [drive]
 
 
 def _read_poses(file: Path) -> np.ndarray:

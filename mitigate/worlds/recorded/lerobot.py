@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,62 +17,30 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.lerobot import Camera, Dataset, Episode, open_dataset
 from mitigate.corruptions.lerobot.dataset import TOLERANCE, Rows, rows_of
 from mitigate.corruptions.lerobot.frames import read_frames
-from mitigate.worlds.recorded.source import MAX_INSTANTS, Lens, Source
+from mitigate.worlds.recorded.drive_files import assumed_lens
+from mitigate.worlds.recorded.options import Options
+from mitigate.worlds.recorded.source import MAX_INSTANTS, Source
 
 
+@dataclass
 class LerobotEpisode(Source):
     """An episode of a dataset.
 
-    Args:
+    Attributes:
         dataset: The dataset.
         episode: The episode.
-        rows: Its rows.
-        signals: Numbers of each row by feature, float64 [N, size].
-        cameras: Cameras to read.
-        hfov: Horizontal field of view in degrees; None: 90.
+        read: Cameras to read.
         tolerance: Maximum seconds between a row and its video frame.
-
-    Raises:
-        ValueError: The episode is too long, or its task is unknown.
     """
 
-    def __init__(
-        self,
-        dataset: Dataset,
-        episode: Episode,
-        rows: Rows,
-        signals: dict[str, np.ndarray],
-        cameras: Sequence[Camera],
-        hfov: float | None,
-        tolerance: float,
-    ) -> None:
-        name = f"{dataset.path.resolve().name}/episode-{episode.index:06d}"
-        if episode.length > MAX_INSTANTS:
-            raise ValueError(
-                f"{name} must have at most {MAX_INSTANTS} frames, got {episode.length}. Leave it "
-                "out (episodes=)."
-            )
-        super().__init__(
-            name=name,
-            instruction=_instruction(dataset, rows, name),
-            cameras={
-                camera.name: Lens(camera.kind, 90.0 if hfov is None else hfov, assumed=hfov is None)
-                for camera in cameras
-            },
-            times=rows.times,
-            poses=None,
-            stepped=False,
-            dropped=0,
-            signals=signals,
-        )
-        self.dataset = dataset
-        self.episode = episode
-        self.tolerance = tolerance
-        self._read = list(cameras)
+    dataset: Dataset
+    episode: Episode
+    read: Sequence[Camera]
+    tolerance: float
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         times = [float(self.times[index]) for index in chosen]
-        return read_frames(self.dataset, self.episode, self._read, chosen, times, self.tolerance)
+        return read_frames(self.dataset, self.episode, self.read, chosen, times, self.tolerance)
 
 
 def _instruction(dataset: Dataset, rows: Rows, name: str) -> str:
@@ -89,34 +58,18 @@ def _instruction(dataset: Dataset, rows: Rows, name: str) -> str:
     return dataset.tasks[first]
 
 
-def open_episodes(
-    path: Path,
-    hfov: float | None,
-    cameras: Sequence[str] | None,
-    episodes: Sequence[int] | None,
-    tolerance: float | None = None,
-) -> list[LerobotEpisode]:
-    """Open the episodes of a dataset.
-
-    Args:
-        path: The folder of the dataset.
-        hfov: Horizontal field of view of the cameras in degrees; None: 90.
-        cameras: Names of at most one RGB and one depth camera; None: the only ones.
-        episodes: Numbers of episodes; None: all.
-        tolerance: Maximum time in seconds between a row and its video frame; None: 0.0001, as
-            in lerobot.
-
-    Returns:
-        The episodes, without their frames.
+def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
+    """Open the episodes of a dataset; their frames are read later.
 
     Raises:
         FileNotFoundError: A file is missing.
-        ValueError: The dataset is damaged, several cameras fit, or a name or number is unknown.
+        ValueError: The dataset is damaged, several cameras fit, an episode is too long or has an
+            unknown task, or a name or number is unknown.
     """
     dataset = open_dataset(path)
     chosen = []
     for kind in (RGB, DEPTH):
-        fitting = dataset.choose_cameras(kind, cameras)
+        fitting = dataset.choose_cameras(kind, options.cameras)
         if len(fitting) > 1:
             names = ", ".join(camera.name for camera in fitting)
             raise ValueError(
@@ -129,19 +82,29 @@ def open_episodes(
         raise ValueError(f"{path} has no camera that can be read. {'; '.join(reasons)}".strip())
     drives = []
     signals: dict[str, dict[str, np.ndarray]] = {}
-    for episode, rows, mine in rows_of(dataset, dataset.choose_episodes(episodes)):
+    for episode, rows, mine in rows_of(dataset, dataset.choose_episodes(options.episodes)):
+        name = f"{path.resolve().name}/episode-{episode.index:06d}"
+        if episode.length > MAX_INSTANTS:
+            raise ValueError(
+                f"{name} must have at most {MAX_INSTANTS} frames, got {episode.length}. Leave it "
+                "out (episodes=)."
+            )
         if episode.data not in signals:
             signals = {episode.data: dataset.read_signals(episode.data)}
-        observations = {name: values[mine] for name, values in signals[episode.data].items()}
         drives.append(
             LerobotEpisode(
-                dataset,
-                episode,
-                rows,
-                observations,
-                chosen,
-                hfov,
-                TOLERANCE if tolerance is None else tolerance,
+                name=name,
+                instruction=_instruction(dataset, rows, name),
+                cameras={camera.name: assumed_lens(camera.kind, options.hfov) for camera in chosen},
+                times=rows.times,
+                poses=None,
+                stepped=False,
+                dropped=0,
+                signals={n: values[mine] for n, values in signals[episode.data].items()},
+                dataset=dataset,
+                episode=episode,
+                read=chosen,
+                tolerance=TOLERANCE if options.tolerance is None else options.tolerance,
             )
         )
     return drives

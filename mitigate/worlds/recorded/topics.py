@@ -50,11 +50,6 @@ class Topics:
     info: str | None = None
     depth_info: str | None = None
 
-    @property
-    def set_options(self) -> list[str]:
-        """The names of the topics that are not None."""
-        return [name for name, topic in vars(self).items() if topic is not None]
-
 
 def choose_topics(
     path: Path,

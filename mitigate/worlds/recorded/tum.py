@@ -21,6 +21,7 @@ from mitigate.worlds.recorded.drive_files import (
     number,
     read_rows,
 )
+from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import match_times, plan_pose, read_instruction
 
 LISTS = ("rgb.txt", "depth.txt")
@@ -37,8 +38,8 @@ def is_tum(folder: Path) -> bool:
     return any((folder / name).is_file() for name in (*LISTS, ASSOCIATIONS))
 
 
-def read_tum(path: Path, hfov: float | None, unit: float | None, tolerance: float) -> Frames:
-    """Read a drive in the layout of TUM RGB-D.
+def read_tum(path: Path, options: Options) -> list[Frames]:
+    """Read the drive in a folder with the layout of TUM RGB-D.
 
     A time step consists of an RGB image with the depth image and the pose that are nearest in time.
     The heading is the direction of the camera's optical axis.
@@ -57,21 +58,22 @@ def read_tum(path: Path, hfov: float | None, unit: float | None, tolerance: floa
     stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
     has_poses = (path / TRAJECTORY).is_file()
     table = _read_trajectory(path / TRAJECTORY) if has_poses else None
-    instants = match_times(stamps, table, tolerance)
+    instants = match_times(stamps, table, options.frame_gap)
     if not len(instants.times):
-        raise ValueError(f"{path}: {instants.mismatch(tolerance)}")
-    return Frames(
+        raise ValueError(f"{path}: {instants.mismatch(options.frame_gap)}")
+    drive = Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
-        cameras={kind: assumed_lens(kind, hfov, TUM_HFOV) for kind in listed},
+        cameras={kind: assumed_lens(kind, options.hfov, TUM_HFOV) for kind in listed},
         times=instants.times,
         poses=instants.poses,
         stepped=False,
         dropped=instants.dropped,
         files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
-        unit=TUM_UNIT if unit is None else unit,
-        unit_given=unit is not None,
+        unit=TUM_UNIT if options.unit is None else options.unit,
+        unit_given=options.unit is not None,
     )
+    return [drive]
 
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:

@@ -88,8 +88,8 @@ def test_several_cameras_need_a_choice(folder):
     ("options", "message"),
     [
         ({"episodes": [7]}, "has no episode 7. Choose from 0 to 2"),
-        ({"unit": 0.001}, "do not apply .* LeRobot dataset"),
-        ({"yaw": 90.0}, "do not apply .* LeRobot dataset"),
+        ({"unit": 0.001}, "unit= applies only to .*, but .* is a LeRobot dataset. Remove unit="),
+        ({"yaw": 90.0}, "yaw= applies only to a bag, but .* is a LeRobot dataset. Remove yaw="),
     ],
 )
 def test_options_that_do_not_fit_a_dataset_are_rejected(film, options, message):
@@ -100,7 +100,7 @@ def test_options_that_do_not_fit_a_dataset_are_rejected(film, options, message):
 @pytest.mark.parametrize("options", [{"episodes": [0]}, {"tolerance": 0.1}])
 def test_options_of_datasets_are_rejected_for_other_folders(tmp_path, options):
     (tmp_path / "rgb").mkdir()
-    with pytest.raises(ValueError, match="(applies only to|does not apply to)"):
+    with pytest.raises(ValueError, match="applies only to .*, but .* is a folder of frames"):
         open_recording(tmp_path, **options)
 
 

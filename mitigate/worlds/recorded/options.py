@@ -1,0 +1,77 @@
+"""Define the kinds of recordings, and the options for opening them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from mitigate.worlds.recorded.source import MAX_FRAME_GAP, MAX_HFOV, MIN_HFOV
+from mitigate.worlds.recorded.topics import Topics
+
+BAG = "a bag"
+DATASET = "a LeRobot dataset"
+RUN = "a recording by mitigate run"
+TUM = "a folder of TUM RGB-D"
+FRAMES = "a folder of frames"
+# the kinds of recordings to which an option applies; hfov= applies to all
+KINDS = {
+    "topics": (BAG,),
+    "yaw": (BAG,),
+    "unit": (BAG, TUM, FRAMES),
+    "cameras": (RUN, DATASET),
+    "episodes": (DATASET,),
+    "tolerance": (BAG, DATASET, TUM),
+}
+
+
+@dataclass(frozen=True)
+class Options:
+    """Options of :func:`mitigate.worlds.recorded.open_recording`, which describes them.
+
+    Raises:
+        ValueError: A value is out of range.
+    """
+
+    topics: Topics = Topics()
+    hfov: float | None = None
+    unit: float | None = None
+    yaw: float = 0.0
+    cameras: Sequence[str] | None = None
+    episodes: Sequence[int] | None = None
+    tolerance: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.hfov is not None and not MIN_HFOV <= self.hfov <= MAX_HFOV:
+            raise ValueError(
+                f"hfov must be a field of view of {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got "
+                f"{self.hfov:g}."
+            )
+        if self.tolerance is not None and not self.tolerance >= 0:
+            raise ValueError(f"tolerance must be at least 0 seconds, got {self.tolerance:g}.")
+        if self.unit is not None and not 0 < self.unit <= 1:
+            raise ValueError(
+                f"unit= must be above 0 and at most 1 metre per count, such as 0.001, got "
+                f"{self.unit:g}."
+            )
+
+    @property
+    def frame_gap(self) -> float:
+        """The maximum seconds between the frames of a time step."""
+        return MAX_FRAME_GAP if self.tolerance is None else self.tolerance
+
+    def check(self, path: Path, kind: str) -> None:
+        """Raise ValueError for an option that is set but does not apply to recordings of ``kind``.
+
+        Args:
+            path: The recording, for the message.
+            kind: Its kind.
+        """
+        for name, kinds in KINDS.items():
+            if kind not in kinds and vars(self)[name] != vars(Options())[name]:
+                advice = f"Remove {name}=."
+                if name == "cameras" and kind == BAG:
+                    advice = "Choose topics.rgb= and topics.depth= instead."
+                raise ValueError(
+                    f"{name}= applies only to {' or '.join(kinds)}, but {path} is {kind}. {advice}"
+                )
