@@ -21,6 +21,7 @@ from itertools import takewhile
 from pathlib import Path
 from typing import Any, TextIO
 
+import hydra
 from hydra import compose, initialize_config_dir
 from hydra.core.config_store import ConfigStore
 from hydra.core.global_hydra import GlobalHydra
@@ -90,6 +91,11 @@ def typed(cfg: DictConfig, primary: str) -> Any:
         raise ValueError(explain(error, primary)) from error
 
 
+def hydra_program(primary: str, run: Callable[[DictConfig], Any]) -> Callable[[], None]:
+    """Return a program that calls ``run`` with the options of ``conf/<primary>.yaml``."""
+    return hydra.main(version_base="1.3", config_path=str(CONF), config_name=primary)(run)
+
+
 def main(
     program: Callable[[], None],
     primary: str,
@@ -107,7 +113,7 @@ def main(
     resumes the work.
 
     Args:
-        program: a ``hydra.main`` function over ``conf/<primary>.yaml``.
+        program: a ``hydra.main`` function over ``conf/<primary>.yaml`` (:func:`hydra_program`).
         primary: name of the config.
         check: called before ``program``, after the check of addresses (``core/addresses.py``).
         behind: words of the command line that are not for Hydra; they are appended to the printed

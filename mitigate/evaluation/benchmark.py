@@ -10,9 +10,6 @@ from pathlib import Path
 from types import EllipsisType
 from typing import Any
 
-from hydra.errors import HydraException
-from omegaconf.errors import OmegaConfBaseException
-
 from mitigate.agents.agent import as_agent
 from mitigate.agents.building import agent_option
 from mitigate.agents.networks import in_eval_mode
@@ -151,8 +148,7 @@ def benchmark(
     with known:
         _print_estimate(agent, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
-            provenance.keep(file.parent, first, made_by, split, chosen)
-            lock.expect(file, *provenance.notes(file.parent, split))
+            lock.expect(file, *provenance.keep(file.parent, first, made_by, split, chosen))
             measure = partial(
                 evaluate,
                 agent,
@@ -200,10 +196,7 @@ def _conditions(
     if isinstance(agent, (str, Path)):
         options = [*options, *agent_option(options, str(agent))]
     options += [f"suite={suite}"] if isinstance(suite, str) else []
-    try:
-        config = read(conf.load_config("evaluate", options))
-    except (HydraException, OmegaConfBaseException) as error:
-        raise ValueError(conf.explain(error, "evaluate", options)) from None
+    config = read(conf.composed("evaluate", options))
     names = list(config.suite.conditions) if isinstance(suite, str) else list(suite)
     met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
     if all(corruption.severity == 0 for corruption in met):
@@ -353,6 +346,17 @@ def _episodes(
     return split, spread(entries, None if count is ... else count)
 
 
+def seconds_per_episode(agent: Any, world: World, episodes: Sequence[Episode]) -> float:
+    """Return the seconds of the last of ``TIMED`` clean episodes, since the first also loads
+    libraries.
+    """
+    with in_eval_mode(agent):
+        for episode in episodes[:TIMED]:
+            started = time.monotonic()
+            run_episode(agent, world, episode, CLEAN, 0)
+    return time.monotonic() - started
+
+
 def _print_estimate(
     agent: Any,
     make_world: Callable[[], World],
@@ -368,11 +372,7 @@ def _print_estimate(
     world = make_world()
     for condition in conditions:  # compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
-    with in_eval_mode(agent):
-        for episode in episodes[:TIMED]:  # the first episode also includes the time of lazy loading
-            started = time.monotonic()
-            run_episode(agent, world, episode, CLEAN, 0)
-            each = time.monotonic() - started
+    each = seconds_per_episode(agent, world, episodes)
     grid = f"{counted(len(episodes), 'episode')} x {counted(len(conditions), 'condition')}"
     print(
         f"benchmark: {grid} = {counted(total, 'walk')} of about "

@@ -72,8 +72,8 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
     results: list[rows.Row] = []
     with FolderLock(out) as lock:
         world, made_by = provenance.first_world(make_world)
-        provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
-        lock.expect(out / rows.ROWS, *provenance.notes(out, split))
+        notes = provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
+        lock.expect(out / rows.ROWS, *notes)
         for name, agent in {"oracle": OracleAgent(world), "random": RandomAgent()}.items():
             label = {
                 "agent": name,

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.names import counted, unknown
 from mitigate.core.seeding import generator
-from mitigate.evaluation.rows import ROWS, Row, read
+from mitigate.evaluation.rows import Row
 
 if TYPE_CHECKING:
     from mitigate.evaluation.config import EnvConfig
@@ -140,49 +140,33 @@ def _in_words(tasks: Sequence[str]) -> str:
 LIST_HASH = "episodes-{split}.sha256"  # name of the file with the hash of a split's episode file
 LARGEST = 1 << 16  # number of characters of this file that are read (heuristic; it has one line)
 _SHA256 = re.compile(r"[0-9a-f]{64}")
-# the corresponding file of older versions: one line per episode file, for all splits
-OLD_LIST = "episodes.sha256"
 
 
 def keep_list_hash(folder: Path, split: str, source: str) -> None:
     """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
 
     Raises:
-        ValueError: The rows belong to a different episode list. Without this check, such rows would
-            be treated as finished, because rows identify episodes only by id.
+        ValueError: The rows belong to a different episode list, or the earlier hash is damaged.
+            Without this check, such rows would be treated as finished, because rows identify
+            episodes only by id.
     """
     note = folder / LIST_HASH.format(split=split)
     digest = sha256(find(source))
-    known = _list_hashes(folder, split, source)
-    if known and digest not in known:
-        raise ValueError(
-            f"{folder} holds rows of another list of {split} than the current {source}. Name "
-            "another folder (out=..., for a training folder=...), or delete this one."
-        )
-    with atomic_text(note) as file:
-        file.write(f"{digest}  {source}\n")
-
-
-def _list_hashes(folder: Path, split: str, source: str) -> list[str]:
-    """Return the hashes of the lists to which rows of ``split`` may belong, or none if unknown.
-
-    Older versions stored the hashes of all splits in one file, by path.
-    """
-    note, old = folder / LIST_HASH.format(split=split), folder / OLD_LIST
     if note.is_file():
         with open(note, encoding="utf-8", errors="replace") as file:
-            words = file.read(LARGEST).split()[:1]
+            words = file.read(LARGEST).split()
         if not words or not _SHA256.fullmatch(words[0]):
             raise ValueError(
                 f"{note} must begin with a sha256, and is empty or damaged. Copy it back, or move "
                 f"{folder} aside and evaluate again."
             )
-        return words
-    has_rows = (folder / ROWS).is_file() and any(r["split"] == split for r in read(folder / ROWS))
-    if not has_rows or not old.is_file():
-        return []
-    lines = [line.partition("  ") for line in old.read_text(encoding="utf-8").splitlines()]
-    return [d for d, _, name in lines if name == source] or [d for d, _, _ in lines]
+        if words[0] != digest:
+            raise ValueError(
+                f"{folder} holds rows of another list of {split} than the current {source}. Name "
+                "another folder (out=..., for a training folder=...), or delete this one."
+            )
+    with atomic_text(note) as file:
+        file.write(f"{digest}  {source}\n")
 
 
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:

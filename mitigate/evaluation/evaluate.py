@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import hydra
 from hydra.core.hydra_config import HydraConfig
 from omegaconf import DictConfig
 
@@ -79,8 +78,9 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
     )
     guards.calibrate(agent, first, training_episodes(first, env.training))
     with FolderLock(out) as lock:
-        provenance.keep(out, first, made_by, config.split, chosen, env.episodes[config.split])
-        lock.expect(out / ROWS, *provenance.notes(out, config.split))
+        source = env.episodes[config.split]
+        notes = provenance.keep(out, first, made_by, config.split, chosen, source)
+        lock.expect(out / ROWS, *notes)
         print(  # printed after all checks, so that an error is the only output
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
@@ -189,10 +189,7 @@ def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | N
     print("\n".join(f"wrote {path}" for path in paths), flush=True)
 
 
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="evaluate")
-def hydra_main(cfg: DictConfig) -> None:
-    """Entry point for Hydra."""
-    run(cfg, HydraConfig.get().overrides.task)
+hydra_main = conf.hydra_program("evaluate", lambda cfg: run(cfg, HydraConfig.get().overrides.task))
 
 
 def _add_kind_of_agent() -> None:

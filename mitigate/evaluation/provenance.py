@@ -143,12 +143,11 @@ def keep(
     split: str,
     episodes: Sequence[Episode],
     source: str | None = None,
-) -> None:
+) -> list[Path]:
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
     Worlds with different sensors or success rules can use the same folder, because their rows
-    differ. Without a note, nothing is compared. Entries that an older note lacks are not compared
-    either.
+    differ. Without a note, nothing is compared.
 
     Args:
         folder: folder of the rows.
@@ -157,6 +156,9 @@ def keep(
         split: name of the episode list.
         episodes: the episodes.
         source: file of the episodes, or None if there is no file.
+
+    Returns:
+        The files that were written.
 
     Raises:
         ValueError: The folder contains rows of a different world or different episodes; the message
@@ -174,9 +176,7 @@ def keep(
     if unreadable := described.pop(UNREADABLE, ""):
         owner = "the classes of this world"
         _report_unreadable(folder, name_of(world), "world", owner, unreadable, kind in worlds)
-    before = worlds.get(kind, described | _older(entry))
-    if READ in described:  # older versions did not store this entry
-        before = {**before, READ: before.get(READ, described[READ])}
+    before = worlds.get(kind, described)
     keys = {**before, **described}
     different = [k for k in keys if not _is_same(before.get(k), described.get(k))]
     changed = [name for name, digest in sums_before.items() if sums.get(name, digest) != digest]
@@ -190,6 +190,7 @@ def keep(
     known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
     with atomic_text(note) as file:
         json.dump(known, file)
+    return [note] if source is None else [note, folder / LIST_HASH.format(split=split)]
 
 
 def _report_unreadable(
@@ -211,12 +212,6 @@ def _report_unreadable(
         'Give version="..." to allow it.',
         flush=True,
     )
-
-
-def notes(folder: Path, split: str) -> list[Path]:
-    """Return the files that :func:`keep` wrote for ``split``."""
-    paths = (folder / NOTE, folder / LIST_HASH.format(split=split))
-    return [path for path in paths if path.is_file()]
 
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
@@ -279,12 +274,6 @@ def _rule_and_sensors(world: World) -> str:
     return json_hash(
         [world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}]
     )
-
-
-def _older(entry: Mapping[str, Any]) -> dict[str, str]:
-    """Convert the world description in a note of an older version to the current keys."""
-    keys = {"world": CLASS, "env": ENV}
-    return {key: entry[name] for name, key in keys.items() if entry.get(name)}
 
 
 def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> str:

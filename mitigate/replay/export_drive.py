@@ -17,7 +17,6 @@ from pathlib import Path
 from typing import Any
 
 import cv2
-import hydra
 import numpy as np
 from omegaconf import MISSING, DictConfig
 
@@ -242,27 +241,19 @@ def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
     )
 
 
-_out: list[str] = []  # the folder that was given on the command line
-
-
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="export_drive")
-def hydra_main(cfg: DictConfig) -> None:
-    """Hydra's entry."""
-    if len(_out) != 1:
-        raise ValueError(f"export_drive needs one folder, OUT, got {len(_out)}. See --help.")
-    config = conf.typed(cfg, "export_drive")
-    assert isinstance(config, ExportDriveConfig)
-    paths = run(config, Path(_out[0]))
-    print("\n".join(f"wrote {path}" for path in paths))
-
-
 def main() -> None:
     """Run from the command line."""
-    arguments = sys.argv[1:]
-    if not arguments or {"--help", "-h"} & set(arguments):
-        print(f"{__doc__}\nOptions and their defaults:\n")
-        print(conf.options_text("export_drive"))
-        sys.exit(0 if arguments else 2)
-    _out[:], sys.argv[1:] = paths_and_overrides(arguments)
+    if len(sys.argv) == 1:
+        print(conf.help_text(__doc__ or "", "export_drive"))
+        sys.exit(2)
+    paths, sys.argv[1:] = paths_and_overrides(sys.argv[1:])
+
+    def program(cfg: DictConfig) -> None:
+        if len(paths) != 1:
+            raise ValueError(f"export_drive needs one folder, OUT, got {len(paths)}. See --help.")
+        drives = run(conf.typed(cfg, "export_drive"), Path(paths[0]))
+        print("\n".join(f"wrote {drive}" for drive in drives))
+
     again = "To run it again, after deleting what it wrote"
-    conf.main(hydra_main, "export_drive", behind=_out, again=again)
+    hydra_main = conf.hydra_program("export_drive", program)
+    conf.main(hydra_main, "export_drive", behind=paths, again=again)

@@ -19,8 +19,7 @@ from itertools import product
 from pathlib import Path
 from typing import Any
 
-import hydra
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
@@ -36,7 +35,6 @@ from mitigate.replay.inputs import check_drives, load_agents, load_drives, open_
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
 UNSAVED = ("out", "runs", "suite", "check")  # options that do not affect results
-ADDED = {"crop": False}  # options that reports of earlier versions lack
 
 
 @dataclass
@@ -241,7 +239,6 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     earlier = read_json(out / SETTINGS, fix)
     if not isinstance(earlier, dict):
         raise ValueError(f"{out / SETTINGS} was not written by a replay. {fix}")
-    earlier = ADDED | earlier
     different = [name for name, value in settings.items() if earlier.get(name) != value]
     if different:
         name = different[0]
@@ -385,23 +382,11 @@ def _picture_file(out: Path, name: str, condition: str) -> Path:
     return out / f"{re.sub('[/:]', '-', name)}-{condition}.png"
 
 
-_paths: list[str] = []  # the drives that were given on the command line
-
-
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="replay")
-def hydra_main(cfg: DictConfig) -> None:
-    """Hydra's entry."""
-    config = conf.typed(cfg, "replay")
-    assert isinstance(config, ReplayConfig)
-    run(config, _paths)
-
-
 def main() -> None:
     """Run from the command line."""
-    arguments = sys.argv[1:]
-    if not arguments or {"--help", "-h"} & set(arguments):
-        print(f"{__doc__}\nOptions and their defaults:\n")
-        print(conf.options_text("replay"))
-        sys.exit(0 if arguments else 2)
-    _paths[:], sys.argv[1:] = paths_and_overrides(arguments)
-    conf.main(hydra_main, "replay", behind=_paths, again="To run it again")
+    if len(sys.argv) == 1:
+        print(conf.help_text(__doc__ or "", "replay"))
+        sys.exit(2)
+    paths, sys.argv[1:] = paths_and_overrides(sys.argv[1:])
+    program = conf.hydra_program("replay", lambda cfg: run(conf.typed(cfg, "replay"), paths))
+    conf.main(program, "replay", behind=paths, again="To run it again")

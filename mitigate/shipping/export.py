@@ -18,6 +18,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -53,29 +54,24 @@ _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 
+@dataclass
 class Walks:
     """Settings for checking an exported folder with clean episodes in a new process.
 
-    Args:
+    Attributes:
         make_agent: function that constructs an agent, which then loads the folder.
         make_world: function that constructs the world.
         episodes: episodes; the first ``WALKS`` of them are run.
     """
 
-    def __init__(
-        self,
-        make_agent: Callable[[], nn.Module],
-        make_world: Callable[[], World],
-        episodes: Sequence[Episode],
-    ) -> None:
-        self.make_agent = make_agent
-        self.make_world = make_world
-        self.episodes = list(episodes)[:WALKS]
+    make_agent: Callable[[], nn.Module]
+    make_world: Callable[[], World]
+    episodes: Sequence[Episode]
 
     def measures(self, agent: Any) -> list[dict[str, Any]]:
         """Return the hash of the weights of ``agent``, and the measures of each episode."""
         world = self.make_world()
-        results = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes]
+        results = [run_episode(agent.eval(), world, e, CLEAN, 0) for e in self.episodes[:WALKS]]
         return [{"weights": checkpoint.weights_sha(agent)}, *results]
 
 

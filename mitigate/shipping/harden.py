@@ -8,17 +8,15 @@ from __future__ import annotations
 
 import copy
 import re
-import time
 from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import torch
-from hydra.errors import HydraException
-from omegaconf.errors import OmegaConfBaseException
 from torch import nn
 
 from mitigate.agents.adapters import (
@@ -42,9 +40,8 @@ from mitigate.corruptions import CLEAN, Corruption, Schedule
 from mitigate.corruptions.registry import family, modality
 from mitigate.corruptions.suite import check_name
 from mitigate.evaluation import provenance
-from mitigate.evaluation.benchmark import checked_world
+from mitigate.evaluation.benchmark import checked_world, seconds_per_episode
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
-from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.recipes.ppo import Ppo
@@ -62,7 +59,7 @@ EPISODES = 50  # default number of compared episodes (heuristic): accurate to ab
 # default learning rate of each part that can be trained; adapters start at zero and need a higher
 # one (docs/results/third-party.md)
 TUNE = {"all": 3e-4, "adapters": 2e-3}
-SPLIT = "compared"
+SPLIT, VALIDATION = "compared", "validation"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}
 SCHEDULES = ("per_episode", "per_frame")
 # arguments of the objectives that harden() sets itself
@@ -232,9 +229,12 @@ def harden(
         _check_folder(trainer, folder)
         provenance.keep(folder, first, made_by, SPLIT, compared)
         _print_estimate(before, world, compared, conditions, steps, folder)
-        arguments = (world, compared, folder, seed)
-        rows = _evaluate(before, "before", conditions, *arguments, workers)
-        rows += _evaluate(RandomPolicy(before.space, seed), RANDOM, [CLEAN], *arguments, 1)
+        measure = partial(
+            evaluate, world=world, episodes=compared, out=folder / ROWS, split=SPLIT, seed=seed
+        )
+        several = partial(measure, conditions=conditions, workers=workers)
+        rows = several(before, name="before", version=before.version)
+        rows += measure(RandomPolicy(before.space, seed), conditions=[CLEAN], name=RANDOM)
         # raises an error before training if the policy is no better than random actions
         compare(rows)
         try:
@@ -245,21 +245,16 @@ def harden(
         after.requires_grad_(True)
         chosen = "trained"
         if validation:
+            drawn = episodes.several(validation, seed)
+            rows_file = folder / "validation.jsonl"
             chosen = selection.choose(
-                after,
-                start,
-                world,
-                episodes.several(validation, seed),
-                conditions,
-                folder / "validation.jsonl",
-                seed,
-                workers,
+                after, start, partial(several, episodes=drawn, out=rows_file, split=VALIDATION)
             )
         if tune == "adapters":
             save_adapters(after.network, folder / "agent")
         else:
             checkpoint.save_weights(after.network, folder / "agent")
-        rows += _evaluate(after, "after", conditions, *arguments, workers)
+        rows += several(after, name="after", version=after.version)
     report = compare(rows)
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
     change = corrupted.changes["after"]  # the mean over all corruptions, or the only corruption
@@ -328,10 +323,7 @@ class _Training:
 def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
     """Return the corruptions of a suite that change what the policy reads."""
     if isinstance(suite, str):
-        try:
-            listed = list(conf.load_config("evaluate", [f"suite={suite}"]).suite.conditions)
-        except (HydraException, OmegaConfBaseException) as error:
-            raise ValueError(conf.explain(error, "evaluate", [f"suite={suite}"])) from None
+        listed = list(conf.composed("evaluate", [f"suite={suite}"]).suite.conditions)
     else:
         listed = [check_name(name) for name in suite if name != "clean"]
     if faults := [name for name in listed if family(name)]:
@@ -381,30 +373,6 @@ def _insert_adapters(
     say(f"adapters behind {', '.join(adapted)}: {share:.1%} of the policy's weights")
 
 
-def _evaluate(
-    agent: Any,
-    name: str,
-    conditions: list[Corruption],
-    world: Callable[[], World],
-    episodes: list[Episode],
-    folder: Path,
-    seed: int,
-    workers: int | None,
-) -> list[Row]:
-    return evaluate(
-        agent,
-        world,
-        episodes,
-        conditions,
-        name=name,
-        out=folder / ROWS,
-        split=SPLIT,
-        seed=seed,
-        workers=workers,
-        version=agent.version if isinstance(agent, Policy) else None,
-    )
-
-
 def _print_estimate(
     policy: Policy,
     world: Callable[[], World],
@@ -414,11 +382,7 @@ def _print_estimate(
     folder: Path,
 ) -> None:
     """Print the amount of work, and a time estimate of the comparison from one episode."""
-    built = world()
-    run_episode(policy, built, episodes[0], CLEAN, 0)  # the first episode also loads libraries
-    started = time.monotonic()
-    run_episode(policy, built, episodes[-1], CLEAN, 0)
-    each = time.monotonic() - started
+    each = seconds_per_episode(policy, world(), episodes)
     count = len(episodes) * len(conditions)
     say(
         f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}), "

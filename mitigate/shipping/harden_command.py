@@ -11,8 +11,7 @@ import sys
 from dataclasses import dataclass, field
 from typing import Any
 
-import hydra
-from omegaconf import MISSING, DictConfig
+from omegaconf import MISSING
 
 from mitigate.core import conf
 from mitigate.core.build import imported
@@ -81,16 +80,9 @@ def run(config: HardenConfig) -> Any:
     )
 
 
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="harden")
-def hydra_main(cfg: DictConfig) -> None:
-    """Run as Hydra's entry point."""
-    config = conf.typed(cfg, "harden")
-    assert isinstance(config, HardenConfig)
-    print(run(config))
-
-
 def main() -> None:
     """Run from the command line."""
     if len(sys.argv) == 1:
         sys.argv.append("--help")
-    conf.main(hydra_main, "harden")
+    program = conf.hydra_program("harden", lambda cfg: print(run(conf.typed(cfg, "harden"))))
+    conf.main(program, "harden")

@@ -9,37 +9,22 @@ decide.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 
 import torch
 from torch import Tensor
 
 from mitigate.agents.policies.policy import Policy, copied
 from mitigate.core.progress import say
-from mitigate.corruptions import Corruption
 from mitigate.evaluation.comparison import CLEAN as CLEAN_NAME
-from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import Row
-from mitigate.worlds.episodes import Episode
 from mitigate.worlds.seeded import RETURN
-from mitigate.worlds.world import World
 
-SPLIT = "validation"
 # fraction of the trained weights in the average: trained, averaged, given (0.75: heuristic)
 MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
 TIE = 1e-3  # relative difference of scores that counts as equal (heuristic)
 
 
-def choose(
-    policy: Policy,
-    start: Mapping[str, Tensor],
-    world: Callable[[], World],
-    episodes: Sequence[Episode],
-    conditions: Sequence[Corruption],
-    rows: Path,
-    seed: int,
-    workers: int | None,
-) -> str:
+def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., list[Row]]) -> str:
     """Load the best weights into ``policy`` and return their name, a key of ``MIXES``.
 
     The best weights have the highest score: the mean of the clean success rate and the mean success
@@ -49,36 +34,21 @@ def choose(
     Args:
         policy: the trained policy, changed in place.
         start: the weights of ``policy`` before training.
-        world: makes a world.
-        episodes: the validation episodes.
-        conditions: clean frames and the corruptions.
-        rows: file of the result rows; rows that it holds are not evaluated again.
-        seed: corruption seed.
-        workers: processes; None: one per core if there is enough work.
+        measure: function of a policy, ``name`` and ``version`` that evaluates the policy on the
+            validation episodes, clean and corrupted, and returns the rows.
     """
     end = {name: value.clone() for name, value in policy.network.state_dict().items()}
     scores: dict[str, float] = {}
     for name, mix in MIXES.items():
         candidate = copied(policy)
         candidate.network.load_state_dict(average(start, end, mix))
-        scores[name] = score(
-            evaluate(
-                candidate,
-                world,
-                list(episodes),
-                list(conditions),
-                name=name,
-                out=rows,
-                split=SPLIT,
-                seed=seed,
-                workers=workers,
-                version=candidate.version,
-            )
-        )
+        rows = measure(candidate, name=name, version=candidate.version)
+        scores[name] = score(rows)
     least = max(scores.values()) - TIE * max(map(abs, scores.values()))
     best = next(name for name, value in scores.items() if value >= least)
     listed = ", ".join(f"{name} {value:.3g}" for name, value in scores.items())
-    say(f"harden: mean score of {len(episodes)} validation episodes: {listed}. Chosen: {best}.")
+    count = len({row["episode_id"] for row in rows})
+    say(f"harden: mean score of {count} validation episodes: {listed}. Chosen: {best}.")
     policy.network.load_state_dict(average(start, end, MIXES[best]))
     return best
 

@@ -181,27 +181,15 @@ class HabitatWorld(World):
         success and spl equal habitat-lab's Success and SPL. ndtw compares the path with the
         reference path, using the distance of the success rule.
         """
-        path = np.array(self.path)
-        distance = self.distance_to_goal()
-        length = measures.path_length(path)
-        succeeded = self._rule.met(distance, self.stopped)
-        start = self.start_distance
-        values = {
-            "success": int(succeeded),
-            "spl": 0.0,
-            "path_length": round(length, 4),
-            "collisions": self.collisions,
-            "steps": self.steps,
-        }
-        if math.isfinite(start):
-            values["spl"] = round(measures.spl(succeeded, start, length), 6)
-        distances = {"geodesic_distance": start, "distance_to_goal": distance}
-        values |= {n: round(d, 4) for n, d in distances.items() if math.isfinite(d)}
-        if self.episode.reference_path:
-            reference = np.array(self.episode.reference_path)
-            ndtw = measures.ndtw(path, reference, threshold=self._rule.path_metres)
-            values["ndtw"] = round(ndtw, 6)
-        return values
+        values = measures.of_episode(
+            self._rule,
+            np.array(self.path),
+            self.episode.reference_path,
+            start=self.start_distance,
+            left=self.distance_to_goal(),
+            stopped=self.stopped,
+        )
+        return values | {"collisions": self.collisions, "steps": self.steps}
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
         """Return the geodesic distance in metres from a position [3] (or the agent) to the nearest

@@ -156,6 +156,38 @@ def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DI
     return math.exp(-dtw(points[moved], reference) / (count * threshold))
 
 
+def of_episode(
+    rule: Rule,
+    path: ArrayLike,
+    reference: ArrayLike,
+    *,
+    start: float,
+    left: float,
+    stopped: bool,
+) -> dict[str, float]:
+    """Return the measures of an episode: success, SPL, nDTW, and lengths in metres.
+
+    A distance that is infinite and the nDTW without a reference path are left out.
+
+    Args:
+        rule: The success rule.
+        path: The agent's path.
+        reference: The reference path, which may be empty.
+        start: Distance in metres from start to goal.
+        left: Distance in metres from the agent to the goal.
+        stopped: Whether the agent took STOP.
+    """
+    length = path_length(path)
+    succeeded = rule.met(left, stopped)
+    shortest = spl(succeeded, start, length) if math.isfinite(start) else 0.0
+    measures = {"success": int(succeeded), "spl": round(shortest, 6)}
+    metres = {"path_length": length, "geodesic_distance": start, "distance_to_goal": left}
+    measures |= {name: round(value, 4) for name, value in metres.items() if math.isfinite(value)}
+    if len(np.asarray(reference)):
+        measures["ndtw"] = round(ndtw(path, reference, threshold=rule.path_metres), 6)
+    return measures
+
+
 def _points(path: ArrayLike, name: str) -> np.ndarray:
     points = np.asarray(path, float)
     if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 import linecache
 import re
 import sys
@@ -250,27 +249,6 @@ def test_keep_requires_a_version_for_unreadable_worlds(tmp_path, capsys):
         provenance.keep(
             tmp_path / "named", *provenance.first_world(Unreadable, "2"), "val", EPISODES
         )
-
-
-def test_keep_accepts_notes_of_before_class_attributes_counted(tmp_path):
-    keep(tmp_path, Counted)
-    note = tmp_path / provenance.NOTE
-    known = json.loads(note.read_text())
-    for world in known["val"]["worlds"].values():
-        assert world.pop(provenance.READ)
-    note.write_text(json.dumps(known))
-    keep(tmp_path, Counted)
-
-
-def test_keep_reads_notes_of_older_versions(tmp_path):
-    (tmp_path / "rows.jsonl").write_text("")
-    keep(tmp_path, Maze)
-    note = tmp_path / provenance.NOTE
-    note.write_text(json.dumps({"val": {"world": f"{__name__}.Maze", "sums": {}}}))
-    keep(tmp_path, partial(Maze, 3))
-    note.write_text(json.dumps({"val": {"world": "toy.Toy", "sums": {}}}))
-    with pytest.raises(ValueError, match=r"its class was 'toy\.Toy'"):
-        keep(tmp_path, Maze)
 
 
 def test_keep_rejects_another_list(tmp_path):

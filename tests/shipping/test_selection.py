@@ -1,5 +1,7 @@
 """Validation episodes choose between the given, the trained and the averaged weights."""
 
+from functools import partial
+
 import pytest
 import torch
 from torch import nn
@@ -8,6 +10,7 @@ import mitigate
 from mitigate.agents.policies.policy import copied
 from mitigate.agents.policies.wrapping import as_policy
 from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation.evaluator import evaluate
 from mitigate.shipping.selection import MIXES, average, choose, score
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.seeded import seeded_episodes
@@ -23,8 +26,15 @@ def chosen(tmp_path, given, trained_net) -> tuple[str, nn.Module]:
     start = {name: value.clone() for name, value in policy.network.state_dict().items()}
     policy = copied(policy)
     policy.network.load_state_dict(trained_net.state_dict())
-    name = choose(policy, start, world, EPISODES, CONDITIONS, tmp_path / "rows.jsonl", 0, 1)
-    return name, policy.network
+    measure = partial(
+        evaluate,
+        world=world,
+        episodes=EPISODES,
+        conditions=CONDITIONS,
+        out=tmp_path / "rows.jsonl",
+        split="validation",
+    )
+    return choose(policy, start, measure), policy.network
 
 
 def broken() -> nn.Module:

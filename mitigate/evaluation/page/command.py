@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
@@ -89,7 +90,7 @@ def _walks(
     for name, _ in walk:
         if name not in names:
             raise ValueError(unknown("agent in these rows", name, names))
-    config = read(conf.load_config("evaluate", options))
+    config = read(conf.composed("evaluate", options))
     world = maker(config.env.world)()
     matching = [r for r in rows if r["split"] == config.split and r["rule"] == world.rule]
     agents: dict[str, Any] = {
@@ -159,18 +160,10 @@ def run_command(name: str, work: Callable[[], Path | None]) -> int:
 
     ``work`` returns the file that it wrote, if any.
     """
-    from hydra.errors import HydraException
-    from omegaconf.errors import OmegaConfBaseException
-
-    from mitigate.core import conf
-
     try:
         path = work()
     except (OSError, ValueError) as error:
-        print(f"{name}: {conf.error_message(error)}", file=sys.stderr)
-        return 2
-    except (HydraException, OmegaConfBaseException) as error:
-        print(f"{name}: {conf.explain(error, 'evaluate')}", file=sys.stderr)
+        print(f"{name}: {error_message(error)}", file=sys.stderr)
         return 2
     if path is not None:
         print(f"wrote {path} ({Path(path).stat().st_size / 1e6:.1f} MB)")

@@ -135,22 +135,16 @@ class ApartmentsWorld(World):
         geodesic_distance from the start of the episode, and distance_to_goal from the agent. ndtw
         compares with the reference path and uses the rule's ``path_metres``.
         """
-        simulator, rule = self.simulator, RULES[self._rule]
-        positions = np.array(simulator.path)
-        length = measures.path_length(positions)
-        remaining = self._left()
-        success = rule.met(remaining, simulator.stopped)
-        reference = np.stack([from_vlnce(p) for p in simulator.episode.reference_path])
-        return {
-            "success": int(success),
-            "spl": round(measures.spl(success, self._shortest, length), 6),
-            "path_length": round(length, 4),
-            "geodesic_distance": self._shortest,
-            "distance_to_goal": round(remaining, 4),
-            "ndtw": round(measures.ndtw(positions, reference, threshold=rule.path_metres), 6),
-            "collisions": int(simulator.collisions),
-            "steps": simulator.steps,
-        }
+        simulator = self.simulator
+        values = measures.of_episode(
+            RULES[self._rule],
+            np.array(simulator.path),
+            [from_vlnce(point) for point in simulator.episode.reference_path],
+            start=self._shortest,
+            left=self._left(),
+            stopped=simulator.stopped,
+        )
+        return values | {"collisions": int(simulator.collisions), "steps": simulator.steps}
 
     def expert(self) -> GeodesicExpert:
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
