@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
@@ -42,6 +43,11 @@ def escaped(text: str, most: int = 200) -> str:
     """
     printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: most + 1])
     return printable if len(printable) <= most else f"{printable[: most - 3]}..."
+
+
+def file_name(text: str) -> str:
+    """Return ``text`` with a dash for each part that a file name should not contain."""
+    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", text)
 
 
 def name_of(weights: str) -> str:

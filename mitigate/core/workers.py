@@ -294,8 +294,12 @@ def _serve(pipe: Connection, copy: bytes) -> None:
     try:
         task: Task = _unpacked(copy)
         with task.ready():
-            while jobs := _next(pipe):
-                for result in task.work(jobs):
+            while True:
+                try:
+                    message = pipe.recv_bytes()
+                except (EOFError, OSError):  # the parent is gone
+                    return
+                for result in task.work(pickle.loads(message)):
                     what = "The result of a worker"
                     pipe.send_bytes(packed((result, None), what, ALONE, shared=True))
     except Exception as error:
@@ -311,14 +315,6 @@ def _unpacked(copy: bytes) -> Any:
         raise ValueError(
             f"A worker process cannot read its task ({error}). To fix it, {ALONE}."
         ) from error
-
-
-def _next(pipe: Connection) -> list[Any]:
-    try:
-        message = pipe.recv_bytes()
-    except (EOFError, OSError):
-        return []  # the parent is gone
-    return pickle.loads(message)
 
 
 def portable(error: Exception) -> tuple[Exception, Exception]:

@@ -19,7 +19,7 @@ from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
 from mitigate.core.build import locate, maker
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import counted
+from mitigate.core.names import counted, file_name
 from mitigate.core.observation import DEPTH, RGB, sensor_lines
 from mitigate.core.options import without_config_folder
 from mitigate.core.progress import duration, say
@@ -139,7 +139,7 @@ def benchmark(
     check_texts(name=name, **texts)
     check_fits(agent, first.sensors, type(first).__name__)
     split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
-    file = Path(out or OUT / f"{_plain(name)}-{split}-s{severity:g}") / ROWS
+    file = Path(out or OUT / f"{file_name(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors, adapt=adapt)
     training = None if world is not None and _is_own(first, config) else config.env.training
     guards.calibrate(agent, first, training_episodes(first, training))
@@ -243,10 +243,6 @@ def _random(
         split=split,
         seed=seed,
     )
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:

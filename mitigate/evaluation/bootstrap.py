@@ -53,6 +53,10 @@ class Estimate:
         """Whether the interval is defined."""
         return self.high - self.low > ROUNDING
 
+    def text(self, form: str, scale: float = 1.0) -> str:
+        """Return the value and its :meth:`interval` as text."""
+        return f"{scale * self.value:{form}} {self.interval(form, scale)}"
+
     def interval(self, form: str, scale: float = 1.0) -> str:
         """Return the interval as text, with each bound multiplied by ``scale`` and formatted by
         ``form``.
@@ -115,7 +119,7 @@ def _times_drawn(units: int, resamples: int, seed: int) -> np.ndarray:
 
 def mean(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] with its interval."""
-    return _estimate(
+    return with_interval(
         float(np.asarray(values, float).mean()), resampled_means(values, **options)[:, 0]
     )
 
@@ -162,7 +166,7 @@ def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
     episodes.
     """
     value, samples = _prs(clean, corrupted, options)
-    return _estimate(value, samples)
+    return with_interval(value, samples)
 
 
 def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
@@ -183,7 +187,7 @@ def prs_difference(
             f"{', '.join(map(str, sorted(counts)))}."
         )
     (a, samples_a), (b, samples_b) = _prs(*first, options), _prs(*second, options)
-    return _estimate(a - b, samples_a - samples_b)
+    return with_interval(a - b, samples_a - samples_b)
 
 
 def _prs(
@@ -197,8 +201,10 @@ def _prs(
     return metrics.prs(clean.mean(), corrupted.mean(axis=1)), samples
 
 
-def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    """Return percentiles of ``samples`` without undefined ones (whose clean value is 0)."""
+def with_interval(value: float, samples: np.ndarray) -> Estimate:
+    """Return ``value`` with percentiles of ``samples``; undefined ones, whose clean value is 0, are
+    left out.
+    """
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):
         return Estimate(value, math.nan, math.nan)

@@ -21,14 +21,21 @@ from mitigate.core.names import counted
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions.registry import modality, title
-from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, mean, resampled_means, share
+from mitigate.evaluation.bootstrap import (
+    LEVEL,
+    RESAMPLES,
+    Estimate,
+    mean,
+    resampled_means,
+    share,
+    with_interval,
+)
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
 CLEAN = "clean"
 RANDOM = "random"  # name in the rows of random actions
 LABELS = {"rgb": "RGB", "depth": "Depth", "instruction": "Instruction"}
-_BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 
 
 class RandomPolicy(Agent):
@@ -106,9 +113,9 @@ class Comparison:
         rows = []
         for line in self.lines:
             form = f".{line.digits}f"
-            cells = [_cell(line.values[first], form)]
+            cells = [line.values[first].text(form)]
             for name in others:
-                cells += [_cell(line.values[name], form), _change(line.changes[name], f"+{form}")]
+                cells += [line.values[name].text(form), _change(line.changes[name], f"+{form}")]
             rows.append([line.title, *cells])
         table = markdown_table([markdown_of(head) for head in heads], rows)
         return f"{table}\n\n{self.about}"
@@ -153,7 +160,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
     random = ""
     if (RANDOM, CLEAN) in cells and rows[0]["rule"] == RETURN:
         random = (
-            f" Random actions return {_cell(mean(scores.values(RANDOM, CLEAN, RETURN)), '.1f')}. "
+            f" Random actions return {mean(scores.values(RANDOM, CLEAN, RETURN)).text('.1f')}. "
             "Retention = (R - R_random) / (R_clean - R_random), with R_clean of the first column."
         )
     seeds = sorted({row["seed"] for row in rows})
@@ -263,8 +270,10 @@ class _Scores:
         first, *others = self.agents
         (value, samples) = values[first]
         with np.errstate(invalid="ignore"):
-            changes = {n: _estimate(values[n][0] - value, values[n][1] - samples) for n in others}
-        return Line(heading, {n: _estimate(*values[n]) for n in self.agents}, changes, digits=2)
+            changes = {
+                n: with_interval(values[n][0] - value, values[n][1] - samples) for n in others
+            }
+        return Line(heading, {n: with_interval(*values[n]) for n in self.agents}, changes, digits=2)
 
 
 def _mean(values: np.ndarray, most: float) -> Estimate:
@@ -272,16 +281,6 @@ def _mean(values: np.ndarray, most: float) -> Estimate:
         return mean(values)
     part = share(values / most)
     return Estimate(most * part.value, most * part.low, most * part.high)
-
-
-def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    known = samples[np.isfinite(samples)]  # a resample may contain no clean success
-    low, high = np.quantile(known, _BOUNDS) if len(known) else (np.nan, np.nan)
-    return Estimate(value, float(low), float(high))
-
-
-def _cell(estimate: Estimate, form: str) -> str:
-    return f"{estimate.value:{form}} {estimate.interval(form)}"
 
 
 def _change(estimate: Estimate, form: str) -> str:

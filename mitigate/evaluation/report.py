@@ -262,9 +262,7 @@ def _rate(section: Section, column: str, corruption: str) -> str:
 def _interval(estimate: Estimate | None, metric: str) -> str:
     if estimate is None:
         return "–"
-    if metric == "SR":
-        return f"{100 * estimate.value:.1f} {estimate.interval('.1f', 100)}"
-    return f"{estimate.value:.2f} {estimate.interval('.2f')}"
+    return estimate.text(".1f", 100) if metric == "SR" else estimate.text(".2f")
 
 
 def _prs(section: Section, place: tuple[str, str, str]) -> str:

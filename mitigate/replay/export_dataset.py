@@ -7,7 +7,7 @@ pose (x, y, heading), the action is the number of the oracle's action.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -73,7 +73,8 @@ class DatasetWriter:
             frames = (np.squeeze(step[kind]) for steps in self._episodes for step in steps)
             encoding = videos.LOSSLESS if kind == RGB else videos.DEPTH
             make_folder(path.parent)
-            write_atomically(path, partial(_write_video, frames, camera, encoding))
+            write = partial(videos.encode, frames=frames, camera=camera, encoding=encoding, fps=FPS)
+            write_atomically(path, write)
         self._table(DATA.format(**FIRST), self._rows(tasks))
         self._table(TASKS, {"task_index": range(len(tasks)), "task": tasks})
         self._table(f"{EPISODES}/chunk-000/file-000.parquet", self._index())
@@ -161,9 +162,3 @@ class DatasetWriter:
 def _write_table(table: Any, path: Path) -> None:
     with open_output(path, "wb") as file:
         parquet().write_table(table, file)
-
-
-def _write_video(
-    frames: Iterable[np.ndarray], camera: Camera, encoding: videos.Encoding, path: Path
-) -> None:
-    videos.encode(path, frames, camera, encoding, FPS)

@@ -14,7 +14,6 @@ from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH
 from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.plots import COLOURS, DPI, plain, text_colour
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.walk import (
@@ -74,7 +73,9 @@ def table(
         ]
     rows = []
     for name in conditions:
-        cells = [_percent(changes[a][name].changed) if name in changes[a] else "–" for a in agents]
+        cells = [
+            changes[a][name].changed.text(".1f", 100) if name in changes[a] else "–" for a in agents
+        ]
         rows.append([name, *cells])
     means = []
     for agent in agents:
@@ -113,11 +114,11 @@ def _other_measures(changes: AgentChanges) -> list[str]:
     rows = []
     for agent, by_condition in changes.items():
         for name, change in by_condition.items():
-            aim = "–" if change.aim is None else _percent(change.aim)
-            agreement = "–" if change.agreement is None else _percent(change.agreement)
+            aim = "–" if change.aim is None else change.aim.text(".1f", 100)
+            agreement = "–" if change.agreement is None else change.agreement.text(".1f", 100)
             cells = [markdown_of(agent), name, change.stops, change.missed, aim, agreement]
             gap = change.distance
-            distance = "–" if gap is None else f"{gap.value:.3g} {gap.interval('.3g')}"
+            distance = "–" if gap is None else gap.text(".3g")
             rows.append([*cells, distance][: len(head)])
     return [text, "", markdown_table(head, rows, words=2)]
 
@@ -129,10 +130,6 @@ def summaries(recordings: Sequence[Recording]) -> str:
         first, *others = recording.summary or (recording.name,)
         lines += [f"- {markdown_of(first)}", *(f"    - {markdown_of(line)}" for line in others)]
     return "\n".join(lines) + "\n"
-
-
-def _percent(share: Estimate) -> str:
-    return f"{100 * share.value:.1f} {share.interval('.1f', 100)}"
 
 
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:

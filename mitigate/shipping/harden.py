@@ -31,7 +31,7 @@ from mitigate.agents.policies.wrapping import as_policy
 from mitigate.agents.sites import find_sites
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.locks import FolderLock
-from mitigate.core.names import counted, unknown
+from mitigate.core.names import counted, file_name, unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import duration, say
 from mitigate.core.seeding import digest, generator
@@ -180,7 +180,7 @@ def harden(
     after = copied(before)
     names = _corruptions(suite, before)
     suffix = "" if method == "self_distil" else f"-{method}"
-    folder = Path(out or OUT / f"{_plain(before.name)}-s{severity:g}-seed{seed}{suffix}")
+    folder = Path(out or OUT / f"{file_name(before.name)}-s{severity:g}-seed{seed}{suffix}")
     compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
     if workers != 1:
@@ -400,7 +400,3 @@ def _like(policy: Any, hardened: Policy) -> Any:
     twin = copy.copy(policy)  # a model of stable-baselines3 contains its network
     twin.policy = hardened.network
     return twin
-
-
-def _plain(name: str) -> str:
-    return re.sub(r"[^A-Za-z0-9.@+-]+", "-", name)

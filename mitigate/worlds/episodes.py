@@ -30,7 +30,7 @@ NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
     "reference_path [[x, y, z], ...] (goals and reference_path may be absent from a test split "
-    "read with hidden_goals=True); a ground-truth entry needs locations [[x, y, z], ...]. "
+    "read with hidden_goals=True). "
     "Correct the file, or download it again."
 )
 
@@ -205,14 +205,6 @@ class Episode:
     extra: dict[str, Any] = field(default_factory=dict, hash=False)
 
 
-@dataclass(frozen=True, eq=False)
-class GroundTruth:
-    """The ground-truth path of an episode, with ``locations`` float64 [N, 3] and its actions."""
-
-    locations: np.ndarray
-    actions: tuple[int, ...] = ()
-
-
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
     """Yield the episodes of a file in order.
 
@@ -246,7 +238,7 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
     if not has_episodes:
         raise ValueError(
             f"{path} has no key 'episodes': it is not a VLN-CE episode file. The format is "
-            '{"episodes": [...]}; ground truth (*_gt.json.gz) is read by read_ground_truth, and '
+            '{"episodes": [...]}; ground truth (*_gt.json.gz) is not read, and '
             "files of the discrete R2R and RxR tasks must first be converted to VLN-CE."
         )
 
@@ -347,18 +339,6 @@ def write_episodes(
             file.write(f",\n{json.dumps(key)}: {_dump(value, path, key)}")
         file.write("}\n")
     return path
-
-
-def read_ground_truth(path: Path | str) -> dict[str, GroundTruth]:
-    """Read a VLN-CE ``*_gt.json`` or ``*_gt.json.gz`` as a dict from episode id to GroundTruth."""
-    truths = {}
-    for key, value in json_members(path, "episodes"):
-        if key == "episodes":
-            raise ValueError(f"{path} is an episode file. Read it with read_episodes.")
-        record = Record(value, path, f"ground-truth entry {key!r}")
-        locations = record.vectors("locations", 3)
-        truths[key] = GroundTruth(np.array(locations), tuple(record.get("actions", list, [])))
-    return truths
 
 
 def to_json(episode: Episode) -> dict[str, Any]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gzip
+import json
 import math
 from functools import cache
 from itertools import pairwise
@@ -12,7 +14,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from mitigate.evaluation.metrics import prs
-from mitigate.worlds.episodes import read_episodes, read_ground_truth
+from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.measures import Rule, dtw, ndtw, path_length, spl, success
 from tests.r2r_ce import FOLDER, needs_r2r_ce
 
@@ -152,8 +154,12 @@ def test_prs_is_not_clipped():
 
 @pytest.fixture(scope="module")
 def real_paths():
-    truths = read_ground_truth(FOLDER / "val_seen_gt.json.gz")
-    return [(e, truths[e.episode_id].locations) for e in read_episodes(FOLDER / "val_seen.json.gz")]
+    with gzip.open(FOLDER / "val_seen_gt.json.gz") as file:
+        truths = json.load(file)
+    return [
+        (e, np.array(truths[e.episode_id]["locations"]))
+        for e in read_episodes(FOLDER / "val_seen.json.gz")
+    ]
 
 
 @needs_r2r_ce

@@ -10,7 +10,6 @@ import sys
 import tracemalloc
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 from mitigate.core import json_files
@@ -18,7 +17,6 @@ from mitigate.worlds.episodes import (
     Goal,
     read_episodes,
     read_extras,
-    read_ground_truth,
     write_episodes,
 )
 from mitigate.worlds.seeded import seeded_episodes
@@ -234,13 +232,8 @@ def test_read_episodes_accepts_rounded_rotations(tmp_path):
 
 def test_read_episodes_explains_other_files(tmp_path):
     truth = write_json(tmp_path / "val_gt.json", {"7": {"locations": [[0, 0, 0]], "actions": [0]}})
-    episodes = write_json(tmp_path / "val.json", {"episodes": [R2R]})
-    with pytest.raises(ValueError, match="read_ground_truth"):
+    with pytest.raises(ValueError, match="ground truth .* is not read"):
         list(read_episodes(truth))
-    with pytest.raises(ValueError, match="read_episodes"):
-        read_ground_truth(episodes)
-    with pytest.raises(ValueError, match=r"entry '7' lacks the key 'locations'"):
-        read_ground_truth(write_json(tmp_path / "bad_gt.json", {"7": {"actions": [0]}}))
 
 
 def test_read_episodes_suggests_a_file_name(tmp_path):
@@ -289,18 +282,6 @@ def test_real_file_survives_a_round_trip(tmp_path):
     source = FOLDER / "val_seen.json.gz"
     write_episodes(tmp_path / "copy.json.gz", read_episodes(source), read_extras(source))
     assert load(tmp_path / "copy.json.gz") == load(source)
-
-
-@needs_r2r_ce
-def test_real_ground_truth_matches_its_episodes():
-    truths = read_ground_truth(FOLDER / "val_seen_gt.json.gz")
-    episodes = {e.episode_id: e for e in read_episodes(FOLDER / "val_seen.json.gz")}
-    assert truths.keys() == episodes.keys()
-    for key, truth in truths.items():
-        assert truth.locations.dtype == np.float64
-        assert truth.locations.shape[1:] == (3,)
-        assert truth.actions[-1] == 0  # STOP
-        assert np.allclose(truth.locations[0], episodes[key].start_position, atol=1e-3)
 
 
 def test_read_episodes_accepts_seeded_episodes(tmp_path):

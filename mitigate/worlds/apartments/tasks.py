@@ -1,13 +1,12 @@
 """Episodes of an apartment: There are two tasks, VLN (follow an instruction) and OGN (find an
 object category).
 
-``python -m mitigate.worlds.apartments.tasks OUT.json.gz --split val_unseen --task vln`` writes the
-fixed validation lists; training episodes are generated when needed, from (seed, index).
+``tools/apartment_episodes.py`` writes the fixed validation lists; training episodes are generated
+when needed, from (seed, index).
 """
 
 from __future__ import annotations
 
-import argparse
 import pickle
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -20,7 +19,7 @@ import numpy as np
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.instructions import describe, find
 from mitigate.worlds.apartments.layout import gap_to
-from mitigate.worlds.apartments.palette import SEED_RANGES, SPLITS
+from mitigate.worlds.apartments.palette import SEED_RANGES
 from mitigate.worlds.episodes import (
     Episode,
     Goal,
@@ -29,7 +28,6 @@ from mitigate.worlds.episodes import (
     heading_of,
     read_episodes,
     share_of,
-    write_episodes,
 )
 
 SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m for paths of 10 m, scaled to our paths (docs/base-agent.md)
@@ -48,11 +46,6 @@ def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]
     return round(float(xy[0]), 4), 0.0, round(-float(xy[1]), 4)
 
 
-def rotation_of(heading: float) -> tuple[float, float, float, float]:
-    """Convert a heading (counter-clockwise radians) to a quaternion [x, y, z, w]."""
-    return 0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))
-
-
 def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
     """Return episode ``index`` of an apartment, as a pure function of all arguments.
 
@@ -66,11 +59,37 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
         field = apartment.space.distances(goals)
         starts = np.flatnonzero((field > SHORTEST) & (field < LONGEST))
         if len(starts):
-            return _episode(
-                apartment, task, index, seed, goals, target, field, int(rng.choice(starts)), rng
-            )
-    raise RuntimeError(
-        f"Apartment {apartment.seed} offers no {task} episode of {SHORTEST}-{LONGEST} m."
+            break
+    else:
+        raise RuntimeError(
+            f"Apartment {apartment.seed} offers no {task} episode of {SHORTEST}-{LONGEST} m."
+        )
+    start = int(rng.choice(starts))
+    path = apartment.space.shortest_path(start, field)
+    heading = float(np.radians(15.0 * rng.integers(24)))
+    category = apartment.furniture[target].category
+    if task == "vln":
+        text = describe(apartment, path, heading, target, rng)
+    else:
+        text = find(apartment, category, rng)
+    thinned = np.concatenate([path[:-1:5], path[-1:]])
+    info: dict[str, Any] = {
+        "geodesic_distance": round(float(field[start]), 4),
+        "task": task,
+        "category": category,
+        "landmark": target,
+    }
+    return Episode(
+        episode_id=f"{apartment.seed:06d}-{task}{EDITION}-{index}" + (f"-{seed}" if seed else ""),
+        trajectory_id=f"{apartment.seed:06d}-{index}",
+        scene_id=apartment.scene_id,
+        start_position=to_vlnce(path[0]),
+        start_rotation=(0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))),
+        goals=tuple(Goal(to_vlnce(apartment.space.centre(g)), SUCCESS_METRES) for g in goals),
+        instruction=Instruction(text, None, "en-US", {}),
+        reference_path=tuple(to_vlnce(p) for p in thinned),
+        geodesic_distance=info["geodesic_distance"],
+        info=info,
     )
 
 
@@ -96,45 +115,6 @@ def view_cells(apartment: Apartment, instance: int) -> np.ndarray:
     x0, y0, x1, y1 = apartment.rooms[piece.room].rect
     inside = (xy[:, 0] > x0) & (xy[:, 0] < x1) & (xy[:, 1] > y0) & (xy[:, 1] < y1)
     return np.flatnonzero((gap_to(piece.rect, xy) < 0.8) & inside)
-
-
-def _episode(
-    apartment: Apartment,
-    task: str,
-    index: int,
-    seed: int,
-    goals: list[int],
-    target: int,
-    field: np.ndarray,
-    start: int,
-    rng: np.random.Generator,
-) -> Episode:
-    path = apartment.space.shortest_path(start, field)
-    heading = float(np.radians(15.0 * rng.integers(24)))
-    category = apartment.furniture[target].category
-    if task == "vln":
-        text = describe(apartment, path, heading, target, rng)
-    else:
-        text = find(apartment, category, rng)
-    thinned = np.concatenate([path[:-1:5], path[-1:]])
-    info: dict[str, Any] = {
-        "geodesic_distance": round(float(field[start]), 4),
-        "task": task,
-        "category": category,
-        "landmark": target,
-    }
-    return Episode(
-        episode_id=f"{apartment.seed:06d}-{task}{EDITION}-{index}" + (f"-{seed}" if seed else ""),
-        trajectory_id=f"{apartment.seed:06d}-{index}",
-        scene_id=apartment.scene_id,
-        start_position=to_vlnce(path[0]),
-        start_rotation=rotation_of(heading),
-        goals=tuple(Goal(to_vlnce(apartment.space.centre(g)), SUCCESS_METRES) for g in goals),
-        instruction=Instruction(text, None, "en-US", {}),
-        reference_path=tuple(to_vlnce(p) for p in thinned),
-        geodesic_distance=info["geodesic_distance"],
-        info=info,
-    )
 
 
 @dataclass(frozen=True)
@@ -238,21 +218,3 @@ def episode_file(split: str, task: str = "vln") -> Path:
 def load_episodes(split: str, task: str = "vln") -> list[Episode]:
     """Return the shipped episodes of a validation split, in order."""
     return list(read_episodes(episode_file(split, task)))
-
-
-def main() -> None:
-    """Write the episode list of a split from the command line."""
-    parser = argparse.ArgumentParser(
-        description="Write the fixed episode list of a split as a VLN-CE file."
-    )
-    parser.add_argument("out", type=Path)
-    parser.add_argument("--split", choices=SPLITS, default="val_unseen")
-    parser.add_argument("--task", choices=TASKS, default="vln")
-    parser.add_argument("--count", type=int, default=300)
-    args = parser.parse_args()
-    write_episodes(args.out, fixed_episodes(args.split, args.task, args.count))
-    print(f"wrote {args.count} {args.task} episodes of {args.split} to {args.out}")
-
-
-if __name__ == "__main__":
-    main()
