@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import errno
+import sys
 import sysconfig
 import traceback
+from collections.abc import Callable
+from functools import wraps
 from pathlib import Path
+from typing import Any, TypeVar
 
 from mitigate.core.files import PACKAGE
 
@@ -15,6 +19,7 @@ PACKAGES = frozenset({
     "hydra", "matplotlib", "omegaconf", "panda3d", "peft", "PIL", "rosbags", "sacrebleu",
     "safetensors", "tensorboard", "torch", "torchrl", "tqdm", "transformers", "yaml",
 })  # fmt: skip
+Main = TypeVar("Main", bound=Callable[..., int])
 _STANDARD = Path(sysconfig.get_path("stdlib")).resolve()
 _INSTALLED = {"site-packages", "dist-packages"}
 
@@ -35,6 +40,29 @@ def error_message(error: ValueError | OSError) -> str:
             "resume."
         )
     return message
+
+
+def command(name: str) -> Callable[[Main], Main]:
+    """Return a decorator for the main function of a command: it prints a user's mistake.
+
+    For a ValueError or OSError, the decorated function prints one paragraph that begins with
+    ``name``, and returns the exit status 2.
+    """
+
+    def decorate(main: Main) -> Main:
+        @wraps(main)
+        def explained(*arguments: Any, **options: Any) -> int:
+            try:
+                return main(*arguments, **options)
+            except BrokenPipeError:  # the reader of the output was closed (mitigate/cli.py)
+                raise
+            except (OSError, ValueError) as error:
+                print(f"{name}: {error_message(error)}", file=sys.stderr)
+                return 2
+
+        return explained  # type: ignore[return-value]
+
+    return decorate
 
 
 def own_place(error: BaseException) -> str:

@@ -41,7 +41,7 @@ from mitigate.evaluation.evaluator import LOCAL, WORTH, evaluate
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, check_texts
 from mitigate.evaluation.leaderboard.figures import entry_of
 from mitigate.evaluation.provenance import Known
-from mitigate.evaluation.rows import ROWS, Row
+from mitigate.evaluation.rows import ROWS
 from mitigate.guards.guard import Guard
 from mitigate.guards.opening import labels, open_guards
 from mitigate.worlds.episodes import Episode, read_episodes
@@ -144,24 +144,16 @@ def benchmark(
     training = None if world is not None and _is_own(first, config) else config.env.training
     guards.calibrate(agent, first, training_episodes(first, training))
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
-    label: dict[str, Any] = {"name": name, "split": split, "seed": seed, "known": known}
+    measure = partial(evaluate, world=make_world, episodes=chosen, out=file, split=split, seed=seed)
     with known:
         _print_estimate(agent, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
             lock.expect(file, *provenance.keep(file.parent, first, made_by, split, chosen))
-            measure = partial(
-                evaluate,
-                agent,
-                make_world,
-                chosen,
-                out=file,
-                workers=workers,
-                guards=guards,
-                **label,
-            )
-            rows = measure(conditions=met) if losses is None else search(measure, met, losses)
+            under = partial(measure, agent, name=name, known=known, workers=workers, guards=guards)
+            rows = under(conditions=met) if losses is None else search(under, met, losses)
             if first.rule == RETURN:
-                return compare([*rows, *_random(first, make_world, chosen, file, split, seed)])
+                random = _random_policy(first, seed)
+                return compare([*rows, *measure(random, conditions=[CLEAN], name=RANDOM)])
     if losses is not None:
         evaluation.write_critical(rows, losses, file.parent)
     texts["file"] = "" if file.is_absolute() else file.as_posix()
@@ -219,30 +211,14 @@ def _agent(
     return agent, "+".join([name or usual, *guards])
 
 
-def _random(
-    world: World,
-    make_world: Callable[[], World],
-    episodes: list[Episode],
-    file: Path,
-    split: str,
-    seed: int,
-) -> list[Row]:
-    """Return the rows of random actions on clean episodes, which retention needs."""
+def _random_policy(world: World, seed: int) -> RandomPolicy:
+    """Return the policy with random actions, whose return the retention needs."""
     if world.action_space is None:
         raise ValueError(
             f"{type(world).__name__} must have action_space (mitigate.core.spaces), from which "
             "random actions are drawn. The retention of a return is measured against them."
         )
-    return evaluate(
-        RandomPolicy(world.action_space, seed),
-        make_world,
-        episodes,
-        [CLEAN],
-        name=RANDOM,
-        out=file,
-        split=split,
-        seed=seed,
-    )
+    return RandomPolicy(world.action_space, seed)
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:

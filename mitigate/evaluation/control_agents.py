@@ -15,7 +15,7 @@ from mitigate.corruptions import CLEAN, SUITE_VERSION
 from mitigate.evaluation import provenance, rows
 from mitigate.evaluation.config import EvaluateConfig
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluator import EpisodeTask, Job, run_missing
+from mitigate.evaluation.evaluator import EpisodeTask, Job, jobs_of, run_missing
 from mitigate.worlds.world import World, expert_of
 
 # probability of STOP in random actions, which gives about 100 actions per episode
@@ -78,14 +78,12 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
             label = {
                 "agent": name,
                 "name": name,
-                "corruption": "clean",
-                "severity": 0.0,
                 "split": split,
                 "seed": 0,
                 "suite": SUITE_VERSION,
                 "rule": world.rule,
             }
-            jobs = [(episode, CLEAN, {**label, **rows.of_episode(episode)}) for episode in chosen]
+            jobs = jobs_of(chosen, [CLEAN], label)
             task = ControlTask(agent, make_world, world=world)
             results += run_missing(task, world, jobs, out / rows.ROWS, name)
     return results

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from mitigate.core import conf
+from mitigate.core.errors import command
 from mitigate.core.names import counted
 from mitigate.core.options import check_dashes, without_config_folder
 from mitigate.evaluation.bootstrap import share
@@ -24,23 +25,20 @@ OUT = "runs/controls"
 OPTIONS = ("env", "split", "episodes", "out")
 
 
+@command("controls")
 def main() -> int:
     """Run from the command line; return the exit status (2 for invalid input)."""
     if {"-h", "--help"} & {*sys.argv[1:]}:
         print(__doc__)
         return 0
     options = sys.argv[1:]
-    try:
-        check_dashes(options)
-        _check(without_config_folder(options)[1])
-        config = read(conf.composed("evaluate", options))
-        out = Path(config.out or OUT)
-        from mitigate.evaluation.control_agents import run  # torch takes seconds to import
+    check_dashes(options)
+    _check(without_config_folder(options)[1])
+    config = read(conf.composed("evaluate", options))
+    out = Path(config.out or OUT)
+    from mitigate.evaluation.control_agents import run  # torch takes seconds to import
 
-        results = run(config, out)
-    except (OSError, ValueError) as error:
-        print(f"controls: {conf.error_message(error)}", file=sys.stderr)
-        return 2
+    results = run(config, out)
     for name in dict.fromkeys(row["name"] for row in results):
         selected = [row for row in results if row["name"] == name]
         success, spl = (share([float(row[key]) for row in selected]) for key in ("success", "spl"))

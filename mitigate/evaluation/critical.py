@@ -17,12 +17,11 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike
 
-from mitigate.core.names import unknown
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.bootstrap import LEVEL, ROUNDING, Estimate, resampled_means
 from mitigate.evaluation.grid import COVERAGE, DRAWN, METRICS, Grid, grids
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import REFERENCES
+from mitigate.evaluation.sections import references
 from mitigate.worlds.seeded import RETURN
 
 # The search stops when a crossing lies between two measured severities that are this close. In a
@@ -352,10 +351,7 @@ def scores(
         ValueError: A loss or ``against`` is invalid, or no column has a corruption at severity 1.
     """
     chosen, rows = tuple(check_losses(losses)), list(rows)
-    names = sorted({row["name"] for row in rows})
-    if against is not None and against not in names:
-        raise ValueError(unknown("column", against, names))
-    first = REFERENCES if against is None else (against,)
+    first = references(rows, against)
     results = []
     for grid in grids((row for row in rows if row["rule"] != RETURN), drawn):
         order = sorted(grid.columns, key=lambda label: grid.columns[label][0] not in first)

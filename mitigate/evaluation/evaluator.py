@@ -207,7 +207,7 @@ def evaluate(
         **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
     }
     task = EpisodeTask(agent, world, guards, classes=known.classes)
-    jobs = _jobs(episodes, conditions, label)
+    jobs = jobs_of(episodes, conditions, label)
     with known:
         results = run_missing(task, first, jobs, out, f"{name}, {split}", workers, launcher)
     if cut := rows.cuts(results):
@@ -258,7 +258,7 @@ def run_missing(
     return _in_order(out, identities)
 
 
-def _jobs(
+def jobs_of(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
     """Return all jobs in the order of episodes, each with the entries of its row except

@@ -231,6 +231,18 @@ class Section:
         return unfinished + [f"{escape(c)}: {cut[c]}" for c in self.columns if c in cut]
 
 
+def references(rows: Iterable[Row], against: str | None) -> Sequence[str]:
+    """Return the names of reference columns: ``against``, or :data:`REFERENCES` if it is None.
+
+    Raises:
+        ValueError: No row belongs to the column ``against``.
+    """
+    names = sorted({row["name"] for row in rows})
+    if against is not None and against not in names:
+        raise ValueError(unknown("column", against, names))
+    return REFERENCES if against is None else (against,)
+
+
 def sections(
     rows: Iterable[Row], against: str | None = None, drawn: str = DRAWN[0]
 ) -> list[Section]:
@@ -252,10 +264,7 @@ def sections(
             "These rows hold the return of a task without a success, so that SR is undefined. Use "
             "mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
         )
-    names = sorted({row["name"] for row in rows})
-    if against is not None and against not in names:
-        raise ValueError(unknown("column", against, names))
-    first = REFERENCES if against is None else (against,)
+    first = references(rows, against)
     rank = {name: place for place, name in enumerate(first)}
     results = []
     for kind, table_rows in (by_kind(rows) or {SUITE: []}).items():

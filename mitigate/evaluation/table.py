@@ -11,10 +11,10 @@ and writes ``table.md``, ``heatmap.png`` and ``severity.png``, or with ``--criti
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from mitigate.core.errors import command
 from mitigate.core.markdown import plain_text
 from mitigate.core.options import check_paths
 
@@ -74,12 +74,14 @@ def _losses(text: str) -> list[float]:
         ) from None
 
 
+@command("table")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for invalid input)."""
     parser = argparse.ArgumentParser(prog="mitigate table", description=__doc__)
-    parser.add_argument("rows", nargs="+", metavar="ROWS", help="row files or run folders")
+    parser.add_argument("paths", nargs="+", metavar="ROWS", help="row files or run folders")
     parser.add_argument(
         "--seed",
+        dest="seeds",
         type=int,
         action="append",
         metavar="N",
@@ -90,6 +92,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument(
         "--draw",
+        dest="drawn",
         choices=("episode", "scene"),
         default="episode",
         help="unit that the bootstrap of the intervals draws (default episode)",
@@ -103,21 +106,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
-    try:
-        check_paths(options.rows, "--out DIR")
-        paths = run(
-            options.rows,
-            options.out,
-            options.seed,
-            options.against,
-            options.draw,
-            options.critical,
-        )
-    except (OSError, ValueError) as error:
-        from mitigate.core.errors import error_message
-
-        print(f"table: {error_message(error)}", file=sys.stderr)
-        return 2
+    check_paths(options.paths, "--out DIR")
+    paths = run(**vars(options))
     print(plain_text(paths[0].read_text(encoding="utf-8")))
     print("\n".join(f"wrote {path}" for path in paths))
     return 0

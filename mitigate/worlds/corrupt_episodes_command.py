@@ -27,6 +27,7 @@ from typing import Any
 
 from tqdm import tqdm
 
+from mitigate.core.errors import command
 from mitigate.core.files import atomic_text, read_regular, sha256
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
@@ -306,6 +307,7 @@ def notices(summary: dict[str, Any]) -> list[str]:
     return lines
 
 
+@command("corrupt_episodes")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for invalid input)."""
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -315,9 +317,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         (source, out), options = paths_and_options(arguments, ("IN", "OUT"), OPTIONS)
         summary = run(source, out, **_options(options))
-    except (OSError, ValueError) as error:
-        print(f"corrupt_episodes: {error}", file=sys.stderr)
-        return 2
     except KeyboardInterrupt:
         print("\ninterrupted: nothing was written", file=sys.stderr)
         return 130

@@ -16,14 +16,14 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.core import conf
+from mitigate.core.errors import command, error_message
 from mitigate.core.files import find
 from mitigate.evaluation import config  # noqa: F401 - registers the options
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.command import run_command
+from mitigate.evaluation.page.command import written
 from mitigate.evaluation.page.document import report
 from mitigate.evaluation.rows import Row
 
@@ -148,7 +148,7 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
             rows = rows_of(entry)
             problems, omitted = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
-            problems = [conf.error_message(error)]
+            problems = [error_message(error)]
         print(f"{name}, {verdict if problems else 'as its rows say'}", flush=True)
         if omitted:
             print(f"{name}, WARNING: its rows also hold {omitted:.1000}", flush=True)
@@ -189,17 +189,19 @@ def add(
     return entry_of(result_rows.gather(paths), name, **values).save(file)
 
 
+@command("leaderboard")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for invalid input, 1 for a wrong
     entry).
     """
     options = vars(_parser().parse_args(argv))
     what = options.pop("what")
-    wrong: list[str] = []
-    command: Any = {"show": show, "add": add, "check": lambda paths: wrong.extend(check(paths))}
-    status = run_command("leaderboard", lambda: command[what](**options))
-    print("\n".join(wrong), end="\n" * bool(wrong))
-    return status or int(bool(wrong))
+    if what == "check":
+        wrong = check(**options)
+        print("\n".join(wrong), end="\n" * bool(wrong))
+        return int(bool(wrong))
+    print(written(show(**options) if what == "show" else add(**options)))
+    return 0
 
 
 def _parser() -> argparse.ArgumentParser:

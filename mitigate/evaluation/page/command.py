@@ -9,12 +9,11 @@ trajectories.
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.errors import error_message
+from mitigate.core.errors import command
 from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
@@ -115,6 +114,7 @@ def named(text: str) -> tuple[str, str]:
     return name, weights
 
 
+@command("report")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status (2 for invalid input)."""
     parser = argparse.ArgumentParser(
@@ -152,22 +152,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         options = [f"--config-dir={configs}", *options]
     if not 1 <= arguments["walks"] <= MOST_WALKS:
         parser.error(f"--walks must be from 1 to {MOST_WALKS}, got {arguments['walks']}.")
-    return run_command("report", lambda: run(paths or [_shipped()], options=options, **arguments))
-
-
-def run_command(name: str, work: Callable[[], Path | None]) -> int:
-    """Call ``work`` and return the exit status: 2 for an invalid input, whose error is printed.
-
-    ``work`` returns the file that it wrote, if any.
-    """
-    try:
-        path = work()
-    except (OSError, ValueError) as error:
-        print(f"{name}: {error_message(error)}", file=sys.stderr)
-        return 2
-    if path is not None:
-        print(f"wrote {path} ({Path(path).stat().st_size / 1e6:.1f} MB)")
+    page = run(paths or [_shipped()], options=options, **arguments)
+    print(written(page))
     return 0
+
+
+def written(page: Path) -> str:
+    """Return a text with the path and the size of a page."""
+    return f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)"
 
 
 def _shipped() -> Path:

@@ -30,6 +30,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from mitigate.core.errors import command
 from mitigate.core.files import atomic_text, write_bytes
 from mitigate.core.names import unknown
 from mitigate.core.options import asks_help, paths_and_options
@@ -193,17 +194,14 @@ def parse(arguments: Sequence[str]) -> tuple[Path, str, int | None, tuple[str, .
     return Path(out), options["split"], scenes, tasks
 
 
+@command("export-scene")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status."""
     arguments = list(sys.argv[1:] if argv is None else argv)
     if asks_help(arguments):
         print(__doc__)
         return 0 if arguments else 2
-    try:
-        paths = export(*parse(arguments))
-    except (OSError, ValueError) as error:
-        print(f"export-scene: {error}", file=sys.stderr)
-        return 2
+    paths = export(*parse(arguments))
     print("\n".join(f"wrote {path}" for path in paths))
     return 0
 
