@@ -174,18 +174,13 @@ def compare(rows: Iterable[Row]) -> Comparison:
     return Comparison(tuple(lines), agents, about)
 
 
+@dataclass(frozen=True)
 class _Scores:
     """The measures of agents by (agent, corruption), over the same episodes."""
 
-    def __init__(
-        self,
-        cells: Mapping[tuple[str, str], Mapping[str, Sequence[Row]]],
-        episodes: Sequence[str],
-        agents: Sequence[str],
-    ) -> None:
-        self.cells = cells
-        self.episodes = episodes
-        self.agents = agents
+    cells: Mapping[tuple[str, str], Mapping[str, Sequence[Row]]]
+    episodes: Sequence[str]
+    agents: Sequence[str]
 
     def values(self, agent: str, corruption: str, measure: str) -> np.ndarray:
         """Return the values [N] of the episodes, each as the mean over its seeds."""

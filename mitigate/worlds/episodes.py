@@ -205,6 +205,21 @@ class Episode:
     extra: dict[str, Any] = field(default_factory=dict, hash=False)
 
 
+def placeless_episode(name: str, text: str, **info: Any) -> Episode:
+    """Return an episode for worlds that read only its id, its instruction and ``info``."""
+    return Episode(
+        episode_id=name,
+        trajectory_id=name,
+        scene_id="",
+        start_position=(0.0, 0.0, 0.0),
+        start_rotation=(0.0, 0.0, 0.0, 1.0),
+        goals=(),
+        instruction=Instruction(text),
+        reference_path=(),
+        info=info,
+    )
+
+
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
     """Yield the episodes of a file in order.
 

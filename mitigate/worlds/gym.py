@@ -2,72 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
-from mitigate.core.observation import DEPTH, POSE, RGB
-from mitigate.core.spaces import from_gymnasium
-from mitigate.worlds.seeded import WHOLE, SeededWorld, Success
+from mitigate.core.spaces import ActionSpace, from_gymnasium
+from mitigate.worlds.seeded import WHOLE, Arrays, SeededWorld
 
 
 class GymWorld(SeededWorld):
     """World that wraps a gymnasium environment.
 
-    Args:
-        env: An environment. Its observation is an RGB frame (uint8 [H, W, 3]
-            or [V, H, W, 3]) or a ``Dict`` that contains such a frame.
-        entries: Names of the entries of a ``Dict``, by default "rgb", "depth" and "pose". Nested
-            entries are written as "camera.rgb".
-        success: Name of an entry in ``info``, or a function.
-        unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
-        limit: See ``SeededWorld``.
-        rule: See ``SeededWorld``.
-        score: See ``SeededWorld``.
-        extra: See ``SeededWorld``.
-        hfov: See ``SeededWorld``.
-
-    Raises:
-        ValueError: The action space is not supported by ``core/spaces.py``, or an error of
-            ``SeededWorld``.
+    The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. The observation of
+    ``env`` is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or a ``Dict`` that contains such a
+    frame. ``success`` names an entry in ``info``, or is a function.
     """
 
-    def __init__(
-        self,
-        env: Any,
-        entries: Mapping[str, str] | None = None,
-        *,
-        success: Success | None = None,
-        unit: float | None = None,
-        limit: int | None = None,
-        rule: str | None = None,
-        score: str = "success",
-        extra: Sequence[str] = (),
-        hfov: float | None = None,
-    ) -> None:
-        spaces = _by_name(env.observation_space)
-        default = {n: n for n in (RGB, DEPTH, POSE) if n in spaces}
-        if WHOLE in spaces:
-            default = {RGB: WHOLE}
+    def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
         arrays = {}
-        for name, space in spaces.items():
+        for name, space in _by_name(env.observation_space).items():
             if space.shape is not None:  # Text and Tuple spaces have no shape
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
-        super().__init__(
-            env,
-            from_gymnasium(env.action_space),
-            arrays,
-            entries or default,
-            success,
-            unit,
-            limit,
-            rule,
-            score,
-            extra,
-            hfov,
-        )
+        return from_gymnasium(env.action_space), arrays
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         observation, self._info = self.env.reset(seed=seed)

@@ -82,14 +82,6 @@ class HabitatWorld(World):
             )
         if views not in (1, VIEWS):
             raise ValueError(f"views must be {VIEWS} (panorama) or 1 (forward), got {views}.")
-        self._arguments = {
-            "scenes": str(scenes),
-            "size": size,
-            "views": views,
-            "rule": rule,
-            "navmesh": navmesh,
-            "gpu": gpu,
-        }
         self.scenes_folder = Path(scenes)
         self.size = size
         self.views = views
@@ -103,10 +95,7 @@ class HabitatWorld(World):
 
     def __getstate__(self) -> dict[str, Any]:
         # a simulator cannot be pickled, so the copy opens a new one
-        return self._arguments
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__init__(**state)  # type: ignore[misc]
+        return {**vars(self), "_sim": None, "_scene": ""}
 
     # episodes ---------------------------------------------------------------------------------
 

@@ -16,7 +16,7 @@ from mitigate.core.errors import own_place
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation, Sensor
 from mitigate.core.seeding import digest
 from mitigate.core.spaces import ActionSpace
-from mitigate.worlds.episodes import Episode, Instruction, is_seed
+from mitigate.worlds.episodes import Episode, is_seed, placeless_episode
 from mitigate.worlds.world import World, check_metres
 
 
@@ -35,20 +35,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
             raise ValueError(
                 f"The seed must be a whole number from 0 to 2147483647, got {seed!r:.80}."
             )
-    return [
-        Episode(
-            episode_id=str(seed),
-            trajectory_id=str(seed),
-            scene_id="",
-            start_position=(0.0, 0.0, 0.0),
-            start_rotation=(0.0, 0.0, 0.0, 1.0),
-            goals=(),
-            instruction=Instruction(instruction),
-            reference_path=(),
-            info={"seed": int(seed)},
-        )
-        for seed in seeds
-    ]
+    return [placeless_episode(str(seed), instruction, seed=seed) for seed in seeds]
 
 
 FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; seeds of comparisons are smaller
@@ -122,6 +109,8 @@ class NativeFormat:
         return depth.astype(dtype)
 
 
+# shape, dtype and maximum of each entry of an observation
+Arrays = dict[str, tuple[tuple[int, ...], str, float]]
 # name of an entry that the environment reports, or a function
 Success = str | Callable[[Ending], bool]
 
@@ -129,15 +118,14 @@ Success = str | Callable[[Ending], bool]
 class SeededWorld(World):
     """Base class of worlds in which an episode is a seed.
 
-    A subclass defines ``_reset_env``, ``_step_env`` and ``_report``. Depth that is negative or not
-    finite becomes 0, which means missing.
+    A subclass defines ``_spaces``, ``_reset_env``, ``_step_env`` and ``_report``. Depth that is
+    negative or not finite becomes 0, which means missing.
 
     Args:
         env: The environment.
-        action_space: Action space of the environment.
-        arrays: Shape, dtype and maximum of each entry of the environment's observations.
         entries: Entry of each sensor: maps "rgb", "depth", "pose" and any other name that the agent
-            reads, such as "goal", to an entry of the observation.
+            reads, such as "goal", to an entry of the observation. Nested entries are written as
+            "camera.rgb". The default is the frame, or the entries "rgb", "depth" and "pose".
         success: Name of the entry that reports success at the end of an episode, or a function of
             the :class:`Ending`; None means the entry "success".
         unit: Metres per unit of depth; None means 1. The unit is required for integer depth and for
@@ -174,13 +162,12 @@ class SeededWorld(World):
     def __init__(
         self,
         env: Any,
-        action_space: ActionSpace,
-        arrays: Mapping[str, tuple[tuple[int, ...], str, float]],
-        entries: Mapping[str, str],
-        success: Success | None,
-        unit: float | None,
-        limit: int | None,
-        rule: str | None,
+        entries: Mapping[str, str] | None = None,
+        *,
+        success: Success | None = None,
+        unit: float | None = None,
+        limit: int | None = None,
+        rule: str | None = None,
         score: str = "success",
         extra: Sequence[str] = (),
         hfov: float | None = None,
@@ -197,6 +184,9 @@ class SeededWorld(World):
                 "environment end its episodes."
             )
         _check_success(success, rule)
+        self.action_space, arrays = self._spaces(env)
+        default = {RGB: WHOLE} if WHOLE in arrays else {n: n for n in (RGB, DEPTH, POSE)}
+        entries = entries or {name: entry for name, entry in default.items() if entry in arrays}
         missing = [entry or name for name, entry in entries.items() if entry not in arrays]
         if missing or not entries:
             raise ValueError(
@@ -205,7 +195,6 @@ class SeededWorld(World):
                 "entries={'rgb': 'image'}."
             )
         self.env = env
-        self.action_space = action_space
         self.entries = dict(entries)
         self.success: Success = "success" if success is None else success
         self.unit = 1.0 if unit is None else unit
@@ -257,6 +246,14 @@ class SeededWorld(World):
             parts, reward, over = self._step_env(action)
         self._end_step(reward, over)
         return self._observation(parts)
+
+    def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
+        """Return the action space and the arrays of the observations of ``env``.
+
+        Raises:
+            ValueError: The actions are not supported (``core/spaces.py``).
+        """
+        raise NotImplementedError(f"{type(self).__name__} defines no _spaces(env)")
 
     def _reset_env(self, seed: int) -> Mapping[str, Any]:
         """Reset the environment and return the entries of its observation."""

@@ -6,7 +6,7 @@ Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl, beca
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,12 +18,9 @@ from torchrl.data.tensor_specs import ContinuousBox
 from torchrl.envs import EnvBase, GymLikeEnv
 
 from mitigate.core.observation import (
-    DEPTH,
     EPISODE,
     FRAME,
     INSTRUCTION,
-    POSE,
-    RGB,
     STOP,
     Observation,
     Sensor,
@@ -31,7 +28,7 @@ from mitigate.core.observation import (
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 from mitigate.worlds.episodes import Episode, read_episodes
-from mitigate.worlds.seeded import SeededWorld, Success
+from mitigate.worlds.seeded import Arrays, SeededWorld
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -152,38 +149,13 @@ class WorldEnv(EnvBase):
 
 
 class EnvWorld(SeededWorld):
-    """World that wraps a torchrl environment with frames.
+    """World that wraps a torchrl environment with frames, which must not be batched.
 
-    Args:
-        env: The environment, which must not be batched.
-        entries: Names of the entries, by default "rgb", "depth" and "pose". Nested entries are
-            written as "camera.rgb".
-        success: Name of an entry of the tensordict, or a function.
-        unit: See :class:`~mitigate.worlds.seeded.SeededWorld`.
-        limit: See ``SeededWorld``.
-        rule: See ``SeededWorld``.
-        score: See ``SeededWorld``.
-        extra: See ``SeededWorld``.
-        hfov: See ``SeededWorld``.
-
-    Raises:
-        ValueError: The environment is batched, its actions are not supported (``core/spaces.py``),
-            or an error of ``SeededWorld``.
+    The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. ``success`` names an
+    entry of the tensordict, or is a function.
     """
 
-    def __init__(
-        self,
-        env: EnvBase,
-        entries: Mapping[str, str] | None = None,
-        *,
-        success: Success | None = None,
-        unit: float | None = None,
-        limit: int | None = None,
-        rule: str | None = None,
-        score: str = "success",
-        extra: Sequence[str] = (),
-        hfov: float | None = None,
-    ) -> None:
+    def _spaces(self, env: EnvBase) -> tuple[ActionSpace, Arrays]:
         if env.batch_size.numel() != 1:
             raise ValueError(
                 f"The batch size of the environment must be [] or [1], got {list(env.batch_size)}. "
@@ -196,14 +168,9 @@ class EnvWorld(SeededWorld):
                 f"The environment must have one action, got {len(actions)}. Wrap it in a transform "
                 "that makes them from one action."
             )
-        space = _space_of(actions[0], env.batch_size.numel())
         spec = env.observation_spec
-        specs = {_dotted(key): spec[key] for key in spec.keys(True, True)}
-        default = {name: name for name in (RGB, DEPTH, POSE) if name in specs}
-        arrays = {name: _describe(spec) for name, spec in specs.items()}
-        super().__init__(
-            env, space, arrays, entries or default, success, unit, limit, rule, score, extra, hfov
-        )
+        arrays = {_dotted(key): _describe(spec[key]) for key in spec.keys(True, True)}
+        return _space_of(actions[0], env.batch_size.numel()), arrays
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)

@@ -31,7 +31,7 @@ from mitigate.core.observation import (
     cameras,
 )
 from mitigate.core.progress import Progress
-from mitigate.worlds.episodes import Episode, Instruction
+from mitigate.worlds.episodes import Episode, placeless_episode
 from mitigate.worlds.recorded.source import Source
 from mitigate.worlds.recorded.summary import Camera, describe, warn_about
 from mitigate.worlds.recorded.views import border_fraction, covered_tangent, square_view
@@ -303,18 +303,7 @@ class RecordedWorld(World):
 
     def episode(self) -> Episode:
         """Return the recorded drive as an episode with its name and instruction."""
-        name = self.recording.name
-        origin = (0.0, 0.0, 0.0)
-        return Episode(
-            episode_id=name,
-            trajectory_id=name,
-            scene_id=name,
-            start_position=origin,
-            start_rotation=(*origin, 1.0),
-            goals=(),
-            instruction=Instruction(self.recording.instruction),
-            reference_path=(),
-        )
+        return placeless_episode(self.recording.name, self.recording.instruction)
 
     def reset(self, episode: Episode) -> Observation:
         """Return the first instant."""
