@@ -242,7 +242,7 @@ def test_gym_world_rejects_spaces_without_arrays():
     with pytest.raises(ValueError, match=r"no array mission; it has rgb"):
         GymWorld(room, {"rgb": "rgb", "words": "mission"})
     room.observation_space = spaces.Tuple([spaces.Discrete(2)])
-    with pytest.raises(ValueError, match="no array rgb; it has none"):
+    with pytest.raises(ValueError, match="no array rgb or depth; it has none"):
         GymWorld(room)
     room.action_space = spaces.Text(2)
     with pytest.raises(ValueError, match="must be Discrete, Box"):
