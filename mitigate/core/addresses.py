@@ -16,13 +16,18 @@ _EXAMPLE = (
     "http://localhost:8000/v1 (as a safeguard: http://localhost:8000/v1@name-of-the-model)."
 )
 _MODEL = re.compile(r"[\w.:/+-]+")
-_SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
-_PLAIN = re.compile(r"[\w./~+ -]*")
+_PLAIN = re.compile(r"(?!(?:https?|ftp)/)[\w./~+ -]*", re.IGNORECASE)
+# the parts of a reference to a variable or an option, such as ${oc.env:URL}
+_REFERENCE = re.compile(r"\$|oc\.env:\w+")
 # Characters that can surround a value in a Hydra list, mapping, sweep or quotation.
 _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
+# an option that is safeguard= or a misspelling of it, at the start of a word or in a list
+_SAFEGUARD = re.compile(r"(?:^|[^a-z])saf\w*g\w*[\"']?\s*[=:]", re.IGNORECASE)
+_NAME = re.compile(r"[-+~]*saf\w*g\w*=?", re.IGNORECASE)
+_NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")  # the next option in a list of options
 # Other options may contain an @ or a //, but not a URL with an @.
-_NAMES_SAFEGUARD = re.compile(r"safeguard[\"']?\s*[=:]", re.IGNORECASE)
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
+_SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
 _EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes that earlier versions accepted
 
 
@@ -46,15 +51,20 @@ def check_url(url: str) -> None:
 def check_choice(choice: object) -> None:
     """Raise ValueError if a value of ``safeguard=`` is not text or is an invalid address.
 
-    Names and existing folders are accepted. Any other value that contains a character of an address
-    must be ``URL@model``.
+    Names, paths without special characters and existing folders are accepted. Any other value must
+    be ``URL@model``, because it may contain a password in any form.
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
     choice = _EARLIER.sub("", choice)
-    if not _SUSPECT.search(choice) or _is_folder(choice):
+    if is_plain(choice) or _is_folder(choice):
         return
     url, at, model = choice.rpartition("@")
+    if not at and "//" not in choice:
+        raise ValueError(
+            "This value names no safeguard that exists, and it is not the address of an endpoint. "
+            f"A name or a path consists of letters, digits and . / ~ + - _. {_EXAMPLE}"
+        )
     check_url(url if at else choice)
     if not _MODEL.fullmatch(model) or not urlsplit(url).path:
         raise ValueError(  # without a path, the part before the @ may be a password
@@ -74,13 +84,23 @@ def check_arguments(arguments: Iterable[str]) -> None:
     """Check the addresses in the words of a command line before Hydra parses and prints them.
 
     The words are not parsed, because an error of the parser would show an invalid word. Every part
-    that looks like an address is checked as :func:`check_choice` does.
+    of a value of ``safeguard=`` is checked as :func:`check_choice` does. If any other word contains
+    a URL with a secret, its parts that look like addresses are checked.
     """
+    is_value = False  # whether the words before are ``safeguard`` or ``safeguard =``
     for word in arguments:
-        is_suspect = _NAMES_SAFEGUARD.search(word) or _SECRET.search(word)
-        if is_suspect and not _is_folder(word.partition("=")[2]):
-            for part in _SEPARATORS.split(word):
+        values = [(word[match.end() :], match.start()) for match in _SAFEGUARD.finditer(word)]
+        for value, start in [*values, *([(word, 0)] if is_value else [])]:
+            if not _is_folder(value):
+                # a word that begins with the name of another option is a list of options
+                parts = _SEPARATORS.split(_NEXT.split(value)[0] if "=" in word[:start] else value)
+                for part in parts:
+                    if not _REFERENCE.fullmatch(part):
+                        check_choice(part)
+        if _SECRET.search(word):
+            for part in filter(_SUSPECT.search, _SEPARATORS.split(word)):
                 check_choice(part)
+        is_value = bool(_NAME.fullmatch(word)) or (is_value and word == "=")
 
 
 def _is_folder(text: str) -> bool:

@@ -30,7 +30,7 @@ from hydra.utils import get_object
 from omegaconf import DictConfig, OmegaConf
 from omegaconf.errors import OmegaConfBaseException
 
-from mitigate.core.addresses import check_arguments
+from mitigate.core.addresses import check_arguments, check_choice
 from mitigate.core.build import argument_names
 from mitigate.core.errors import error_message, too_large_message
 from mitigate.core.files import PACKAGE
@@ -135,6 +135,8 @@ def main(
             program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
+    except BrokenPipeError:  # the reader of the output has closed it; see mitigate/cli.py
+        raise
     except (ValueError, OSError) as error:
         sys.exit(f"error: {error_message(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
@@ -157,8 +159,31 @@ def _prepare(primary: str, check: Callable[[], None] | None) -> None:
         check()
     check_dashes(sys.argv[1:])
     sys.argv[1:] = flags_first(sys.argv[1:])
+    _check_files(primary, sys.argv[1:])
     for notice in notices(primary, sys.argv[1:]):
         print(notice, file=sys.stderr)
+
+
+def _check_files(primary: str, words: Sequence[str]) -> None:
+    """Check addresses that config files set, before Hydra prints them or stores a sweep.
+
+    This takes a tenth of a second, so it is done only for words that name the user's own configs,
+    sweep, or print a config. Raises ValueError as
+    :func:`mitigate.core.addresses.check_arguments`.
+    """
+    if not any(word.startswith("-") or "hydra." in word for word in words):
+        return
+    folder_words, overrides = without_config_folder(words)
+    overrides = [word for word in overrides if re.match(r"[^-].*=|~", word)]
+    try:
+        cfg = _compose(primary, [*folder_words, *overrides], with_hydra=True)
+        swept = OmegaConf.to_container(cfg.hydra.sweeper).get("params") or {}
+        choice = OmegaConf.select(cfg, "safeguard")
+    except (HydraException, OmegaConfBaseException):  # the program itself explains this error
+        return
+    check_arguments(f"{key}={value}" for key, value in swept.items())
+    if choice is not None:
+        check_choice(choice)
 
 
 class _WithoutHydraLine:
@@ -223,6 +248,11 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
         ValueError: no imported module has registered the types of this file, or an address in the
             words contains a password.
     """
+    return _compose(primary, words)
+
+
+def _compose(primary: str, words: Sequence[str], with_hydra: bool = False) -> DictConfig:
+    """Compose as :func:`load_config`; ``with_hydra`` adds the settings of Hydra as ``hydra``."""
     check_arguments(words)
     if primary not in TYPES:
         raise ValueError(
@@ -236,7 +266,7 @@ def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
         overrides.append(f'hydra.searchpath=["file://{place}"]')
     GlobalHydra.instance().clear()
     with initialize_config_dir(str(CONF), version_base="1.3"):
-        return compose(primary, overrides)
+        return compose(primary, overrides, return_hydra_config=with_hydra)
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:

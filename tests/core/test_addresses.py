@@ -50,6 +50,17 @@ WORDS = [
     "safeguard = https://me:PW@h/v1@m",
     "agent.safeguard=https//me:PW@h/v1@m",
     '+evaluations.x=["safeguard=https//me:PW@h/v1@m"]',
+    "safeguard=me:PW",
+    "safeguard=me=PW@h",
+    "safeguard=me%3APW%40h",
+    "safeguard=me\\:PW@h/v1",
+    "safeguard=none,me:PW",
+    "safeguard=choice(none,me:PW)",
+    "safegard=me:PW@h/v1",
+    "safe_guard=me:PW",
+    "safeguard = me:PW",
+    "--safeguard me:PW",
+    '+evaluations.x=["safeguard=me:PW"]',
 ]
 
 
@@ -87,9 +98,29 @@ def test_unknown_value_is_repeated_only_if_it_is_a_name():
     with pytest.raises(ValueError, match="'clasifier'. Did you mean classifier"):
         choices.check("clasifier")
     for value in ("me:PW", ["PW"], {"url": "PW"}, "PW%40h"):
-        with pytest.raises(ValueError, match="This value names no safeguard") as error:
+        with pytest.raises(ValueError, match="This value names no safeguard that exists") as error:
             choices.check(value)
         assert "PW" not in str(error.value)
+
+
+@pytest.mark.parametrize("full", ["", "1"])
+@pytest.mark.parametrize("flag", ["", "-m", "--cfg=job"])
+@pytest.mark.parametrize("mode", ["", "  mode: MULTIRUN\n"])
+def test_swept_values_of_a_config_file_never_repeat_a_password(
+    tmp_path, monkeypatch, capfd, full, flag, mode
+):
+    """Issue T2, item 6."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv(conf.FULL, full)
+    (tmp_path / "configs/suite").mkdir(parents=True)
+    (tmp_path / "configs/suite/mine.yaml").write_text(
+        f"# @package _global_\nhydra:\n{mode}  sweeper:\n    params:\n"
+        "      safeguard: none,https://me:PW@h/v1@m\n"
+    )
+    words = ["--config-dir", str(tmp_path / "configs"), "suite=mine", "checkpoint=nowhere", flag]
+    text = output(monkeypatch, capfd, [word for word in words if word])
+    assert "PW" not in text and "endpoint" in text
+    assert [path.name for path in tmp_path.iterdir()] == ["configs"]
 
 
 @pytest.mark.parametrize("value", ["https://me:PW@h/v1@m", "['https://me:PW@h/v1@m']"])
@@ -137,6 +168,10 @@ def test_columns_of_a_table_never_repeat_a_password():
         "env@other=apartments",
         "hydra.searchpath=[file:///a@b]",
         "checkpoint=a//b",
+        "safeguard=${weights.safeguard}",
+        'columns.x=["safeguard=http://h/v1@m","restore=my.module:call"]',
+        "recipe=safeguard_lora",
+        "stages.safeguard_lora.trainer.steps=4",
     ],
 )
 def test_valid_words_pass(word):
