@@ -316,7 +316,7 @@ def _read_name(line: str, file: Path) -> str:
     """Return the episode name in a line of ``file``. Raises ValueError if it is damaged."""
     try:
         name: object = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         name = None
     if not isinstance(name, str):
         raise ValueError(

@@ -20,7 +20,7 @@ from typing import Any
 
 from mitigate.bridge.cameras import CHANNELS, Group, Rig
 from mitigate.bridge.condition import Condition
-from mitigate.bridge.events import EVENTS, read_end, read_start, write_event
+from mitigate.bridge.events import EVENTS, read_end, read_events, read_start, write_event
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, MAX_TEXT, receive, send
 from mitigate.core.names import short, unknown
@@ -252,7 +252,7 @@ class Connection:
         """Raise ValueError if ``episodes=`` is set and the program did not ask for a choice."""
         if self.condition.keep is None or self.chosen:
             return
-        self.chosen = '"event": "dataset"' in (self.folder / EVENTS).read_text("utf-8")
+        self.chosen = any(e["event"] == "dataset" for _, e in read_events(self.folder))
         if not self.chosen:
             raise ValueError(
                 "episodes= asks for some of the program's episodes, but the program would run all. "

@@ -23,6 +23,7 @@ from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 from mitigate.worlds.measures import path_length
 
 EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
+LONGEST_LINE = 1 << 26  # maximum bytes of an event (heuristic; a message has at most 1 << 24)
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # may be infinite if a goal cannot be reached
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
@@ -58,15 +59,19 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
         ValueError: Any other line is not a JSON object with a text ``event``.
     """
     file = folder / EVENTS
-    lines = file.read_bytes().split(b"\n")[:-1] if is_regular(file) else []
-    for number, line in enumerate(lines, 1):
-        try:
-            event: Any = json.loads(line)  # distances may be infinite
-        except (ValueError, RecursionError) as error:
-            raise damaged(folder, f"line {number} is damaged") from error
-        if not isinstance(event, dict) or not isinstance(event.get("event"), str):
-            raise damaged(folder, f"line {number} is damaged")
-        yield number, event
+    if not is_regular(file):
+        return
+    with open(file, "rb") as lines:
+        for number, line in enumerate(iter(lambda: lines.readline(LONGEST_LINE), b""), 1):
+            if not line.endswith(b"\n") and len(line) < LONGEST_LINE:
+                return
+            try:
+                event: Any = json.loads(line)  # distances may be infinite
+            except (ValueError, RecursionError) as error:
+                raise damaged(folder, f"line {number} is damaged") from error
+            if not isinstance(event, dict) or not isinstance(event.get("event"), str):
+                raise damaged(folder, f"line {number} is damaged")
+            yield number, event
 
 
 def put_aside(folder: Path, kind: str) -> None:

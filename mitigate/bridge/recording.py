@@ -24,7 +24,7 @@ import numpy as np
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.bridge.condition import Observer
 from mitigate.core import output
-from mitigate.core.files import RECORDING, atomic_text, make_folder, write_bytes
+from mitigate.core.files import RECORDING, atomic_text, draft_path, make_folder, write_bytes
 from mitigate.core.locks import delete_abandoned
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
@@ -80,8 +80,7 @@ class Recorder(Observer):
         target = self.folder / scene / unique_part(str(message["id"]))
         self.leave()
         self.output_root = output.register(make_folder(self.root or self.folder))
-        draft = target.with_name(f".{target.name}.{os.getpid()}.tmp")
-        output.delete_folder(draft)
+        draft = draft_path(target)
         output.make_checked(draft)
         self.draft, self.target, self.cameras = draft, target, {}
         header = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}

@@ -214,7 +214,7 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
     """Return the record in one line; if it is damaged, raise a ValueError that names the file."""
     try:
         record: Any = json.loads(line)
-    except ValueError:
+    except (ValueError, RecursionError):
         record = None
     if not isinstance(record, dict) or not (
         "error" in record or {"job", "result"} <= record.keys()

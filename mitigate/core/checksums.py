@@ -13,10 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.files import atomic_text, sha256, write_atomically
+from mitigate.core.files import atomic_text, read_bounded, sha256, write_atomically
 
 SUFFIX = ".sha256"
-LARGEST = 4096  # maximum characters of a sidecar (heuristic; it has one or two lines)
+LARGEST = 4096  # maximum bytes of a sidecar (heuristic; it has one or two lines)
 DIGITS = 12  # number of hex digits of a fingerprint: 48 bits
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
@@ -94,11 +94,7 @@ def delete_orphans(folder: Path, pattern: str) -> None:
 
 def _sums(path: Path) -> list[str]:
     """Return the checksums in the sidecar of ``path``; raise ValueError if it is damaged."""
-    with open(sidecar(path), encoding="utf-8") as file:
-        text = file.read(LARGEST + 1)
-    if len(text) > LARGEST:
-        raise ValueError("it is damaged")
-    lines = text.splitlines()
+    lines = read_bounded(sidecar(path), LARGEST).decode().splitlines()
     matches = [_LINE.fullmatch(line) for line in lines]
     sums = [line[1] for line in matches if line and line[2] == path.name]
     if not sums or len(sums) < len(lines):

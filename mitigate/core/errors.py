@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from mitigate.core.files import PACKAGE
+from mitigate.core.names import printable
 
 RECIPES = (PACKAGE / "recipes").resolve()  # a link in a checkout
 # the import names of the packages in the extras of pyproject.toml
@@ -28,18 +29,18 @@ def error_message(error: ValueError | OSError) -> str:
     """Return a paragraph that explains an error.
 
     For an error in the user's code, the paragraph names the file and line. For an error of the
-    system, it names the file, and a fix if the disk is full.
+    system, it names the file, and a fix if the disk is full. Control characters are escaped.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
-        return f"{error} (raised in {place})" if place else str(error)
+        return printable(f"{error} (raised in {place})" if place else str(error))
     message = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         message += (
             ". Finished results are complete. Free some space and run the same command again to "
             "resume."
         )
-    return message
+    return printable(message)
 
 
 def command(name: str) -> Callable[[Main], Main]:

@@ -142,10 +142,20 @@ def lfs_problem(path: Path | str) -> str:
     return "is a Git LFS pointer, not the file itself. Run `git lfs pull` in its repository"
 
 
-def read_regular(path: Path | str) -> str:
-    """Return the UTF-8 text of a small file in an output folder. Raises as :func:`open_text`."""
-    with open_text(path) as file:
-        return file.read()
+def read_bounded(path: Path | str, most: int) -> bytes:
+    """Return the content of an untrusted file.
+
+    Raises:
+        ValueError: The file has more than ``most`` bytes.
+        UnsafePathError: The path is a FIFO, a socket or a device.
+    """
+    output.is_regular(path)
+    with open(path, "rb") as file:
+        # read() allocates memory for its argument, so the argument is limited to the size
+        content = file.read(min(most, os.fstat(file.fileno()).st_size) + 1)
+    if len(content) > most:
+        raise ValueError(f"{path} must have at most {most} bytes, so it is damaged.")
+    return content
 
 
 def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]:
@@ -183,6 +193,16 @@ def make_folder(folder: Path | str) -> Path:
     return Path(folder)
 
 
+def draft_path(path: Path) -> Path:
+    """Return the path of a new temporary file or folder that will be renamed to ``path``.
+
+    If the process is killed, ``core/locks.py`` recognises the name and deletes the leftover.
+    """
+    # The random part of the name prevents others from placing a link at a predictable path.
+    name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes
+    return path.with_name(f".{name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
+
+
 @contextmanager
 def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty file in the folder of ``path``, which becomes ``path`` after the block.
@@ -190,9 +210,7 @@ def _draft(path: Path) -> Iterator[Path]:
     The file is flushed to disk and gets the default permissions of the umask. If the block raises
     an error, the file is deleted. If needed, the folder is created.
     """
-    # The random part of the name prevents others from placing a link at a predictable path.
-    name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes
-    temporary = path.with_name(f".{name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
+    temporary = draft_path(path)
     with output.writing(path):
         output.make_checked(path.parent)
         output.open_output(temporary, "xb").close()

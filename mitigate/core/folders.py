@@ -17,6 +17,7 @@ one, or rejected.
 
 from __future__ import annotations
 
+import glob
 import hashlib
 import json
 import os
@@ -28,16 +29,27 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mitigate.core import checksums, older_folders, output
-from mitigate.core.files import lfs_problem, make_folder, sha256, write_text
+from mitigate.core.files import (
+    LONGEST_DRAFT,
+    draft_path,
+    lfs_problem,
+    make_folder,
+    put_folder,
+    sha256,
+    write_text,
+)
 from mitigate.core.json_files import read_object
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import short
 from mitigate.core.output import writing
+from mitigate.core.signals import uninterrupted
 
 MANIFEST = "manifest.json"
 FORMAT = 1
 MOST_FILES = 1000  # maximum entries of a manifest (heuristic; a hardened folder has 8)
 LONGEST = 255  # maximum bytes of a file name (Linux, NAME_MAX)
 AGAIN = "Fetch the folder again, or write it again with the command that made it."
+_OLD = "old"  # name of the folder that is being replaced, in the temporary folder
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -83,6 +95,34 @@ def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
     with draft as place:
         yield Path(place)
         _replace(Path(place), folder, kind)
+
+
+@contextmanager
+def replace_folder(target: Path) -> Iterator[Path]:
+    """Yield an empty temporary folder that is renamed to ``target`` if the block succeeds.
+
+    An existing ``target`` is replaced as a whole. If the process is killed at any moment, the next
+    call repairs the folder (:func:`repair_folder`).
+    """
+    repair_folder(target)
+    aside = draft_path(target)
+    with writing(target):
+        output.make_checked(aside / target.name)
+    try:
+        yield aside / target.name
+        with uninterrupted():
+            put_folder(aside / target.name, target, aside / _OLD)
+    finally:
+        output.delete_folder(aside)
+
+
+def repair_folder(target: Path) -> None:
+    """Restore ``target`` if a process was killed while it replaced the folder; delete leftovers."""
+    drafts = [*target.parent.glob(f".{glob.escape(target.name[:LONGEST_DRAFT])}.*.tmp")]
+    for draft in drafts:
+        if (draft / _OLD).is_dir() and not target.exists():
+            (draft / _OLD).rename(target)
+    delete_abandoned(drafts, ours=True)
 
 
 def _check_kind(folder: Path, kind: str) -> None:

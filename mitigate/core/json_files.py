@@ -10,50 +10,49 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn, TextIO
 
-from mitigate.core.files import lfs_problem, open_text
+from mitigate.core.files import lfs_problem, open_text, read_bounded
 from mitigate.core.names import short
-from mitigate.core.output import is_regular
+from mitigate.core.output import UnsafePathError
 
 CHUNK = 1 << 16  # number of characters that are read at a time (heuristic)
 # maximum characters of one JSON value; more means a broken file (heuristic)
 LARGEST_VALUE = 1 << 25
 # maximum bytes of a JSON file that is read at once (heuristic; a card has 1e4)
 LARGEST_JSON = 1 << 24
+# maximum bytes of a JSON file with an entry per file of a folder (heuristic; 100 bytes per entry)
+LARGEST_LIST = 1 << 28
 
 
 class JsonListError(ValueError):
     """A file holds a JSON list instead of an object."""
 
 
-def read_json(path: Path, again: str) -> Any:
+def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
     """Return the value in the untrusted JSON file ``path``.
 
     Raises:
-        ValueError: The file has more than ``LARGEST_JSON`` bytes, holds a number that is not
-            finite, or is damaged. Each message ends with the advice ``again``.
+        ValueError: The file has more than ``most`` bytes, holds a number that is not finite, or is
+            damaged. Each message ends with the advice ``again``.
         UnsafePathError: The path is a FIFO, a socket or a device.
     """
-    is_regular(path)
-    with open(path, "rb") as file:
-        raw = file.read(LARGEST_JSON + 1)
     try:
-        if len(raw) > LARGEST_JSON:
-            raise ValueError(f"more than {LARGEST_JSON} bytes")
-        return parse_json(raw.decode("utf-8-sig"))
+        return parse_json(read_bounded(path, most).decode("utf-8-sig"))
+    except UnsafePathError:
+        raise
     except (ValueError, RecursionError) as error:
         if pointer := lfs_problem(path):
             raise ValueError(f"{path} {pointer}.") from error
         raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
 
 
-def read_object(path: Path, again: str) -> dict[str, Any]:
+def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, Any]:
     """Return the JSON object in ``path``, read by :func:`read_json`.
 
     Raises:
         ValueError: The file is damaged or holds a different kind of value, such as null or a list.
             The message names the file and ends with ``again``.
     """
-    value = read_json(path, again)
+    value = read_json(path, again, most)
     if not isinstance(value, dict):
         raise ValueError(f"{path} must hold a JSON object, got {short(value)}. {again}")
     return value

@@ -17,6 +17,7 @@ from typing import IO
 
 from mitigate.core import output
 from mitigate.core.files import make_folder
+from mitigate.core.names import escaped
 from mitigate.core.output import writing
 
 NAME = ".lock"
@@ -122,8 +123,9 @@ class FolderLock:
         file.seek(0)
         try:
             note = json.loads(file.read(4096))
-            who = f"process {int(note['pid'])} on {note['host']!s:.60} ({note['command']!s:.200})"
-        except (ValueError, TypeError, KeyError):
+            host, command = escaped(str(note["host"]), 60), escaped(str(note["command"]))
+            who = f"process {int(note['pid'])} on {host} ({command})"
+        except (ValueError, TypeError, KeyError, OverflowError, RecursionError):
             who = "another process"
         return (
             f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or choose "

@@ -7,6 +7,10 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+LONGEST_NAME = 200  # maximum characters of an untrusted name in a message (heuristic)
+LONGEST_LIST = 4000  # maximum characters of a list of names in a message (heuristic)
+LONGEST_MESSAGE = 16000  # maximum characters of a message of a command (heuristic)
+
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
     """Return the error paragraph for an unknown ``name``, with the nearest and all allowed names.
@@ -17,9 +21,10 @@ def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
         allowed: the names that exist; a set is sorted.
     """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
-    near = difflib.get_close_matches(str(name), allowed, n=1)
-    hint = f" Did you mean {near[0]}?" if near else ""
-    return f"There is no {what} {name!r}.{hint} Choose one of: {', '.join(allowed)}."
+    near = difflib.get_close_matches(str(name)[:LONGEST_NAME], allowed, n=1)
+    hint = f" Did you mean {escaped(near[0])}?" if near else ""
+    choices = escaped(", ".join(allowed), LONGEST_LIST)
+    return f"There is no {what} {escaped(repr(name))}.{hint} Choose one of: {choices}."
 
 
 def counted(count: int, what: str) -> str:
@@ -36,7 +41,7 @@ def short(value: object, most: int = 60) -> str:
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
 
-def escaped(text: str, most: int = 200) -> str:
+def escaped(text: str, most: int = LONGEST_NAME) -> str:
     """Return an untrusted ``text`` without quotes, printable and with at most ``most`` characters.
 
     The text ends in "..." if it was shortened.
@@ -48,6 +53,16 @@ def escaped(text: str, most: int = 200) -> str:
 def file_name(text: str) -> str:
     """Return ``text`` with a dash for each part that a file name should not contain."""
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", text)
+
+
+def printable(message: str) -> str:
+    """Return a ``message`` for a terminal, in which only line breaks are control characters.
+
+    A message quotes names from files, which may contain escape sequences of terminals. A message
+    that is longer than ``LONGEST_MESSAGE`` is cut.
+    """
+    lines = message[:LONGEST_MESSAGE].split("\n")
+    return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)
 
 
 def name_of(weights: str) -> str:

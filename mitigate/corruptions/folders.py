@@ -13,10 +13,11 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from mitigate.core.files import read_regular, sha256, write_bytes
+from mitigate.core.files import sha256, write_bytes
+from mitigate.core.json_files import LARGEST_LIST, read_object
 from mitigate.core.names import escaped, short
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
-from mitigate.core.output import UnsafePathError, is_regular, lost, output_folder
+from mitigate.core.output import is_regular, lost, output_folder
 from mitigate.corruptions import frame_files
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.faults.temporal import GATE
@@ -262,8 +263,15 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     Raises:
         ValueError: ``out`` was written with different settings or frames.
     """
+    unknown = f"The content of {out} is unknown. Name a new folder, or delete this one."
     try:
-        earlier = json.loads(read_regular(out / SUMMARY))
+        earlier = read_object(out / SUMMARY, unknown, LARGEST_LIST)
+    except FileNotFoundError:
+        raise ValueError(
+            f"{out} must be empty or have a {SUMMARY} of this program. Name a new or an empty "
+            "folder."
+        ) from None
+    try:
         earlier_settings = dict(earlier["settings"])
         # earlier versions used only the count 0, so no_reading=0 resumes their folders
         is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
@@ -271,18 +279,8 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
         recorded = dict(earlier["episodes"]).items()
         digests = {name: (int(e["frames"]), str(e["names"])) for name, e in recorded}
         checksums = {str(k): str(v) for k, v in dict(earlier.get("checksums", {})).items()}
-    except FileNotFoundError:
-        raise ValueError(
-            f"{out} must be empty or have a {SUMMARY} of this program. Name a new or an empty "
-            "folder."
-        ) from None
-    except UnsafePathError:
-        raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(
-            f"{out / SUMMARY} is damaged ({error}), so the content of {out} is unknown. Name a new "
-            "folder, or delete this one."
-        ) from error
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"{out / SUMMARY} is damaged ({error!r:.100}). {unknown}") from error
     different = [
         escaped(f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now")
         for name in {**earlier_settings, **settings}

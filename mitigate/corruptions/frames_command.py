@@ -40,7 +40,8 @@ import sys
 from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
-from mitigate.core.names import escaped
+from mitigate.core.errors import error_message
+from mitigate.core.names import escaped, printable
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, lerobot, registry
 from mitigate.corruptions.folders import UNITS, Settings
@@ -106,7 +107,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             )
         summary = folders.run(source, out, settings)
     except (OSError, ValueError) as error:
-        print(f"corrupt: {error}", file=sys.stderr)
+        print(f"corrupt: {error_message(error)}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("\ninterrupted: run the same command to resume", file=sys.stderr)
@@ -120,7 +121,7 @@ def _corrupt_dataset(source: str, out: str, settings: Settings, options: dict[st
     cameras = [name for name in options.get("cameras", "").split(",") if name]
     tolerance = float(_value("tolerance", options.get("tolerance", str(TOLERANCE))))
     summary = copying.run(source, out, settings, cameras or None, tolerance)
-    print(copying.report(summary, out))
+    print(printable(copying.report(summary, out)))
     return 0
 
 
@@ -133,7 +134,7 @@ def _report(summary: dict, out: str) -> int:
         counts.append(f"{summary['other_modality']} of the other modality skipped")
     if summary["other_files"]:
         counts.append(f"other files not read: {count_suffixes(summary['other_files'])}")
-    print("; ".join(counts))
+    print(printable("; ".join(counts)))
     replaced = summary["replaced"]
     if replaced:
         more = ", ..." if len(replaced) > MAX_LISTED else ""

@@ -22,6 +22,7 @@ import torch.nn.functional as F
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
 MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
+LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; adapters have 1e5 to 1e7)
 # numpy types of safetensors types; BF16, which numpy lacks, is read as half of a float32
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}
@@ -166,6 +167,8 @@ def read(folder):
     """Return the settings and tensors of a folder: (dict, {name: tensor}). Errors as ``attach``."""
     folder = str(folder)
     path = os.path.join(folder, WEIGHTS)
+    if os.path.getsize(path) > LARGEST:
+        raise ValueError(f"{path} must have at most {LARGEST} bytes. Fetch the folder again.")
     with open(path, "rb") as file:
         data = file.read()
     if hashlib.sha256(data).hexdigest() not in _sums(folder):

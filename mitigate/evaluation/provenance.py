@@ -243,7 +243,7 @@ def _is_same(before: str | None, now: str | None) -> bool:
     """Return whether two texts are equal, or are two paths of the same file."""
     if before == now or CHANGES in (before, now):
         return True
-    with suppress(OSError, TypeError, ValueError):
+    with suppress(OSError, TypeError, ValueError, RecursionError):
         return samefile(*(f"{Path(json.loads(text or ''))}" for text in (before, now)))
     return False
 

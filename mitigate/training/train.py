@@ -18,6 +18,7 @@ from omegaconf import DictConfig
 
 from mitigate.core import conf
 from mitigate.core.locks import FolderLock
+from mitigate.core.names import printable
 from mitigate.training import config as options
 
 
@@ -54,7 +55,7 @@ def hydra_main(cfg: DictConfig) -> None:
         if (
             HydraConfig.get().mode == RunMode.MULTIRUN
         ):  # otherwise Hydra continues and shows only the first error
-            print(f"failed: {cfg.folder}: {error}", file=sys.stderr, flush=True)
+            print(printable(f"failed: {cfg.folder}: {error}"), file=sys.stderr, flush=True)
         raise
 
 

@@ -28,7 +28,9 @@ from typing import Any
 from tqdm import tqdm
 
 from mitigate.core.errors import command
-from mitigate.core.files import atomic_text, read_regular, sha256
+from mitigate.core.files import atomic_text, sha256
+from mitigate.core.json_files import LARGEST_LIST, read_json
+from mitigate.core.names import printable
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions.instruction import check_options, corrupt_instruction, is_rewritten
 from mitigate.corruptions.keying import Key
@@ -167,7 +169,7 @@ def _check_target(source: Path, out: Path) -> None:
 def _is_unchanged(out: Path, summary: Path) -> bool:
     """Return whether ``out`` has the content that its summary describes."""
     try:
-        earlier = json.loads(read_regular(summary))
+        earlier = read_json(summary, "", LARGEST_LIST)
         if "sha256" in earlier:
             return earlier["sha256"] == sha256(out)
         # summaries of earlier versions have no checksum
@@ -320,6 +322,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("\ninterrupted: nothing was written", file=sys.stderr)
         return 130
-    print(json.dumps(summary, indent=2, ensure_ascii=False))
-    print("\n".join(notices(summary)), file=sys.stderr)
+    print(printable(json.dumps(summary, indent=2, ensure_ascii=False)))
+    print(printable("\n".join(notices(summary))), file=sys.stderr)
     return 0

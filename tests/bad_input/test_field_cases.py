@@ -236,7 +236,7 @@ def test_keep_list_hash_reads_a_bounded_part(tmp_path):
     note = tmp_path / LIST_HASH.format(split="test")
     with open(note, "wb") as file:
         file.truncate(8 << 30)
-    with pytest.raises(ValueError, match="must begin with a sha256"):
+    with pytest.raises(ValueError, match="must hold a sha256"):
         keep_list_hash(tmp_path, "test", str(source))
 
 
@@ -256,3 +256,17 @@ def test_escaped_is_printable_and_short():
     text = escaped("\x1b[31mred\n" + "x" * 10**6)
     assert text.isprintable() and len(text) == 200 and text.startswith("\\x1b[31mred")
     assert escaped("Küche") == "Küche"
+
+
+@pytest.mark.parametrize("name", ["/\x1b[2Jimage", "/" + "x" * 5000])
+def test_bag_with_an_unprintable_topic_is_read_without_it(tmp_path, name):
+    """Issue T2, item 11."""
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    with Writer(tmp_path / "drive", version=9, storage_plugin=StoragePlugin.MCAP) as bag:
+        bag.add_connection(name, "sensor_msgs/msg/Image", typestore=store)
+    with pytest.raises(ValueError, match="has no topic with images") as error:
+        open_recording(tmp_path / "drive", hfov=69.0)
+    assert str(error.value).isprintable() and len(str(error.value)) < 1000

@@ -158,3 +158,13 @@ def test_put_aside_rejects_a_fifo(tmp_path, kind):
     with pytest.raises(UnsafePathError, match=f"clean.{kind} must be a folder, got a FIFO"):
         put_aside(tmp_path / "clean", kind)
     assert (tmp_path / "clean" / "output.txt").is_file()
+
+
+def test_recorder_leaves_a_folder_with_a_predictable_temporary_name(tmp_path):
+    """Issue T2, item 10."""
+    planted = tmp_path / "k" / f".1.{os.getpid()}.tmp"
+    planted.mkdir(parents=True)
+    recorder = Recorder(tmp_path)
+    recorder.episode(TOLD)
+    recorder.end({"kind": "end"})
+    assert planted.is_dir() and (tmp_path / "k/1/end.json").is_file()

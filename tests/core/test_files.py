@@ -191,3 +191,19 @@ def test_last_lines_escape_control_characters(tmp_path):
     path.write_bytes("first\n\x1b[31mrot\tgrün\x1b[0m\xff\n\n".encode() + b"\xff\n")
     with open(path, "rb") as log:
         assert files.last_lines(log, 2) == ["\\x1b[31mrot grün\\x1b[0mÿ", "\ufffd"]
+
+
+def test_read_bounded_rejects_a_large_file_without_reading_it(tmp_path):
+    """Issue T2, item 8."""
+    path = tmp_path / "large"
+    with open(path, "wb") as file:
+        file.write(b"text")
+    assert files.read_bounded(path, 4) == b"text"
+    os.truncate(path, 8 << 30)  # sparse
+    tracemalloc.start()
+    try:
+        with pytest.raises(ValueError, match="must have at most 4096 bytes"):
+            files.read_bounded(path, 4096)
+        assert tracemalloc.get_traced_memory()[1] < 1 << 20
+    finally:
+        tracemalloc.stop()

@@ -243,3 +243,29 @@ def test_add_file_lists_the_file(tmp_path):
     (tmp_path / "config.yaml").write_text("agent: []\n")
     with pytest.raises(ValueError, match=r"config\.yaml does not have the sha256"):
         folders.check(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["agent", "a" * 255, "[a]*"])
+def test_replace_folder_replaces_the_whole_folder_or_nothing(tmp_path, name):
+    target = tmp_path / name
+    for text in ("first", "second"):
+        with folders.replace_folder(target) as draft:
+            (draft / text).touch()
+    with pytest.raises(KeyError), folders.replace_folder(target) as draft:
+        (draft / "third").touch()
+        raise KeyError
+    assert names(target) == {"second"} and names(tmp_path) == {name}
+
+
+def test_replace_folder_restores_the_old_folder_after_a_kill(tmp_path):
+    """The process was killed between the two renames, and a different process still runs."""
+    target = tmp_path / "agent"
+    killed = tmp_path / ".agent.01234567.999999999.tmp"
+    (killed / "old").mkdir(parents=True)
+    (killed / "old/weights").touch()
+    running = tmp_path / f".agent.76543210.{os.getppid()}.tmp"
+    running.mkdir()
+    with pytest.raises(KeyError), folders.replace_folder(target):
+        assert names(target) == {"weights"} and not killed.exists()
+        raise KeyError
+    assert names(target) == {"weights"} and running.exists()

@@ -4,6 +4,7 @@ deleted."""
 from __future__ import annotations
 
 import gc
+import json
 import os
 import signal
 import subprocess
@@ -175,3 +176,14 @@ def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
         file.touch()
     with FolderLock(tmp_path, ("walks",)):
         assert not settings.exists() and not dead.exists() and other.exists()
+
+
+@pytest.mark.parametrize("command", ["[" * 4000, "\x1b[31m" + "x" * 3000])
+def test_lock_note_is_printed_escaped_and_short(tmp_path, other, command):
+    """Issue T2, item 11."""
+    note = json.dumps({"pid": 1, "host": "\x1b[2J" * 100, "command": command})
+    for text in (note, command):
+        (tmp_path / "run" / NAME).write_text(text)
+        with pytest.raises(ValueError, match="is in use") as error:
+            FolderLock(tmp_path / "run").__enter__()
+        assert str(error.value).isprintable() and len(str(error.value)) < 700

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import subprocess
 import sys
 
 import numpy as np
@@ -15,8 +16,9 @@ import pytest
 import torch
 from omegaconf import open_dict
 
+from mitigate import cli
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, conf
+from mitigate.core import checkpoint, conf, names
 from mitigate.corruptions import Corruption, Key, Schedule, corrupt
 from mitigate.evaluation import evaluate
 from mitigate.training import states, train
@@ -160,3 +162,40 @@ def test_train_checks_its_evaluation_before_training(tmp_path):
         cfg = config(tmp_path, "evaluation.enabled=true", option)
         assert part in complaint(lambda cfg=cfg: train.run(cfg))
     assert not list(tmp_path.iterdir())
+
+
+def test_printable_escapes_control_characters_and_cuts_long_messages():
+    """Issue T2, item 11."""
+    text = names.printable("one\n\x1b[2Jtwo\x9b\r" + "x" * 10**6)
+    assert text.startswith("one\n\\x1b[2Jtwo\\x9b\\r") and len(text) < 20_000
+    assert names.printable("Küche") == "Küche"
+
+
+def test_unknown_bounds_untrusted_names():
+    """Issue T2, item 11."""
+    text = names.unknown("agent", "\x1b]0;" + "x" * 10**6, ["\x1b[2J"] + ["y" * 10**6] * 3)
+    assert text.isprintable() and len(text) < 5000
+
+
+def test_commands_print_names_from_files_escaped(tmp_path, capsys):
+    """Issue T2, item 11."""
+    (tmp_path / "rows.jsonl").write_text('{"agent": "x"}\n')
+    nowhere = tmp_path / "\x1b[2Jrows.jsonl"
+    with pytest.raises(SystemExit):
+        cli.main(["table", str(nowhere)])
+    assert "\x1b" not in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        cli.main(["corrupt", str(nowhere), str(tmp_path), "corruption=spatter", "severity=1"])
+    error = capsys.readouterr().err
+    assert "\x1b" not in error and "x1b[2J" in error
+
+
+def test_warnings_of_commands_are_escaped():
+    """Issue T2, item 11."""
+    code = (
+        "import warnings; from mitigate import cli; from mitigate.core import doctor\n"
+        "doctor.main = lambda: warnings.warn('\\x1b[2Jname')\n"
+        "cli.main(['doctor'])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert "\\x1b[2Jname" in done.stderr and "\x1b" not in done.stderr

@@ -266,7 +266,7 @@ def test_folder_lock_keeps_the_first_error(tmp_path):
     "read",
     [
         rows.read,
-        files.read_regular,
+        lambda path: files.read_bounded(path, 100),
         files.sha256,
         settings.read,
         lambda path: json_files.read_json(path, ""),

@@ -29,6 +29,7 @@ PROMPT = (
     "down, straight and stop, in the same order. Keep every object, room, colour and number. Add "
     "no distance, no compass word and no object. Answer with the rewritten instruction alone."
 )
+LONGEST_LINE = 1 << 20  # maximum bytes of a cached answer (heuristic)
 _HALF = re.compile("[\ud800-\udfff]")  # lone surrogates, which a text file cannot contain
 
 
@@ -102,13 +103,16 @@ def _is_valid(answer: object) -> bool:
 
 def _read(cache: Path) -> list[tuple[str, str]]:
     """Return (key, answer) of every valid line."""
-    answers = []
-    for line in cache.read_bytes().split(b"\n") if cache.is_file() else ():
-        try:
-            entry = json.loads(line)
-            answer = entry.pop("answer")
-        except (ValueError, KeyError, AttributeError, RecursionError):
-            continue
-        if _is_valid(answer):
-            answers.append((_key(entry), answer))
+    answers: list[tuple[str, str]] = []
+    if not cache.is_file():
+        return answers
+    with open(cache, "rb") as file:
+        for line in iter(lambda: file.readline(LONGEST_LINE), b""):
+            try:
+                entry = json.loads(line)
+                answer = entry.pop("answer")
+            except (ValueError, KeyError, AttributeError, RecursionError):
+                continue
+            if _is_valid(answer):
+                answers.append((_key(entry), answer))
     return answers

@@ -20,13 +20,8 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.core.files import (
-    make_folder,
-    read_regular,
-    sha256,
-    write_atomically,
-    write_bytes,
-)
+from mitigate.core.files import make_folder, sha256, write_atomically, write_bytes
+from mitigate.core.json_files import LARGEST_LIST, read_object
 from mitigate.core.names import counted, escaped, short
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import is_regular, lost, open_output, output_folder
@@ -428,14 +423,15 @@ def _earlier_checksums(out: Path, now: Mapping[str, Any]) -> dict[str, str]:
     """Return the checksums of an earlier run; ValueError unless it had the same settings."""
     fix = "Name another folder, or delete this one."
     try:
-        earlier = json.loads(read_regular(out / SUMMARY))
-        before = dict(earlier["settings"])
-        checksums = {str(k): str(v) for k, v in dict(earlier["checksums"]).items()}
+        earlier = read_object(out / SUMMARY, fix, LARGEST_LIST)
     except FileNotFoundError:
         raise ValueError(
             f"{out} must be empty or have a {SUMMARY} of this program. {fix}"
         ) from None
-    except (OSError, ValueError, KeyError, TypeError) as error:
+    try:
+        before = dict(earlier["settings"])
+        checksums = {str(k): str(v) for k, v in dict(earlier["checksums"]).items()}
+    except (KeyError, TypeError, ValueError) as error:
         raise ValueError(f"{out / SUMMARY} is damaged ({error!s:.200}). {fix}") from error
     different = [
         escaped(f"{name}={short(before.get(name))} there, {name}={short(now.get(name))} now")

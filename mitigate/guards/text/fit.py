@@ -25,6 +25,7 @@ from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 
 from mitigate.core import checksums
+from mitigate.core.errors import error_message
 from mitigate.core.files import find, make_folder, write_text
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
@@ -212,4 +213,4 @@ if __name__ == "__main__":
     try:
         main()
     except (ValueError, FileNotFoundError) as error:
-        sys.exit(f"error: {error}")
+        sys.exit(f"error: {error_message(error)}")

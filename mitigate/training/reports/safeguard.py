@@ -20,6 +20,7 @@ from typing import Any
 from torch import nn
 
 from mitigate.core.addresses import check_choice
+from mitigate.core.errors import error_message
 from mitigate.core.files import atomic_text, find, open_text
 from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
@@ -238,4 +239,4 @@ if __name__ == "__main__":
     try:
         main()
     except (ValueError, FileNotFoundError) as error:
-        sys.exit(f"error: {error}")
+        sys.exit(f"error: {error_message(error)}")

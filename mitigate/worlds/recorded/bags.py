@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.files import lfs_problem
+from mitigate.core.names import escaped
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.recorded.messages import (
     DamagedImage,
@@ -78,8 +79,10 @@ class Bag(Source):
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
-            available = {name: info.msgtype for name, info in reader.topics.items()}
-            counts = {name: info.msgcount for name, info in reader.topics.items()}
+            # messages list the names of topics, so topics with other names are not read
+            listed = {n: info for n, info in reader.topics.items() if n == escaped(n)}
+            available = {name: info.msgtype for name, info in listed.items()}
+            counts = {name: info.msgcount for name, info in listed.items()}
             encodings = self._read_encodings(reader)
             self.topics = choose_topics(path, available, options.topics, counts, encodings)
             self.kinds = [kind for kind in KINDS if kind in self.topics]

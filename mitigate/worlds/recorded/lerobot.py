@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
+from mitigate.core.names import LONGEST_NAME, short
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.lerobot import Camera, Dataset, Episode, open_dataset
 from mitigate.corruptions.lerobot.dataset import TOLERANCE, Rows, rows_of
@@ -52,7 +53,8 @@ def _instruction(dataset: Dataset, rows: Rows, name: str) -> str:
     count = len(np.unique(rows.tasks))
     if count > 1:
         warnings.warn(
-            f"{name} has {count} tasks. The instruction is the first: {dataset.tasks[first]!r}.",
+            f"{name} has {count} tasks. The instruction is the first: "
+            f"{short(dataset.tasks[first], LONGEST_NAME)}.",
             stacklevel=2,
         )
     return dataset.tasks[first]

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 from pathlib import Path
 
-from mitigate.core.names import unknown
+from mitigate.core.names import escaped, unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.worlds.recorded.messages import kind_of
 
@@ -99,7 +99,8 @@ def choose_topics(
         POSE: _candidates(path, POSE, topics.pose, poses, available, POSES),
     }
     if not (candidates[RGB] or candidates[DEPTH]):
-        listed = ", ".join(f"{name} ({kind})" for name, kind in list(available.items())[:12])
+        some = list(available.items())[:12]
+        listed = ", ".join(f"{name} ({escaped(str(kind))})" for name, kind in some)
         raise ValueError(
             f"{path} has no topic with images. Its topics are {listed or 'none'}. Record a topic "
             f"of {' or '.join(IMAGES)}."

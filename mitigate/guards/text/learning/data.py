@@ -265,7 +265,7 @@ def read_chats(path: str | Path) -> Iterator[Pair]:
 def _pair(line: str, where: str) -> Pair:
     try:
         chat = json.loads(line)
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise _malformed(where, f"is not JSON ({error})") from error
     messages = chat.get("messages") if isinstance(chat, dict) else None
     if not isinstance(messages, list):
