@@ -6,15 +6,19 @@ commands.
 
 from __future__ import annotations
 
+import io
 import os
 import signal
 import sys
+import threading
+import warnings
 from collections.abc import Sequence
 from importlib import import_module
 from typing import NamedTuple
 
 from mitigate.core.errors import missing_package_message
-from mitigate.core.names import unknown
+from mitigate.core.names import printable, unknown
+from mitigate.core.signals import Ended, raise_ended
 
 
 class Command(NamedTuple):
@@ -130,6 +134,10 @@ COMMANDS = {
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run a command from the command line, and exit with its status."""
+    _prepare_streams()
+    warnings.formatwarning = _format_warning
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGTERM, raise_ended)  # deletes temporary files on the way out
     # as with python -m, so that modules of the user can be imported
     if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
@@ -161,9 +169,42 @@ def _run(name: str, options: Sequence[str]) -> int | None:
             raise
         sys.exit(message)
     # commands that can resume catch this themselves and print how to resume
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
         print(f"\nmitigate {name}: stopped.", file=sys.stderr)
-        return 128 + signal.SIGINT
+        return error.status if isinstance(error, Ended) else 128 + signal.SIGINT
+
+
+def _prepare_streams() -> None:
+    """Make the standard streams usable: open closed ones, and print every character.
+
+    A closed stream is replaced by the null device. Otherwise the next file that is opened, such as
+    a file of rows, would get its number, and child processes would print into this file. Characters
+    that the encoding of stdout lacks are printed as escapes.
+    """
+    while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(descriptor, True)
+    os.close(descriptor)
+    for number, name in ((1, "stdout"), (2, "stderr")):
+        stream = getattr(sys, name)
+        if stream is None:  # it was closed
+            stream = open(number, "w", errors="backslashreplace", closefd=False)  # noqa: SIM115
+            setattr(sys, name, stream)
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+_default_format = warnings.formatwarning
+
+
+def _format_warning(
+    message: Warning | str,
+    category: type[Warning],
+    filename: str,
+    lineno: int,
+    line: str | None = None,
+) -> str:
+    """Format a warning, which may quote names from files, without control characters."""
+    return _default_format(printable(str(message)), category, filename, lineno, line)
 
 
 def usage() -> str:

@@ -139,3 +139,58 @@ def test_help_into_a_closed_pipe_ends_without_a_traceback():
     process = subprocess.run([sys.executable, "-c", program], stdout=writer, stderr=subprocess.PIPE)
     os.close(writer)
     assert (process.stderr, process.returncode) == (b"", 128 + signal.SIGPIPE)
+
+
+def run_python(code, *, shell="", **variables):
+    """Run Python code as a command, and return its result. ``shell`` redirects its streams."""
+    environment = {**os.environ, "CODE": code, **variables}
+    command = f'exec "$0" -c "$CODE" {shell}'
+    return subprocess.run(
+        ["sh", "-c", command, sys.executable],
+        cwd=ROOT,
+        env=environment,
+        capture_output=True,
+        text=True,
+        errors="replace",
+    )
+
+
+PRINTS = (
+    "import os; from mitigate import cli; from mitigate.core import doctor\n"
+    "def main():\n"
+    "    print('Küche \u2013 \\udcff', flush=True)\n"
+    "    file = open(os.environ['FILE'], 'wb')\n"
+    "    os.system('echo printed by a child')\n"
+    "    file.write(b'data'); file.close()\n"
+    "doctor.main = main\n"
+    "cli.main(['doctor'])"
+)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+def test_command_prints_characters_that_the_encoding_lacks(tmp_path, encoding):
+    """Issue T2, faults: an encoding that cannot print."""
+    done = run_python(PRINTS, PYTHONIOENCODING=encoding, FILE=str(tmp_path / "file"))
+    assert done.returncode == 0 and "\\udcff" in done.stdout, done.stderr
+
+
+@pytest.mark.parametrize("shell", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
+def test_command_with_closed_streams_prints_into_no_file(tmp_path, shell):
+    """Issue T2, faults: closed stdout."""
+    file = tmp_path / "file"
+    done = run_python(PRINTS, shell=shell, FILE=str(file))
+    assert done.returncode == 0 and file.read_bytes() == b"data", done.stderr
+
+
+def test_sigterm_runs_the_cleanup_of_a_command():
+    """Issue T2, faults: export under signals."""
+    code = (
+        "import os, signal; from mitigate import cli; from mitigate.core import doctor\n"
+        "def main():\n"
+        "    try:\n        os.kill(os.getpid(), signal.SIGTERM)\n"
+        "    finally:\n        print('cleaned')\n"
+        "doctor.main = main\n"
+        "cli.main(['doctor'])"
+    )
+    done = run_python(code)
+    assert (done.returncode, done.stdout) == (143, "cleaned\n"), done.stderr
