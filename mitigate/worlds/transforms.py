@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import multiprocessing
+import warnings
 
 import numpy as np
 import torch
@@ -52,7 +54,8 @@ class CorruptObservation(Transform):
         rgb: Name of the RGB entry, which the data need not contain.
         depth: Name of the depth entry, which the data need not contain.
         sensor: Depth range, and value that marks missing depth.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres. None
+            means metres, but depth of a replay buffer that does not exceed 1 is rejected.
         hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
         backend: "torch" computes on the device of the frames, "numpy" on the CPU. None selects
             torch for frames on a GPU and numpy for frames on the CPU.
@@ -71,7 +74,7 @@ class CorruptObservation(Transform):
         rgb: NestedKey = RGB,
         depth: NestedKey = DEPTH,
         sensor: DepthSensor | None = None,
-        normalised: bool = False,
+        normalised: bool | None = None,
         hfov: float | None = None,
         backend: str | None = None,
     ) -> None:
@@ -87,8 +90,7 @@ class CorruptObservation(Transform):
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
         """Return the spec; raise ValueError if normalised depth would be corrupted as metres."""
         entry = self.entries[DEPTH]
-        corrupts = any(modality(name) == DEPTH for name in names_of(self.schedule))
-        if corrupts and not self._normalised and entry in observation_spec.keys(True, True):
+        if self._corrupts_metres() and entry in observation_spec.keys(True, True):
             spec = observation_spec[entry]
             high = float(spec.space.high.max()) if isinstance(spec, Bounded) else math.inf
             if high <= 1.0:
@@ -97,6 +99,10 @@ class CorruptObservation(Transform):
                     "normalised=True and sensor=DepthSensor(z_min, z_max), or use a spec in metres."
                 )
         return observation_spec
+
+    def _corrupts_metres(self) -> bool:
+        depth = any(modality(name) == DEPTH for name in names_of(self.schedule))
+        return depth and not self._normalised
 
     def _call(self, next_tensordict: TensorDictBase) -> TensorDictBase:
         return self._corrupt(next_tensordict)
@@ -115,7 +121,7 @@ class CorruptObservation(Transform):
         shared with the input.
 
         Raises:
-            ValueError: The corruption is a temporal fault.
+            ValueError: The corruption is a temporal fault, or the depth may be normalised.
         """
         if isinstance(self.schedule, Corruption) and is_timed(self.schedule):
             raise ValueError(
@@ -123,6 +129,15 @@ class CorruptObservation(Transform):
                 "return in order. Put CorruptObservation into the environment "
                 "(TransformedEnv), and store its frames."
             )
+        depth = tensordict.get(self.entries[DEPTH], None)
+        if depth is not None and self._normalised is None and self._corrupts_metres():
+            readings = depth[depth.isfinite() & (depth > 0)]
+            if readings.numel() and readings.max() <= 1.0:
+                raise ValueError(
+                    f"No depth of these data exceeds {float(readings.max()):.3g}, so it may be "
+                    "normalised to [0, 1]. Set normalised=True and sensor=DepthSensor(z_min, "
+                    "z_max), or normalised=False for depth in metres."
+                )
         out = self._corrupt(tensordict.copy())
         following = out.get("next", None)
         if following is not None and any(
@@ -151,7 +166,7 @@ class CorruptObservation(Transform):
             instant = {entry: views[row] for entry, views in frames.items()}
             if row not in self._streams:
                 self._streams[row] = FrameStream(
-                    self.sensor, normalised=self._normalised, hfov=self._hfov
+                    self.sensor, normalised=bool(self._normalised), hfov=self._hfov
                 )
             result = self._streams[row].corrupt(instant, corruption, key)
             for name in frames.keys() & {*corruption.modalities}:
@@ -230,13 +245,24 @@ class EpisodeCounter(Transform):
     Args:
         worker: Index of this environment among environments in separate processes; the rows of all
             workers form one batch.
-        workers: Number of environments in separate processes.
+        workers: Number of environments in separate processes. None means 1. A warning is given if
+            this process is a child process, because the environments of its siblings would get the
+            same corruptions.
 
     Raises:
         ValueError: ``worker`` is not in 0 ... workers - 1.
     """
 
-    def __init__(self, worker: int = 0, workers: int = 1) -> None:
+    def __init__(self, worker: int = 0, workers: int | None = None) -> None:
+        if workers is None:
+            workers = 1
+            if multiprocessing.parent_process() is not None:
+                warnings.warn(
+                    "Environments in several processes draw the same corruptions: pass "
+                    "EpisodeCounter(worker=i, workers=n) in process i of n. For a single process, "
+                    "workers=1 avoids this warning.",
+                    stacklevel=2,
+                )
         if not 0 <= worker < workers:
             raise ValueError(
                 f"worker must be 0 to {workers - 1} with workers={workers}, got {worker}."

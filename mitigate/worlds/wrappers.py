@@ -5,6 +5,7 @@ Needs the extra ``gymnasium``.
 
 from __future__ import annotations
 
+import secrets
 from collections.abc import Mapping
 from typing import Any
 
@@ -44,10 +45,12 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     separately.
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
-    "n-1", ...; before the first seed "unseeded-0" and so on. ``frame`` is the number of steps since
-    the reset. The pixels are a function of (schedule, seed, reset seed, resets, steps) only, and
-    under a temporal fault of the earlier frames of the episode. An environment that resets itself,
-    as in ``gymnasium.wrappers.Autoreset``, resets in the step after the end of an episode.
+    "n-1", ... ``frame`` is the number of steps since the reset. The pixels are a function of
+    (schedule, seed, reset seed, resets, steps) only, and under a temporal fault of the earlier
+    frames of the episode. Without a seed, the names contain a random part, as gymnasium draws a
+    random seed, so that the environments of a vector environment get different corruptions. An
+    environment that resets itself, as in ``gymnasium.wrappers.Autoreset``, resets in the step after
+    the end of an episode.
 
     Args:
         env: The environment.
@@ -100,7 +103,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self.sensor = sensor or DepthSensor()
         self.corruption: Corruption | None = None
         self.key: Key | None = None
-        self._source = "unseeded"
+        self._source = ""
         self._resets = 0
         self._frame = 0
         self._over = False
@@ -120,6 +123,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         if seed is not None:
             self._source = str(seed)
             self._resets = 0
+        elif not self._source:
+            self._source = f"unseeded-{secrets.token_hex(4)}"
         self._begin()
         return super().reset(seed=seed, options=options)
 

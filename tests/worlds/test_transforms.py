@@ -1,5 +1,7 @@
 """Tests of torchrl transforms in batched environments: masks, rows, workers, buffers, devices."""
 
+import warnings
+
 import numpy as np
 import pytest
 import torch
@@ -228,3 +230,29 @@ def test_transforms_explain_invalid_use():
         EpisodeCounter(worker=2, workers=2)
     with pytest.raises(RuntimeError, match="not in a replay buffer"):
         EpisodeCounter()(TensorDict({}, [2]))
+
+
+@pytest.mark.parametrize("far", [0.9, 3.0])
+def test_replay_buffer_rejects_depth_that_may_be_normalised(far):
+    """Issue T2, item 12."""
+    depth = torch.linspace(0.1, far, 2 * 8 * 8).reshape(2, 8, 8, 1)
+    steps = torch.arange(2)[:, None]
+    data = TensorDict({"depth": depth, "episode": steps, "frame": steps}, [2])
+    corrupt = CorruptObservation(Corruption("missing_data", 0.6))
+    if far > 1:
+        assert (corrupt(data)["depth"] != depth).any()
+        return
+    with pytest.raises(ValueError, match="may be normalised.*normalised=True"):
+        corrupt(data)
+    in_metres = CorruptObservation(Corruption("missing_data", 0.6), normalised=False)
+    assert (in_metres(data)["depth"] != depth).any()
+
+
+def test_episode_counter_warns_in_a_child_process(monkeypatch):
+    """Issue T2, item 12."""
+    monkeypatch.setattr("multiprocessing.parent_process", lambda: object())
+    with pytest.warns(UserWarning, match="worker=i, workers=n"):
+        EpisodeCounter()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        EpisodeCounter(workers=1)
