@@ -19,12 +19,20 @@ from typing import Any
 from mitigate.core.files import atomic_text
 from mitigate.core.names import counted
 from mitigate.corruptions import SUITE_VERSION
-from mitigate.evaluation.page.model import MOST_EPISODES, Packed, curve_figures, section_data
+from mitigate.evaluation.page.model import (
+    MOST_EPISODES,
+    Packed,
+    curve_figures,
+    number_count,
+    section_data,
+)
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import sections
 
 ASSETS = Path(__file__).parent / "assets"
 SUFFIXES = (".html", ".htm")
+MOST_NUMBERS = 50_000  # maximum cells and differences in a page (heuristic; a minute of work)
+LARGEST_PAGE = 1 << 26  # maximum characters of a page (heuristic; the episodes have up to 6 MB)
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 
 
@@ -100,10 +108,13 @@ def report(
         most: maximum total number of cell episodes in the page.
 
     Raises:
-        ValueError: There are no rows.
+        ValueError: There are no rows, or the page would be too large.
     """
     rows = list(rows)
     parts, packed = sections(rows), Packed(most)
+    count = sum(number_count(part) for part in parts)
+    if count > MOST_NUMBERS:
+        raise ValueError(_too_large(f"{count:,} numbers", f"{MOST_NUMBERS:,}"))
     tables = [{**section_data(part), "grid": packed.add(part)} for part in parts]
     largest = max(range(len(tables)), key=lambda n: _size(tables[n]))
     notes = list(notes)
@@ -125,7 +136,17 @@ def report(
         "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
         "This file is self-contained and needs no network.",
     }
-    return _page(data, packed.text())
+    page = _page(data, packed.text())
+    if len(page) > LARGEST_PAGE:
+        raise ValueError(_too_large(f"{len(page):,} characters", f"{LARGEST_PAGE:,}"))
+    return page
+
+
+def _too_large(size: str, most: str) -> str:
+    return (
+        f"The page would hold {size}, more than {most}, which a browser cannot show. Name fewer "
+        "rows, or write the numbers with `mitigate table`. No file was written."
+    )
 
 
 def _size(table: dict[str, Any]) -> int:

@@ -66,6 +66,12 @@ def section_data(section: Section) -> dict[str, Any]:
     }
 
 
+def number_count(section: Section) -> int:
+    """Return how many cells and differences of cells the page has for a section."""
+    columns = len(section.columns)
+    return columns * (1 + min(columns, BASELINES)) * (1 + len(section.corruptions))
+
+
 def numbers(estimate: Estimate | None) -> Numbers:
     """Return an estimate in the format that the page reads."""
     if estimate is None or math.isnan(estimate.value):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 import re
+import time
 
 import numpy as np
 import pytest
@@ -13,7 +14,7 @@ from mitigate.agents.fingerprint import fingerprint
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import table
 from mitigate.evaluation.episode import run_episode
-from mitigate.evaluation.page import command
+from mitigate.evaluation.page import command, document
 from mitigate.evaluation.page.document import report
 from mitigate.evaluation.page.model import curve_figures, shortened
 from mitigate.evaluation.page.walks import KINDS, choose, walk_again
@@ -285,3 +286,16 @@ def test_page_separates_lists_of_a_split(rows):
     ]
     assert [len(grid["episodes"]) for grid in data["grids"]] == [10, 10]
     assert [line["label"] for line in data["sections"][0]["columns"]] == ["base", "hard"]
+
+
+def test_report_rejects_rows_that_no_browser_can_show(monkeypatch, tmp_path):
+    """Issue T2, item 9."""
+    many = column(8, {f"made_up_{n}": 2 for n in range(3000)})
+    more = column(8, {f"made_up_{n}": 3 for n in range(3000)}, name="b", agent="b")
+    began = time.monotonic()
+    with pytest.raises(ValueError, match="The page would hold .* numbers, more than 50,000"):
+        report(many + [{**r, "name": f"n{i}"} for i in range(6) for r in more])
+    assert time.monotonic() - began < 60
+    monkeypatch.setattr(document, "LARGEST_PAGE", 1000)
+    with pytest.raises(ValueError, match="more than 1,000, which a browser cannot show"):
+        report(column(8, {"spatter": 2}))
