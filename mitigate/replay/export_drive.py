@@ -8,6 +8,7 @@ With form=lerobot, OUT becomes one LeRobot dataset with all episodes.
 
 from __future__ import annotations
 
+import os
 import re
 import sys
 import tempfile
@@ -22,6 +23,7 @@ from omegaconf import MISSING, DictConfig
 
 from mitigate.core import conf
 from mitigate.core.files import atomic_text, make_folder, write_bytes
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
 from mitigate.core.options import paths_and_overrides
@@ -79,12 +81,13 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
         return [_write_dataset(world, listed, out)]
     paths = _drive_paths(out, [episode.episode_id for episode in listed], config.form)
     progress = Progress("export_drive", len(listed), unit="drive")
+    delete_abandoned(out.glob(".drive.*.tmp"))
     with output_folder(out) as root, progress:
         for episode, path in zip(listed, paths, strict=True):
             steps = list(oracle(world, episode))
             instruction = episode.instruction.text
             root.check()
-            with tempfile.TemporaryDirectory(prefix=".drive.", dir=out) as temporary:
+            with tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".drive.", out) as temporary:
                 draft = Path(temporary) / path.stem
                 if config.form == "frames":
                     write_frames(draft, steps, instruction)

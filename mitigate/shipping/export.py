@@ -30,7 +30,9 @@ from torch import Tensor, nn
 from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, folders, older_folders, settings
-from mitigate.core.files import find, last_lines, put_folder, write_text
+from mitigate.core.files import find, last_lines, write_text
+from mitigate.core.json_files import read_object
+from mitigate.core.names import short
 from mitigate.core.output import output_folder
 from mitigate.core.pretrained import PEFT_WEIGHTS
 from mitigate.corruptions import CLEAN
@@ -49,6 +51,7 @@ EXPORTED = 1e-3  # for program.pt2 and the ONNX files, compared with the agent
 ROUNDED = 0.1  # for the float16 weights, compared with the float32 weights of the run
 # a message quotes at most this many characters of the last line of a failed check (heuristic)
 REASON_WIDTH = 400
+MOST_PIXELS = 4096  # maximum side of a frame that programs take (heuristic)
 WALKS = 2  # number of episodes for comparing a reloaded agent of a different class (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
@@ -113,12 +116,8 @@ def export(
             "--onnx works only for the topological agent: folders of other agents have no programs."
         )
     cfg, agent = finished(run, walks)
-    watched = output_folder(out, name)
-    with watched, tempfile.TemporaryDirectory(prefix=f".{name}.", dir=out) as aside:
-        draft = Path(aside) / name
-        draft.mkdir()
+    with output_folder(out, name), folders.replace_folder(target) as draft:
         _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
-        put_folder(draft, target, Path(aside) / "old")
     return target
 
 
@@ -170,11 +169,12 @@ def add_programs(folder: Path) -> Path:
         FileNotFoundError: ``folder`` is not a complete hardened folder.
         ValueError: The folder is damaged, its agent has no programs, or the outputs differ.
     """
+    folders.repair_folder(folder.resolve())
     card = loading.check_hardened(folder)
     if not card.get("program", True):
         raise ValueError(f"{folder} holds an agent of a class without programs.")
     agent = loading.load_hardened(folder)
-    size = json.loads((folder / loading.INPUTS).read_text(encoding="utf-8"))["size"]
+    size = _input_size(folder)
     exported = programs.export_programs(agent, size)
     probe = programs.probe(agent, size)
     modules = {name: program.module() for name, program in exported.items()}
@@ -183,15 +183,25 @@ def add_programs(folder: Path) -> Path:
     if not gap <= EXPORTED:
         raise ValueError(f"The programs differ by {gap:g}; at most {EXPORTED:g} is allowed.")
     folder = folder.resolve()
-    with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as aside:
-        draft = Path(shutil.copytree(folder, Path(aside) / folder.name))
+    with folders.replace_folder(folder) as draft:
+        shutil.copytree(folder, draft, dirs_exist_ok=True)
         programs.save_programs(exported, draft / loading.PROGRAM)
         card = {**older_folders.without_sums(card), "format": loading.FORMAT}
         _write_json(draft / loading.CARD, card)
         folders.seal(draft, "hardened")
         loading.check_hardened(draft)
-        put_folder(draft, folder, Path(aside) / "old")
     return folder / loading.PROGRAM
+
+
+def _input_size(folder: Path) -> int:
+    """Return the side of the frames that the programs in ``folder`` take, in pixels."""
+    size = read_object(folder / loading.INPUTS, folders.AGAIN).get("size")
+    if type(size) is not int or not 1 <= size <= MOST_PIXELS:
+        raise ValueError(
+            f"{folder / loading.INPUTS} must hold a size of 1 to {MOST_PIXELS} pixels, got "
+            f"{short(size)}. {folders.AGAIN}"
+        )
+    return size
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
@@ -226,7 +236,7 @@ def check_outputs(folder: str, expected: str) -> None:
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
-    size = json.loads((Path(folder) / loading.INPUTS).read_text(encoding="utf-8"))["size"]
+    size = _input_size(Path(folder))
     program = programs.load_programs(Path(folder) / loading.PROGRAM)
     for what, networks, limit in (
         ("agent", programs.networks(agent), RELOADED),

@@ -9,6 +9,7 @@ Agents are of class :class:`TopologicalAgent`, whose module imports this one.
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
@@ -29,6 +30,7 @@ from mitigate.core import precision
 from mitigate.core import workers as processes
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.files import make_folder
+from mitigate.core.locks import delete_abandoned
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEW_STEP_DEGREES, VIEWS
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
@@ -334,7 +336,8 @@ class Store:
             workers: number of worker processes. None uses one per core if there is enough work, and
                 0 uses only this process.
         """
-        make_folder(self.corrupted if self.variants else self.folder)
+        for folder in (self.folder, self.corrupted) if self.variants else (self.folder,):
+            delete_abandoned(make_folder(folder).glob(".*.tmp"))
         scenes, every = self.world.scenes, range(self.variants + 1)
         missing = [
             (scene, [v for v in every if not self.path(scene, v).exists()]) for scene in scenes
@@ -411,7 +414,8 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
     """Write the entries of ``ScenePoses`` atomically: to a temporary folder, which is renamed."""
     tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
     poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", dir=path.parent) as aside:
+    suffix = f".{os.getpid()}.tmp"
+    with tempfile.TemporaryDirectory(suffix, f".{path.name}.", path.parent) as aside:
         # makes it readable for other users, unlike a temporary folder
         draft = Path(aside) / path.name
         draft.mkdir()
