@@ -3,7 +3,8 @@
 ``make test-faults``, or ``python -m tools.faults [--recipes ts_distill] [--faults SIGTERM]``. Each
 recipe is trained (``debug=smoke``, four steps per stage) once undisturbed, and once with all faults
 in turn, each at a random time from the seed. The weights must be equal bit for bit. Faults are
-injected into evaluations in the same way; their rows must be equal byte for byte. The tool prints
+injected into evaluations in the same way; their rows must be equal byte for byte. Other commands
+must end with the documented result. The tool prints
 how many faults were tried and survived. It exits with 1 if a fault was not survived or no fault was
 tried. ``--write`` inserts the table into docs/lab/fault-injection.md, with earlier results of the
 same seed for other recipes.
@@ -22,7 +23,7 @@ from pathlib import Path
 
 from mitigate.core.files import write_bytes
 from mitigate.core.workers import cores
-from tools.faults import evaluation, report, training
+from tools.faults import commands, evaluation, report, training
 
 FAMILIES = {  # recipes that together use every file of recipes/
     "safeguard_lora": "safeguard_lora",  # started first, because it takes longest
@@ -35,6 +36,7 @@ FAMILIES = {  # recipes that together use every file of recipes/
     "restore": "restore, restore_gate",
 }
 EVALUATION = "evaluation"
+COMMANDS = "commands"  # run, export and the endpoint
 PAGE = Path(__file__).resolve().parents[2] / "docs/lab/fault-injection.md"
 
 
@@ -44,9 +46,10 @@ def parse_options(arguments: Sequence[str] | None) -> argparse.Namespace:
         description=__doc__,
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
-    known = list(dict.fromkeys([*training.FAULTS, *evaluation.FAULTS]))
+    known = list(dict.fromkeys([*training.FAULTS, *evaluation.FAULTS, *commands.FAULTS]))
     add = parser.add_argument
-    add("--recipes", nargs="*", default=[*FAMILIES, EVALUATION], help=f"or {EVALUATION}")
+    everything = [*FAMILIES, EVALUATION, COMMANDS]
+    add("--recipes", nargs="*", default=everything, help=f"or {EVALUATION}, {COMMANDS}")
     add("--faults", nargs="*", default=known, choices=known, metavar="FAULT", help=str(known))
     add("--seed", type=int, default=0)
     add("--jobs", type=int, default=cores(), help="parallel recipes, each on about one core")
@@ -62,6 +65,9 @@ def inject_faults(name: str, options: argparse.Namespace) -> dict[str, str]:
     if name == EVALUATION:
         faults = [fault for fault in evaluation.FAULTS if fault in options.faults]
         outcomes = evaluation.break_evaluation(out / name, options.seed, faults)
+    elif name == COMMANDS:
+        faults = [fault for fault in commands.FAULTS if fault in options.faults]
+        outcomes = commands.break_commands(out / name, options.seed, faults)
     else:
         faults = [fault for fault in training.FAULTS if fault in options.faults]
         outcomes = training.break_training(name, out, options.seed, faults)

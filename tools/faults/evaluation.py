@@ -7,14 +7,16 @@ import random
 import shutil
 import signal
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 
 from tools.faults.disk import filled, small_disk
-from tools.faults.processes import Command, workers
+from tools.faults.processes import Command, descendants, workers
 from tools.faults.training import NOTICE_TIME, STATUS, TRIES, check_one_rejected
 
 OPTIONS = ("checkpoint=checkpoints/base", "episodes=8", "suite=quick", "workers=2")
+Words = Sequence[str]
 ROWS = "rows.jsonl"
 DISK = 60  # MB
 TOO_LATE = "not run: the evaluation ended before the fault"
@@ -29,21 +31,23 @@ class Evaluation:
         self.started = 0
         self.arguments = ["mitigate.evaluate", *OPTIONS, f"out={folder}", f"runs={folder}"]
 
-    def start(self, environment: dict[str, str] | None = None) -> Command:
+    def start(
+        self, environment: dict[str, str] | None = None, redirect: str = "", options: Words = ()
+    ) -> Command:
         """Start or resume it."""
         self.started += 1
-        name = f"{self.folder.name}-{self.started}.txt"
-        return Command(self.arguments, self.folder.parent / name, environment)
+        log = self.folder.parent / f"{self.folder.name}-{self.started}.txt"
+        return Command([*self.arguments, *options], log, environment, redirect)
 
-    def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
+    def start_and_wait(self, options: Words = (), least: int = 1) -> Command:
         """Start or resume the evaluation, and wait until a random number of rows is written."""
-        command = self.start(environment)
-        count = self.rng.randint(1, 9)
+        command = self.start(options=options)
+        count = self.rng.randint(least, 9)
         command.wait_for(lambda: self.rows().count(b"\n") >= count)
         return command
 
     def rows(self) -> bytes:
-        """Return the path of the row file."""
+        """Return the content of the row file."""
         path = self.folder / ROWS
         return path.read_bytes() if path.is_file() else b""
 
@@ -102,6 +106,111 @@ def cut_row(evaluation: Evaluation) -> str:
     return ""
 
 
+def kill_with_rows(evaluation: Evaluation) -> bytes:
+    """Kill the evaluation when it has some rows, and return them; b"" if it ended before."""
+    command = evaluation.start_and_wait(least=3)
+    if not command.runs():
+        return b""
+    command.process.kill()
+    command.process.wait()
+    return evaluation.rows()
+
+
+def damage_line(evaluation: Evaluation) -> str:
+    """Damage a line in the middle of the rows; an error must name it, and the file must stay."""
+    rows = kill_with_rows(evaluation)
+    if not rows:
+        return TOO_LATE
+    file = evaluation.folder / ROWS
+    damaged = rows.replace(b"\n{", b"\n\0", 1)
+    file.write_bytes(damaged)
+    problem = evaluation.start().message_problem("line 2 is not a JSON object")
+    kept = evaluation.rows() == damaged
+    file.write_bytes(rows)
+    return problem or ("" if kept else "the damaged file was changed")
+
+
+def plant_link(evaluation: Evaluation) -> str:
+    """Put a link in place of the rows; nothing may be written behind it."""
+    rows = kill_with_rows(evaluation)
+    if not rows:
+        return TOO_LATE
+    file = evaluation.folder / ROWS
+    outside = evaluation.folder.with_name(f"{evaluation.folder.name}-outside")
+    os.replace(file, outside)
+    file.symlink_to(outside)
+    problem = evaluation.start().message_problem("must be a regular file, got a symbolic link")
+    kept = outside.read_bytes() == rows
+    os.replace(outside, file)
+    return problem or ("" if kept else "the file behind the link was changed")
+
+
+def remove_folder(evaluation: Evaluation) -> str:
+    """Move the folder away during the evaluation, and back when it has ended."""
+    command = evaluation.start_and_wait()
+    if not command.runs():
+        return TOO_LATE
+    away = evaluation.folder.with_name(f"{evaluation.folder.name}-away")
+    os.replace(evaluation.folder, away)
+    problem = command.message_problem("removed or replaced")
+    if evaluation.folder.exists():
+        return problem or "it created the folder again"
+    os.replace(away, evaluation.folder)
+    return problem
+
+
+def close_stdout(evaluation: Evaluation) -> str:
+    """Run with a closed stdout."""
+    return evaluation.start(redirect=">&-").problem(0)
+
+
+def close_reader(evaluation: Evaluation) -> str:
+    """Let the program that reads the output end after the first line, as ``head`` does."""
+    return evaluation.start(redirect="| head -n 1").problem(0)
+
+
+def print_in_ascii(evaluation: Evaluation) -> str:
+    """Run with an encoding that cannot print all characters."""
+    return evaluation.start({"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}).problem(0)
+
+
+def kill_on_cluster(
+    evaluation: Evaluation, package: str, options: Words, word: bytes, message: str
+) -> str:
+    """Kill the process of a worker on a cluster; a different worker must repeat its jobs.
+
+    Args:
+        evaluation: The evaluation.
+        package: The package that the launcher needs.
+        options: Options of the launcher.
+        word: A part of the command line of the process.
+        message: A part of the line that reports the loss.
+    """
+    if find_spec(package) is None:
+        return f"not run: {package} is not installed"
+    command = evaluation.start_and_wait(options)
+    pids = descendants(command.process.pid, word)
+    if not pids:
+        return TOO_LATE
+    os.kill(evaluation.rng.choice(pids), signal.SIGKILL)
+    problem = command.problem(0)
+    reported = message in command.output()
+    return problem or ("" if reported else TOO_LATE)
+
+
+def kill_ray_worker(evaluation: Evaluation) -> str:
+    """Kill an actor of Ray."""
+    return kill_on_cluster(evaluation, "ray", ["launcher=ray"], b"ray::Worker", "A worker was lost")
+
+
+def kill_slurm_job(evaluation: Evaluation) -> str:
+    """Kill a job that submitit runs on this machine in place of SLURM."""
+    folder = evaluation.folder.with_name("slurm")
+    options = ["launcher=slurm", "launcher.cluster=local", f"launcher.folder={folder}"]
+    options.append("launcher.processes=1")
+    return kill_on_cluster(evaluation, "submitit", options, b"submitit.core._submit", "ended early")
+
+
 def fill_disk(evaluation: Evaluation) -> str:
     """Fill the disk; the evaluation must report this, and finish when there is space again."""
     with small_disk(evaluation.folder, DISK) as mounted:
@@ -132,6 +241,14 @@ FAULTS: dict[str, Callable[[Evaluation], str]] = {
     "last row cut": cut_row,
     "clock jumps": jump_clock,
     "full disk": fill_disk,
+    "folder removed": remove_folder,
+    "damaged line": damage_line,
+    "link instead of a file": plant_link,
+    "closed stdout": close_stdout,
+    "closed reader of stdout": close_reader,
+    "output in ASCII": print_in_ascii,
+    "Ray worker killed": kill_ray_worker,
+    "SLURM job killed": kill_slurm_job,
 }
 
 

@@ -7,6 +7,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from pathlib import Path
 
 from mitigate.core.files import make_folder
@@ -17,10 +18,21 @@ TIMEOUT = 600.0  # seconds after which a command is assumed to hang
 
 
 class Command:
-    """Runs ``python -m arguments``; its output goes to the file ``log``."""
+    """Runs ``python -m arguments``; its output goes to the file ``log``.
+
+    Args:
+        arguments: The module and its arguments.
+        log: The file.
+        environment: Additional environment variables.
+        redirect: Redirection of a shell, such as ``>&-``, or a pipe, such as ``| head -n 1``.
+    """
 
     def __init__(
-        self, arguments: list[str], log: Path, environment: Mapping[str, str] | None = None
+        self,
+        arguments: list[str],
+        log: Path,
+        environment: Mapping[str, str] | None = None,
+        redirect: str = "",
     ) -> None:
         make_folder(log.parent)
         self.log = log
@@ -30,9 +42,13 @@ class Command:
         variables["PYTHONPATH"] = os.pathsep.join(
             path for path in (variables.get("PYTHONPATH"), str(ROOT)) if path
         )
+        words = [sys.executable, "-m", *arguments]
+        if redirect:
+            run = "" if redirect.startswith("|") else "exec "
+            words = ["sh", "-c", f'{run}"$0" "$@" {redirect}', *words]
         with open_output(log, "w", encoding="utf-8") as out:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", *arguments],
+                words,
                 cwd=ROOT,
                 env=variables,
                 stdout=out,
@@ -63,6 +79,13 @@ class Command:
             time.sleep(0.01)
         return bool(condition())
 
+    def message_problem(self, *words: str) -> str:
+        """Wait for the end; describe the problem unless the command reports an error with one of
+        the ``words`` and exits with 1."""
+        problem = self.problem(1)
+        named = any(word in self.output() for word in words)
+        return problem or ("" if named else f"no message: {self.last_lines()}")
+
     def status(self) -> int | None:
         """Wait and return the exit status, or None if the command hung and was killed."""
         try:
@@ -87,10 +110,22 @@ def workers(command: Command) -> list[int]:
     return [worker for child in children(command.process.pid) for worker in children(child)]
 
 
+def descendants(pid: int, word: bytes) -> list[int]:
+    """Return the processes that ``pid`` started, directly or not, whose command contains
+    ``word``."""
+    matches = []
+    for child in children(pid):
+        with suppress(OSError):
+            if word in Path(f"/proc/{child}/cmdline").read_bytes():
+                matches.append(child)
+        matches += descendants(child, word)
+    return matches
+
+
 def children(pid: int) -> list[int]:
-    """Return the processes that ``pid`` started."""
-    try:
-        text = Path(f"/proc/{pid}/task/{pid}/children").read_text(encoding="utf-8")
-    except OSError:
-        return []
-    return [int(word) for word in text.split()]
+    """Return the processes that the threads of ``pid`` started."""
+    pids = []
+    for file in Path(f"/proc/{pid}/task").glob("*/children"):
+        with suppress(OSError):
+            pids += [int(word) for word in file.read_text(encoding="utf-8").split()]
+    return pids

@@ -64,12 +64,12 @@ class Training:
         self.arguments += [f"folder={folder}", f"runs={folder.parent}"]
         self.started = 0
 
-    def start(self, environment: dict[str, str] | None = None) -> Command:
+    def start(self, environment: dict[str, str] | None = None, redirect: str = "") -> Command:
         """Start or resume the training run."""
         self.started += 1
         log = self.folder.parent / f"log-{self.started}.txt"
         self.checkpoints = newest_checkpoints(self.folder)
-        return Command(self.arguments, log, environment)
+        return Command(self.arguments, log, environment, redirect)
 
     def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
         """Start or resume the training run, and wait for a random time in it."""
@@ -260,6 +260,47 @@ def fill_disk(training: Training) -> str:
         return problem or training.check_resumed(command) or ("" if named else command.last_lines())
 
 
+def remove_folder(training: Training) -> str:
+    """Move the folder away during training, and back when the command has ended."""
+    command = training.start_and_wait()
+    away = training.folder.with_name("away")
+    os.replace(training.folder, away)
+    problem = command.message_problem("removed or replaced")
+    if training.folder.exists():
+        return problem or "it created the folder again"
+    os.replace(away, training.folder)
+    return problem
+
+
+def plant_link(training: Training) -> str:
+    """Put a link in place of a log of TensorBoard; nothing may be written behind it."""
+    training.send_signal(training.start_and_wait(), signal.SIGTERM)
+    files = sorted(training.folder.glob("*/events.out.tfevents.*"))
+    if not files:
+        raise TooLate
+    file, outside = files[-1], training.folder.with_name("outside")
+    os.replace(file, outside)
+    file.symlink_to(outside)
+    before = outside.read_bytes()
+    problem = training.start().message_problem("must be a regular file, got a symbolic link")
+    kept = outside.read_bytes() == before
+    os.replace(outside, file)
+    return problem or ("" if kept else "the file behind the link was changed")
+
+
+def close_stdout(training: Training) -> str:
+    """Train with a closed stdout until a checkpoint exists, and stop."""
+    command = training.start(redirect=">&-")
+    command.wait_for(lambda: newest_checkpoints(training.folder) != training.checkpoints)
+    return training.send_signal(command, signal.SIGTERM)
+
+
+def print_in_ascii(training: Training) -> str:
+    """Train with an encoding that cannot print all characters, and stop."""
+    environment = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
+    return training.send_signal(training.start_and_wait(environment), signal.SIGTERM)
+
+
 FAULTS: dict[str, Callable[[Training], str]] = {
     "SIGKILL": lambda training: interrupt(training, signal.SIGKILL),
     "SIGTERM": lambda training: interrupt(training, signal.SIGTERM),
@@ -273,6 +314,10 @@ FAULTS: dict[str, Callable[[Training], str]] = {
     "worker stands still": pause_workers,
     "clock jumps": jump_clock,
     "full disk": fill_disk,
+    "folder removed": remove_folder,
+    "link instead of a file": plant_link,
+    "closed stdout": close_stdout,
+    "output in ASCII": print_in_ascii,
 }
 SAME = "ends the same"
 
