@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
 import torch
-from safetensors import SafetensorError
+from safetensors import SafetensorError, safe_open
 from safetensors.torch import load_file, save_file
 from torch import nn
 
@@ -208,7 +208,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
-    problem = folders.problem(file)
+    problem = _header_problem(file) or folders.problem(file)
     if not problem:
         try:
             tensors = load_file(file)
@@ -222,6 +222,18 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
         f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
         f"{problem}. {_again(file)}"
     )
+
+
+def _header_problem(file: Path) -> str:
+    """Describe a header that does not fit the size of the file; the tensors are not read.
+
+    A sparse file of terabytes would otherwise be read for hours to compute its sha256.
+    """
+    try:
+        with safe_open(file, "pt"):
+            return ""
+    except (SafetensorError, OSError) as error:
+        return f"cannot be read: {short(str(error), 200)}"
 
 
 def _again(file: Path) -> str:

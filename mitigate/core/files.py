@@ -146,7 +146,7 @@ def read_bounded(path: Path | str, most: int) -> bytes:
     """Return the content of an untrusted file.
 
     Raises:
-        ValueError: The file has more than ``most`` bytes.
+        ValueError: "it has more than ... bytes"; the caller names the file.
         UnsafePathError: The path is a FIFO, a socket or a device.
     """
     output.is_regular(path)
@@ -154,7 +154,7 @@ def read_bounded(path: Path | str, most: int) -> bytes:
         # read() allocates memory for its argument, so the argument is limited to the size
         content = file.read(min(most, os.fstat(file.fileno()).st_size) + 1)
     if len(content) > most:
-        raise ValueError(f"{path} must have at most {most} bytes, so it is damaged.")
+        raise ValueError(f"it has more than {most} bytes")
     return content
 
 

@@ -8,6 +8,7 @@ import os
 import pickle
 import shutil
 import struct
+import time
 import zipfile
 from pathlib import Path
 
@@ -361,3 +362,13 @@ def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypat
     monkeypatch.chdir(ROOT)
     assert not agents.load_hardened(tmp_path / "mine").training
     assert not (tmp_path / "ran").exists()
+
+
+def test_load_rejects_a_huge_sparse_file_without_reading_it(tmp_path):
+    """Issue T2, item 8."""
+    file = checkpoint.save_weights(nn.Linear(2, 2), tmp_path)
+    os.truncate(file, 1 << 40)
+    began = time.monotonic()
+    with pytest.raises(ValueError, match="are cut short or damaged"):
+        checkpoint.load_weights(nn.Linear(2, 2), file)
+    assert time.monotonic() - began < 5
