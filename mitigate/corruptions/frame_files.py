@@ -95,7 +95,8 @@ def corrupt_file(
         return _encode(Image.fromarray(corrupt_frame(_decode(path))), suffix)
     if path.suffix.lower() == ".npy":
         stored = _load(path)
-        metres = stored.astype(np.float32)
+        with np.errstate(over="ignore"):
+            metres = stored.astype(np.float32)
         corrupted = corrupt_frame(metres)
         with io.BytesIO() as file:
             merged = np.where(_same(corrupted, metres), stored, corrupted).astype(stored.dtype)
@@ -154,7 +155,8 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         with suppress(LeftOutError):  # damaged files are reported later, when they are read
             if modality(path) == DEPTH:
                 stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
-                readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
+                with np.errstate(over="ignore"):  # float64 values beyond float32 become infinite
+                    readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
                 valid = np.isfinite(readings) & (readings > 0) & (readings != NO_READING)
                 samples[suffix].append(readings[valid])
     counts, metres = (np.concatenate(parts or [np.zeros(0)]) for parts in samples.values())
@@ -302,23 +304,27 @@ def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
         folder = Path(error.filename).relative_to(source).as_posix()
         plan.left_out[f"{folder}/"] = f"cannot be read: {error.strerror}"
 
+    real_paths = {Path(): source.resolve()}  # real path of each folder, by its relative path
     for folder, folders, files in os.walk(source, onerror=note_unreadable, followlinks=True):
         relative = Path(folder).relative_to(source)
         for name in sorted((name for name in files if name[0] != "."), key=natural):
             yield relative / name
-        visible = sorted((name for name in folders if name[0] != "."), key=natural)
-        reasons = {name: _skip_reason(source, relative / name, out) for name in visible}
-        plan.left_out |= {f"{(relative / n).as_posix()}/": why for n, why in reasons.items() if why}
-        folders[:] = [name for name in visible if not reasons[name]]
-
-
-def _skip_reason(source: Path, folder: Path, out: Path | None) -> str:
-    """Return the reason why a folder must be skipped, or an empty text."""
-    real = (source / folder).resolve()
-    if out in (real, *real.parents):
-        return "is the folder of the results"
-    ancestors = {(source / parent).resolve() for parent in folder.parents}
-    return "links back to a folder that contains it" if real in ancestors else ""
+        folders[:] = sorted((name for name in folders if name[0] != "."), key=natural)
+        for name in list(folders):
+            inner = relative / name
+            real = real_paths[relative] / name
+            is_link = os.path.islink(os.path.join(folder, name))
+            if is_link:  # resolving every folder takes cubic time in the number of levels
+                real = real.resolve()
+            real_paths[inner] = real
+            reason = ""
+            if real == out or (is_link and out in real.parents):
+                reason = "is the folder of the results"
+            elif real in {real_paths[parent] for parent in inner.parents}:
+                reason = "links back to a folder that contains it"
+            if reason:
+                folders.remove(name)
+                plan.left_out[f"{inner.as_posix()}/"] = reason
 
 
 def natural(name: str) -> tuple:

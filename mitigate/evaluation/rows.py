@@ -239,8 +239,9 @@ def files(path: Path | str) -> list[Path]:
     path = Path(path)
     if not path.is_dir():
         return [path]
-    candidates = (p for p in path.rglob("*") if p.name.endswith(SUFFIXES) and not p.is_dir())
-    row_files = [p for p in candidates if _holds_rows(p)]
+    # rglob() is recursive, so it fails for a thousand levels
+    names = (Path(folder, name) for folder, _, files in os.walk(path) for name in files)
+    row_files = [p for p in names if p.name.endswith(SUFFIXES) and _holds_rows(p)]
     if not row_files:
         raise FileNotFoundError(
             f"No result rows under {path}: no {' or '.join(SUFFIXES)} file there begins with a "

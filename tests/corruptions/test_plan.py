@@ -2,6 +2,7 @@
 
 import os
 import shutil
+import time
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from PIL import Image
 from mitigate.core.output import FolderLostError
 from mitigate.corruptions import folders
 from mitigate.corruptions.folders import Settings, run
+from mitigate.corruptions.frame_files import make_plan
 
 
 @pytest.fixture
@@ -80,3 +82,18 @@ def test_run_rejects_a_link_among_its_results(walk):
     ):
         run(walk / "in", walk / "out", Settings("spatter", 0.6))
     assert (walk / "elsewhere/0.png").read_bytes() == saved
+
+
+def test_plan_of_nested_folders_takes_no_cubic_time(tmp_path):
+    """Issue T2, item 9."""
+    (tmp_path / "in").mkdir()
+    here = os.open(tmp_path / "in", os.O_RDONLY)
+    for _ in range(500):
+        os.mkdir("d", dir_fd=here)
+        inner = os.open("d", os.O_RDONLY, dir_fd=here)
+        os.close(here)
+        here = inner
+    os.close(here)
+    began = time.monotonic()
+    assert make_plan(tmp_path / "in", None, ["rgb"], "folder").frames == []
+    assert time.monotonic() - began < 10

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import copy
 import json
+import os
 import shutil
 from bisect import bisect_left
 from collections import Counter
@@ -202,7 +203,8 @@ def _frames_per_file(work: Copy) -> Counter[str]:
 
 def _files(source: Path) -> Iterator[str]:
     """Yield the other files of a dataset by relative path, without hidden ones and ``INFO``."""
-    for path in sorted(source.rglob("*")):
+    listed = (Path(at, name) for at, inner, files in os.walk(source) for name in (*inner, *files))
+    for path in sorted(listed):
         relative = path.relative_to(source)
         is_hidden = any(part.startswith(".") for part in relative.parts)
         if not is_hidden and is_regular(path) and relative.as_posix() not in (INFO, SUMMARY):

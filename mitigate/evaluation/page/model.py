@@ -20,6 +20,7 @@ from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
 BASELINES = 12  # number of first columns that can be the baseline (heuristic)
+LEAST_VALUES = 10  # values of a column that take as long as its fixed cost (heuristic)
 DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
@@ -67,9 +68,10 @@ def section_data(section: Section) -> dict[str, Any]:
 
 
 def number_count(section: Section) -> int:
-    """Return how many cells and differences of cells the page has for a section."""
+    """Return about how many values and differences of values the page has for a section."""
     columns = len(section.columns)
-    return columns * (1 + min(columns, BASELINES)) * (1 + len(section.corruptions))
+    values = len(_measures(section)) + len(section.corruptions)
+    return columns * (1 + min(columns, BASELINES)) * max(values, LEAST_VALUES)
 
 
 def numbers(estimate: Estimate | None) -> Numbers:

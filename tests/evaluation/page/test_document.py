@@ -296,6 +296,9 @@ def test_report_rejects_rows_that_no_browser_can_show(monkeypatch, tmp_path):
     with pytest.raises(ValueError, match="The page would hold .* numbers, more than 50,000"):
         report(many + [{**r, "name": f"n{i}"} for i in range(6) for r in more])
     assert time.monotonic() - began < 60
+    agents = [row(0, 1.0, name=f"n{i}", agent=f"a{i}") for i in range(3000)]
+    with pytest.raises(ValueError, match="The page would hold .* numbers, more than 50,000"):
+        report(agents)
     monkeypatch.setattr(document, "LARGEST_PAGE", 1000)
     with pytest.raises(ValueError, match="more than 1,000, which a browser cannot show"):
         report(column(8, {"spatter": 2}))
