@@ -177,11 +177,12 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
     overrides = [word for word in overrides if re.match(r"[^-].*=|~", word)]
     try:
         cfg = _compose(primary, [*folder_words, *overrides], with_hydra=True)
-        swept = OmegaConf.to_container(cfg.hydra.sweeper).get("params") or {}
+        params = OmegaConf.select(cfg, "hydra.sweeper.params") or {}
+        swept = [f"{key}={value}" for key, value in params.items()]
         choice = OmegaConf.select(cfg, "safeguard")
     except (HydraException, OmegaConfBaseException):  # the program itself explains this error
         return
-    check_arguments(f"{key}={value}" for key, value in swept.items())
+    check_arguments(swept)
     if choice is not None:
         check_choice(choice)
 
