@@ -60,7 +60,7 @@ class Commands:
         file, out = self.folder / f"agent-{self.count}.py", self.folder / f"run-{self.count}"
         write_text(file, EPISODES + program)
         options = ["conditions=[clean]", f"out={out}", "--", sys.executable, str(file)]
-        return self.start("mitigate.run", *options), file, out
+        return self.start("mitigate", "run", *options), file, out
 
 
 def detach_process(commands: Commands) -> str:
@@ -151,7 +151,9 @@ def die_first_address(commands: Commands) -> str:
         ):
             out = commands.folder / f"endpoint-{name}"
             more = [f"out={out}", f"runs={out}"]
-            problem = commands.start("mitigate.evaluate", *options, *more, **environment).problem(0)
+            problem = commands.start(
+                "mitigate", "evaluate", *options, *more, **environment
+            ).problem(0)
             if problem:
                 return problem
             if not requests:
@@ -166,8 +168,8 @@ def interrupt_export(commands: Commands, number: int, *flags: str) -> str:
     if problem:
         return problem
     folder = make_folder(commands.folder / f"export{number}{''.join(flags)}")
-    words = ["mitigate.export", str(run), "mine", "--out", str(folder), *flags]
-    undisturbed = [*words[:3], "--out", str(folder / "undisturbed"), *flags]
+    words = ["mitigate", "export", str(run), "mine", "--out", str(folder), *flags]
+    undisturbed = [*words[:4], "--out", str(folder / "undisturbed"), *flags]
     return interrupt_and_repeat(commands, number, words, folder / "mine", undisturbed)
 
 
@@ -176,8 +178,8 @@ def interrupt_programs(commands: Commands, number: int) -> str:
     folder = make_folder(commands.folder / f"programs{number}")
     for name in ("harden", "undisturbed"):
         shutil.copytree(ROOT / HARDENED, folder / name)
-    words = ["mitigate.export", str(folder / "harden"), "--programs"]
-    undisturbed = ["mitigate.export", str(folder / "undisturbed"), "--programs"]
+    words = ["mitigate", "export", str(folder / "harden"), "--programs"]
+    undisturbed = ["mitigate", "export", str(folder / "undisturbed"), "--programs"]
     return interrupt_and_repeat(commands, number, words, folder / "harden", undisturbed)
 
 
@@ -213,7 +215,7 @@ def trained(commands: Commands) -> tuple[Path, str]:
         return run, ""
     options = ["recipe=da_per_episode", "debug=smoke", "trainer.steps=1"]
     options += ["evaluation.enabled=false", f"folder={run}", f"runs={commands.folder}"]
-    return run, commands.start("mitigate.train", *options).problem(0)
+    return run, commands.start("mitigate", "train", *options).problem(0)
 
 
 def interrupt_onnx(commands: Commands) -> str:
