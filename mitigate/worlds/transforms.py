@@ -207,7 +207,7 @@ class CorruptObservation(Transform):
             [key for _, key in drawn],
             headings=None if pose is None else pose.reshape(-1, 3)[:, 2].tolist(),
             sensor=self.sensor,
-            normalised=self._normalised,
+            normalised=bool(self._normalised),
             backend="torch",
         )
         for name, views in corrupted.items():
