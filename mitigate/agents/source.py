@@ -107,7 +107,7 @@ def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
 
 
 def methods(kind: type) -> dict[str, types.FunctionType]:
-    """Return the functions that ``kind`` defines, without decorators, by name."""
+    """Return the functions that ``kind`` defines, by name, with their decorators removed."""
     output = {}
     for name, member in vars(kind).items():
         function = read(member, "__func__", "fget", "__wrapped__", default=member)

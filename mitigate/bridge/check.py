@@ -214,8 +214,8 @@ def draw_sheet(
 ) -> Figure:
     """Draw a row for the clean frames and one per corruption, with the largest group of cameras.
 
-    An intermittent corruption is drawn at the first call in which it acts. Faults that show
-    earlier frames are not drawn.
+    An intermittent corruption is drawn at the first call in which it acts. The pictures omit
+    faults that repeat earlier frames.
 
     Args:
         rig: The cameras.
@@ -259,7 +259,7 @@ def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def _draw_row(axes: Sequence[Axes], names: Sequence[str], group: Group, views: np.ndarray) -> None:
-    """Draw the names with the cameras below them, and the frames to their right."""
+    """Draw each name with its cameras below it, and the frames to the right of both."""
     for axis in axes:
         axis.axis("off")
     drawn = list(zip(group.cameras, group.views, strict=True))[:MAX_DRAWN]

@@ -44,7 +44,7 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    # plain text, which check_choice checks, because Hydra would print an invalid value
+    # a text that check_choice checks, because an error of Hydra would print the value
     safeguard: Any = "none"
     restore: str | None = None
     tokenizer: str | None = None

@@ -141,8 +141,8 @@ def delete_drafts(folder: Path) -> None:
     """Delete unfinished recordings of ended processes in the recording ``folder`` of a condition.
 
     Raises:
-        UnsafePathError: ``folder``, a scene or an episode in it is a link to a folder, a FIFO or a
-            device; nothing was deleted.
+        UnsafePathError: ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO or
+            a device; nothing was deleted.
     """
     with output.output_folder(folder.parent):
         output.check(folder / RECORDING)

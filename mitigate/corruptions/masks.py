@@ -49,8 +49,9 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Return the opacity mask int16 [H, 3 W], which is share [H, W] (>= 0) times strength and
-    tint.
+    """Return the opacity mask int16 [H, 3 W]: ``share`` [H, W] times ``strength`` and ``tint``.
+
+    ``share`` is at least 0.
     """
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
@@ -151,7 +152,7 @@ def flare_centres(
     The direction of the light is fixed in the world. It is sampled in the image of a camera with a
     random yaw, at column U(0.1, 0.9) W and row U(0, 0.5) H. View k faces the direction ``heading``
     - 30 k degrees without pitch (``heading`` in rad, counter-clockwise), for any number of views.
-    If the heading is unknown, the camera with the random yaw is view 0.
+    If the heading is unknown, the random yaw is that of view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width

@@ -34,7 +34,8 @@ class DatasetFrames:
         sensor: "rgb" or "depth".
         size: side in pixels to which frames are resized; None: unchanged.
         held_out: fraction of the scenes that are held out.
-        block: frames per block of a single episode, or fewer, so that five blocks are unseen.
+        block: frames per block of a single episode; blocks are smaller if needed, so that five of
+            them can be held out.
         episodes: numbers of the episodes to read; None: all.
         tolerance: maximum seconds between a row and its video frame.
 

@@ -30,7 +30,7 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-# number of unseen blocks of a single folder, for an interval over scenes (heuristic)
+# number of held-out blocks of a single folder; they replace scenes in intervals (heuristic)
 FEWEST_UNSEEN = 5
 NEAR = 0.05  # minimum fraction of depth that must be closer than ``FARTHEST`` metres (heuristic)
 NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth is farther (heuristic)
@@ -147,7 +147,7 @@ class FolderFrames:
         held_out: fraction of the scenes that are unseen. If the paths of some scenes begin with
             "val" or "test", exactly these scenes are unseen.
         block: maximum number of frames per block of a single folder; blocks are smaller if needed,
-            so that five blocks are unseen.
+            so that five of them can be held out.
         unit: metres per count of a 16-bit PNG.
 
     Raises:

@@ -116,7 +116,8 @@ def benchmark(
         out: folder of the rows; None means a folder in runs/benchmark.
 
     Returns:
-        The leaderboard entry, or for a world with score "return" the returns with their retention.
+        The leaderboard entry. If the score of the world is "return": the returns, and the fraction
+        of the clean return that is kept.
 
     Raises:
         ValueError: The agent, an option or a text of the entry is invalid, or ``out`` contains rows

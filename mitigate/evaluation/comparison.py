@@ -207,7 +207,10 @@ class _Scores:
         return [replace(line, digits=digits) for line in lines]
 
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
-        """Return one line; ``most`` is the value of a success (for Wilson's interval), or 0."""
+        """Return one line.
+
+        ``most`` is the value of a success in a measure with Wilson's interval, otherwise 0.
+        """
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
         changes = {agent: mean(values[agent] - values[first]) for agent in others}

@@ -107,7 +107,8 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
     """Return the severities to measure next, given SR by measured severity (0, 1 and others).
 
     For each loss, this is the middle of the two measured severities between which the fit crosses.
-    The list is empty when these are at most :data:`WIDTH` apart or nothing crosses.
+    The list is empty if the bounds are at most :data:`WIDTH` apart, or if no curve crosses the
+    level.
     """
     severities = sorted(rates)
     fit = decreasing([rates[at] for at in severities])
@@ -221,7 +222,8 @@ class Scores:
 
     @property
     def groups(self) -> list[tuple[str, ...]]:
-        """Each corruption, followed by all corruptions that every column has if these are several.
+        """Each corruption by itself. If all columns share several corruptions, these follow
+        together.
 
         The scores of the last group are means over its corruptions.
         """

@@ -46,10 +46,10 @@ PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this
 
 
 def kind(corruption: str) -> str:
-    """Return the table of a corruption, one of :data:`KINDS`.
+    """Return the table that contains a corruption; each table is one of :data:`KINDS`.
 
-    Corruptions of other packages belong to the table of the suite. A pair with ``intermittent``
-    is a temporal fault.
+    Corruptions that other packages define are in the table of the suite. A pair with
+    ``intermittent`` is a temporal fault.
     """
     if AND in corruption and parts(corruption)[0] != GATE:
         return PAIRS
@@ -85,8 +85,8 @@ def _column(row: Row) -> tuple:
 def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]:
     """Return the corruptions that a complete PRS over ``block`` needs, given those ``measured``.
 
-    :data:`PROMPT_ONLY` is needed only if it was measured, and a half of the unseen corruptions only
-    if at least one of them was measured.
+    :data:`PROMPT_ONLY` is needed only if it was measured. Each half of the unseen corruptions
+    (validation, test) is needed only if at least one corruption of that half was measured.
     """
     every = tuple(n for n in BLOCKS.get(block, measured) if n in measured or n != PROMPT_ONLY)
     halves = {UNSEEN[name].half for name in measured if name in UNSEEN}
@@ -136,7 +136,8 @@ def _unique_digits(agents: Iterable[str]) -> int:
     return digits
 
 
-# minimum fraction of the clean episodes that a corruption in a PRS must have (heuristic)
+# a corruption counts in a PRS if at least this fraction of the clean episodes was measured under
+# it (heuristic)
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
 STEPS = "steps"  # the cells also contain this value for the HTML page

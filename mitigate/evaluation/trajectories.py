@@ -76,9 +76,9 @@ def draw_trajectories(
     """Run an episode and write a PNG with the start panorama, plan, reference path and
     trajectories.
 
-    The first agent runs the episode clean and corrupted; the others run it only corrupted. With the
-    ``seed`` of an evaluation, the trajectories belong to its rows. If the world has a method
-    ``draw(axes)``, it draws the plan.
+    The first agent runs the episode clean and corrupted; the others run it only corrupted. If
+    ``seed`` is the seed of an evaluation, these are the trajectories of its rows. If the
+    world has a method ``draw(axes)``, it draws the plan.
 
     Args:
         agents: agents by their names in the legend.

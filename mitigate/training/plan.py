@@ -193,7 +193,7 @@ def _contains(node: Any, target: str) -> bool:
 
 
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
-    """Set stages that have nothing to train in ``agent`` to None, and print them.
+    """Replace each stage that trains nothing in ``agent`` by None, and print its name.
 
     Raises:
         ValueError: No stage is left. An agent without one of its sensors may have no stage left; it

@@ -1,7 +1,8 @@
 """Train one agent with several processes: ``torchrun --nproc-per-node 2 -m mitigate.train``.
 
-Each rank computes a part of a step's pieces and the gradients from it. Gradients are averaged, so
-all ranks take the same step. With one rank, which is the usual case, this module adds no cost.
+Each rank processes some of the pieces of a step and computes their gradients. Gradients are
+averaged, so all ranks take the same step. With one rank, which is the usual case, this module adds
+no cost.
 """
 
 from __future__ import annotations

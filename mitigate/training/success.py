@@ -103,9 +103,7 @@ def measure(
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError if a success-distributed schedule is used in a recipe that measures no
-    success.
-    """
+    """Raise ValueError for a schedule that samples by success, in a recipe that measures none."""
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "

@@ -187,8 +187,8 @@ def _changed(
 ) -> Iterator[Episode]:
     """Yield the episodes with their instructions corrupted, one at a time.
 
-    With ``every``, unchanged instructions also get tokens from ``words``, because its vocabulary
-    differs from the vocabulary of the file.
+    With ``every``, unchanged instructions also get tokens from ``words``, because the vocabulary of
+    ``words`` differs from that of the file.
     """
     for episode in episodes:
         counts.episodes += 1

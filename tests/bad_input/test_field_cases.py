@@ -236,7 +236,7 @@ def test_keep_list_hash_reads_a_bounded_part(tmp_path):
     note = tmp_path / LIST_HASH.format(split="test")
     with open(note, "wb") as file:
         file.truncate(8 << 30)
-    with pytest.raises(ValueError, match="must hold a sha256"):
+    with pytest.raises(ValueError, match="must begin with a sha256"):
         keep_list_hash(tmp_path, "test", str(source))
 
 

@@ -144,7 +144,7 @@ def test_training_of_an_exported_program(tmp_path, pictures, tune):
 @pytest.mark.slow
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
-    # new random weights, which are hardly trained
+    # the weights start random and are trained for a few steps only
     own_value += ["agent.tune=all", "trainer.lr=1e-9"]
     out = train.run(config(tmp_path, pictures, *own_value))
     rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]

@@ -1,4 +1,4 @@
-"""Tests of training on stored features, which do not depend on blind sensors."""
+"""Tests of training on stored features. The features do not change if a sensor is blanked."""
 
 from __future__ import annotations
 

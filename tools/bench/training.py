@@ -92,7 +92,7 @@ class Stage:
     def elsewhere(self) -> float:
         """Return the fraction of a step during which no network computes.
 
-        This is the waiting time without the part that networks take in rollouts.
+        This is the waiting time minus the time of the networks in rollouts.
         """
         total = sum(self.parts.values())
         network = self.parts.get(NETWORK, 0.0) / total if total else 0.0

@@ -40,7 +40,7 @@ class DepthCode:
 
     @classmethod
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
-        """Return the code that the ``info`` of a feature describes.
+        """Return the encoding of depth that the ``info`` of a feature describes.
 
         Raises:
             ValueError: A parameter is missing its meaning; the message begins with ``place``.

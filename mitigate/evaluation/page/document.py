@@ -105,7 +105,7 @@ def report(
         title: heading of the page.
         walks: results of ``walks.walk_again``.
         notes: lines below the tables.
-        most: maximum total number of cell episodes in the page.
+        most: maximum number of episodes on the page, summed over all cells of its tables.
 
     Raises:
         ValueError: There are no rows, or the page would be too large.

@@ -19,8 +19,8 @@ FACTOR = 8  # height and width of the input must be multiples of this many pixel
 
 
 class Encoded(NamedTuple):
-    """Feature maps of three levels, and their mean magnitudes and maxima ``stats`` [n, 14
-    width].
+    """Feature maps of three levels, and ``stats`` [n, 14 * width]: the mean magnitude and the
+    maximum of each map.
     """
 
     fine: Tensor

@@ -144,7 +144,7 @@ def common_words(lines: Sequence[Line]) -> list[str]:
 
 
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
-    """Yield (text, is a block, line, weight) for whole lines, their sentences and their clauses."""
+    """Yield (text, is_block, line, weight) for whole lines, their sentences and their clauses."""
     for line in lines:
         for text in line.text.split("{route}"):
             sentences = sentence_pieces(text)
@@ -158,7 +158,7 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
 
 
 def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
-    """Return the TF-IDF of terms, with rows of length 1; terms that occur once are omitted."""
+    """Return the TF-IDF of terms, with rows of unit norm; terms that occur once are omitted."""
     rows = []
     for terms in term_counts:
         index, value = model.weighted(terms, idf)

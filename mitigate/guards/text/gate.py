@@ -57,8 +57,9 @@ def is_too_long(heard: str, rewrite: str) -> bool:
 
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
-    """Return the reason why ``said`` must not replace ``heard``, or ""; with ``last``, a stop may
-    be added.
+    """Return the reason why ``said`` must not replace ``heard``, or "" if it may.
+
+    If ``last`` is true, ``said`` may add a stop.
     """
     if rewrite is None:
         return "no answer in time"

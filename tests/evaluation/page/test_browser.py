@@ -25,8 +25,8 @@ def page(tmp_path_factory):
 
 
 def made_rows() -> list[dict]:
-    """Return rows in which base succeeds in 8 of 10 clean episodes and 2 under spatter, hard in 6
-    and 6."""
+    """Return rows in which ``base`` succeeds in 8 of 10 clean episodes and in 2 of 10 under
+    spatter, and ``hard`` in 6 of 10 in both."""
     rows = column(8, {"spatter": 2, "gaussian_noise": 7}, steps=41)
     return rows + column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
 

@@ -26,7 +26,7 @@ ATTACKS = [
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory):
-    """Write a few lines of every text collection, and a mechanism that no other line resembles."""
+    """Write a few lines of every text collection, and one attack that resembles no other line."""
     folder = tmp_path_factory.mktemp("data")
     source = ROOT / "tools/safeguard/data"
     for part in ("banks", "styles"):

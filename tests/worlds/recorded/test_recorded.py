@@ -91,7 +91,7 @@ def test_load_reads_a_bag_like_a_folder(folder, tmp_path, form):
 
 
 def bag_of(path: Path, headers: Sequence[int]) -> Path:
-    """Write a ROS 1 bag with one step per header time, and receipt times from second 1000."""
+    """Write a ROS 1 bag with one step per header time; the receipt times start at 1000 s."""
     store = get_typestore(Stores.ROS1_NOETIC)
     connections = {}
     with Writer(path) as writer:

@@ -208,7 +208,10 @@ def _told(clause: Any) -> str:
 
 
 def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
-    """Assign to each styled sentence its plain command (None if it has none), or return None."""
+    """Map each styled sentence to its plain command (None if it has none).
+
+    Return None if the sentences cannot be matched.
+    """
     found: list[tuple[str, int | None]] = []
     at = 0
     for sentence in source:
