@@ -59,12 +59,12 @@ def kept_bytes(network: nn.Module, prompt: int, answers: int, length: int) -> in
         length: number of tokens of the longest answer.
     """
     weights = {parameter.untyped_storage()._cdata for parameter in network.parameters()}
-    kept: dict[int, torch.UntypedStorage] = {}
+    storages: dict[int, torch.UntypedStorage] = {}
 
     def count(tensor: torch.Tensor) -> torch.Tensor:
         storage = tensor.untyped_storage()
         if storage._cdata not in weights:
-            kept[storage._cdata] = storage  # it stays alive, so that no later one has its key
+            storages[storage._cdata] = storage  # it stays alive, so that no later one has its key
         return tensor
 
     ids = torch.zeros(1, prompt, dtype=torch.long, device="meta")
@@ -72,7 +72,7 @@ def kept_bytes(network: nn.Module, prompt: int, answers: int, length: int) -> in
     mask = torch.ones(answers, length, dtype=torch.bool, device="meta")
     with torch.autograd.graph.saved_tensors_hooks(count, lambda tensor: tensor):
         likelihoods(network, {"input_ids": ids}, texts, mask)
-    return sum(storage.nbytes() for storage in kept.values())
+    return sum(storage.nbytes() for storage in storages.values())
 
 
 def estimate(name: str, precision: str, prompt: int, rank: int = 16) -> dict[str, float]:

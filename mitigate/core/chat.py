@@ -135,7 +135,7 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
 
     def ask() -> None:
         try:
-            answers.put(_asked(url, body, headers, seconds, most))
+            answers.put(_exchange(url, body, headers, seconds, most))
         except Exception as error:
             answers.put(error)
 
@@ -149,7 +149,7 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     return answer
 
 
-def _asked(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
+def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
     parts = urlsplit(url)
     proxy = urllib.request.getproxies().get(parts.scheme)
     direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")

@@ -125,9 +125,9 @@ def damage_line(evaluation: Evaluation) -> str:
     damaged = rows.replace(b"\n{", b"\n\0", 1)
     file.write_bytes(damaged)
     problem = evaluation.start().message_problem("line 2 is not a JSON object")
-    kept = evaluation.rows() == damaged
+    unchanged = evaluation.rows() == damaged
     file.write_bytes(rows)
-    return problem or ("" if kept else "the damaged file was changed")
+    return problem or ("" if unchanged else "the damaged file was changed")
 
 
 def plant_link(evaluation: Evaluation) -> str:
@@ -140,9 +140,9 @@ def plant_link(evaluation: Evaluation) -> str:
     os.replace(file, outside)
     file.symlink_to(outside)
     problem = evaluation.start().message_problem("must be a regular file, got a symbolic link")
-    kept = outside.read_bytes() == rows
+    unchanged = outside.read_bytes() == rows
     os.replace(outside, file)
-    return problem or ("" if kept else "the file behind the link was changed")
+    return problem or ("" if unchanged else "the file behind the link was changed")
 
 
 def remove_folder(evaluation: Evaluation) -> str:

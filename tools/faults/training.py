@@ -283,9 +283,9 @@ def plant_link(training: Training) -> str:
     file.symlink_to(outside)
     before = outside.read_bytes()
     problem = training.start().message_problem("must be a regular file, got a symbolic link")
-    kept = outside.read_bytes() == before
+    unchanged = outside.read_bytes() == before
     os.replace(outside, file)
-    return problem or ("" if kept else "the file behind the link was changed")
+    return problem or ("" if unchanged else "the file behind the link was changed")
 
 
 def close_stdout(training: Training) -> str:

@@ -123,10 +123,10 @@ class AnsweringAgent(Agent):
 
         An episode whose last answer is not finished reads no observation.
         """
-        asked = [i for i, memory in enumerate(memories) if not memory.pending]
-        for i in asked:
+        deciding = [i for i, memory in enumerate(memories) if not memory.pending]
+        for i in deciding:
             memories[i].frames.append(checked.frame(observations[i], RGB, 1).copy())
-        for i, answer in zip(asked, self.ask([memories[i] for i in asked]), strict=True):
+        for i, answer in zip(deciding, self.ask([memories[i] for i in deciding]), strict=True):
             memories[i].pending = [answer.action] * answer.repeats
         return [memory.pending.pop() for memory in memories]
 

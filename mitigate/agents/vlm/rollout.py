@@ -89,13 +89,13 @@ def run_episode(
         memory.frames.append(checked.frame(observation, RGB, 1).copy())
         if clean:
             clean_frames.append(checked.frame(observation.clean, RGB, 1).copy())
-        wanted = int(expert.action())
-        if wanted not in longest:
+        target = int(expert.action())
+        if target not in longest:
             raise ValueError(
-                f"Episode {episode.episode_id}: the expert takes the action {wanted}, but the "
+                f"Episode {episode.episode_id}: the expert takes the action {target}, but the "
                 f"answers of a vision-language agent are the actions {sorted(longest)}."
             )
-        answer = longest[wanted]
+        answer = longest[target]
         expert_decides = rng.random() < expert_share
         if not expert_decides:
             sampled = answers[sample(chances(memory), rng)]
@@ -103,14 +103,14 @@ def run_episode(
             answer = answer if expert_decides else sampled
         agreed = 0
         for count in range(answer.repeats):
-            current = int(expert.action()) if count else wanted
-            if expert_decides and current != wanted:
+            current = int(expert.action()) if count else target
+            if expert_decides and current != target:
                 break
-            agreed += agreed == count and current == wanted == answer.action
+            agreed += agreed == count and current == target == answer.action
             observation = world.step(answer.action)
             if world.done:
                 break
-        targets.append(answer_for(wanted, max(agreed, 1), answers))
+        targets.append(answer_for(target, max(agreed, 1), answers))
     return targets, clean_frames
 
 

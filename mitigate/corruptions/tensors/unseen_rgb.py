@@ -152,9 +152,9 @@ def compression(views: Tensor, rows: Rows) -> Tensor:
     cells = (matrix @ blocks @ matrix.T).unflatten(0, (batch, count))
     zones = [codec.dead_zones(severity, side) for severity in rows.severities]
     least = on_device(np.stack(zones), views, 4)[:, None]
-    kept = torch.where(cells.abs() >= least, cells, 0.0)
-    kept[..., 0, 0] = cells[..., 0, 0]
-    decoded = (matrix.T @ kept @ matrix).transpose(4, 5).flatten(5, 6).flatten(3, 4)
+    strong = torch.where(cells.abs() >= least, cells, 0.0)
+    strong[..., 0, 0] = cells[..., 0, 0]
+    decoded = (matrix.T @ strong @ matrix).transpose(4, 5).flatten(5, 6).flatten(3, 4)
     decoded = decoded[..., :height, :width].permute(0, 1, 3, 4, 2) @ colours
     return grey_levels(decoded.clamp(0.0, 255.0))
 
