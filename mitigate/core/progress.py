@@ -111,9 +111,11 @@ class Progress:
     def _pace(self) -> float | None:
         """Return the mean seconds per unit, or None while it is unknown.
 
-        The first units are not counted, because they also compile code and open files.
+        The first units are not counted, because they also compile code and open files. After them,
+        1 % of the units must be done, because each worker compiles.
         """
-        if self._first is None or self.done <= self._first[0]:
+        least = max(1, (self.total - self.start) // 100)
+        if self._first is None or self.done - self._first[0] < least:
             return None
         count, since = self._first
         return max(time.monotonic() - since, 1e-9) / (self.done - count)

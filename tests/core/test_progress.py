@@ -55,10 +55,13 @@ def test_line_reports_pace_time_left_and_latest_note(monkeypatch):
     bar.advance()
     assert bar.line() == "perception_rgb: step 101/700, 1 min 00 s so far"
     assert bar.left() == float("inf")
+    now[0] += 30  # each worker compiles
+    bar.advance(5)
+    assert bar.line() == "perception_rgb: step 106/700, 1 min 30 s so far"
     now[0] += 10
-    bar.advance(20, note="loss 0.31")
-    assert bar.line() == "perception_rgb: step 121/700, 2 steps/s, 4 min 50 s left, loss 0.31"
-    now[0] += 190
+    bar.advance(15, note="loss 0.31")
+    assert bar.line() == "perception_rgb: step 121/700, 2 s per step, 19 min 18 s left, loss 0.31"
+    now[0] += 160
     bar.advance(0, note="loss 0.3")
     assert bar.line() == "perception_rgb: step 121/700, 10 s per step, 1 h 36 min left, loss 0.3"
     bar.unit = "episode"
