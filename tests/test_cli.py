@@ -76,7 +76,7 @@ def test_both_command_forms_reach_the_program(command, tmp_path):
 
 
 def test_interrupted_command_ends_in_one_line(monkeypatch, capsys):
-    def stopped(rows, *_):
+    def stopped(*_, **options):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("mitigate.evaluation.table.run", stopped)

@@ -7,11 +7,12 @@ import pytest
 import torch
 from omegaconf import OmegaConf
 
-from mitigate.agents.building import LORA, stored_settings
+from mitigate.agents.building import stored_settings
 from mitigate.agents.topological import stored
 from mitigate.core import checkpoint, conf
 from mitigate.core.build import build
 from mitigate.core.checkpoint import load_tensors
+from mitigate.core.pretrained import PEFT_WEIGHTS
 from mitigate.training import states, train
 from mitigate.worlds.apartments import simulator
 from tests.guards.text.conftest import write_tiny_model
@@ -89,7 +90,7 @@ def test_language_model_resumes_from_an_adapter(tmp_path):
     first = train.run(conf.load_config("train", [*options, f"runs={tmp_path}/first"]))
     options += [f"init={first}/agent", "trainer.lr=1e-12", f"runs={tmp_path}/second"]
     second = train.run(conf.load_config("train", options))
-    one, two = (load_tensors(folder / "agent" / LORA) for folder in (first, second))
+    one, two = (load_tensors(folder / "agent" / PEFT_WEIGHTS) for folder in (first, second))
     assert one.keys() == two.keys()
     assert all(torch.allclose(one[name], two[name], atol=1e-9) for name in one)
     assert any(value.any() for name, value in one.items() if "lora_B" in name)  # it had learned
