@@ -47,6 +47,7 @@ def test_python_examples_run(code, tmp_path, monkeypatch):
     exec(compile(code, "example", "exec"), {"__name__": "example"})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("code", blocks("bash"))
 def test_commands_run(code, tmp_path):
     rng = np.random.default_rng(0)

@@ -89,6 +89,7 @@ def test_changes_are_nested_in_severity(name):
     assert len(before) > 5
 
 
+@pytest.mark.slow
 def test_styles_reach_their_share_and_stay():
     for manner in MANNERS:
         hit: set[int] = set()
@@ -180,6 +181,7 @@ def test_masks_write_the_tokenizers_own_mask_token():
         corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token=" ")
 
 
+@pytest.mark.slow
 def test_text_is_equal_in_another_process():
     program = (
         "from mitigate.corruptions import *;"

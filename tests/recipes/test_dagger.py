@@ -48,6 +48,7 @@ def test_step_learns_from_fresh_and_stored_rollouts(tmp_path):
     assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps with 2 pieces each
 
 
+@pytest.mark.slow
 def test_resumed_run_draws_the_same_rollouts(tmp_path):
     objective = recipe(tmp_path)
     batches = [objective.batch(step) for step in range(4)]

@@ -177,6 +177,7 @@ def test_adapters_have_a_higher_learning_rate(tmp_path, monkeypatch, tune, rate)
     assert given["lr"] == rate
 
 
+@pytest.mark.slow
 def test_harden_with_ppo_and_adapters_leaves_the_policy_frozen(tmp_path):
     net = trained()
     options = PPO | {"tune": "adapters", "schedule": "per_frame"}
