@@ -1,8 +1,9 @@
-"""Self-distil a trained policy, which teaches its copy without expert and reward.
+"""Self-distil a trained policy: it teaches a copy of itself, without expert or rewards.
 
-The copy (student) runs episodes under corruptions. For every frame that it meets, the unchanged
-policy (teacher) answers to the clean frame, and the student learns to give the same answer to the
-corrupted one: DAgger (Ross et al. 2011) with the clean policy in place of an expert. Four terms:
+The copy (student) runs episodes under corruptions. At every step, the unchanged policy (teacher)
+gives its answer for the clean frame, and the student learns to give the same answer for the
+corrupted frame. This is DAgger (Ross et al. 2011) with the policy on clean frames in place of an
+expert. The loss has four terms:
 
 * ``w_policy``: the divergence of the action distributions (KL; for actions without a distribution
   the squared error),

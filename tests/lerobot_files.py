@@ -224,7 +224,7 @@ def _write_video(file: Path, name: str, episodes: tuple[int, ...], codec: str) -
 
 
 def depth_codes(millimetres: np.ndarray) -> np.ndarray:
-    """Return lerobot's 12-bit codes of millimetres with its default parameters."""
+    """Encode depth in millimetres as lerobot does by default, in 12 bits."""
     near, far, shift = 10.0, 10000.0, 3500.0
     low, high = np.log(near + shift), np.log(far + shift)
     share = (np.log(millimetres.astype(np.float32) + np.float32(shift)) - low) / (high - low)

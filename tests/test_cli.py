@@ -183,7 +183,7 @@ def test_command_with_closed_streams_prints_into_no_file(tmp_path, shell):
 
 
 def test_sigterm_runs_the_cleanup_of_a_command():
-    """Issue T2, faults: export under signals."""
+    """Issue T2, faults: a signal arrives during an export."""
     code = (
         "import os, signal; from mitigate import cli; from mitigate.core import doctor\n"
         "def main():\n"

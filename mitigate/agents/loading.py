@@ -34,7 +34,7 @@ from mitigate.core.pretrained import PEFT_WEIGHTS
 FORMAT = 2  # format number of a card; format 1 can also be read (core/older_folders.py)
 CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
-FILES = (CONFIG, README, INPUTS)  # files of an agent with programs, in addition to the weights
+FILES = (CONFIG, README, INPUTS)  # files of an exported agent besides weights and programs
 ONNX = ("perceive.onnx", "decide.onnx")
 # files that an export may write; the manifest must list each of them that a folder holds
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)

@@ -1,7 +1,7 @@
 """Define the base class of agents that choose each action from the current observation alone.
 
-A subclass declares its inputs and defines ``forward``. Acting, collecting decisions under an expert
-and evaluating batches of decisions are implemented here.
+A subclass declares its inputs and defines ``forward``. The base class acts, collects decisions
+with the expert's answers, and evaluates batches of decisions.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""Measure programs of other projects: ``mitigate run`` runs these programs unchanged, once per
+"""Evaluate programs of other projects: ``mitigate run`` runs a program unchanged, once per
 condition.
 
 One call of ``mitigate run`` passes through these modules, from top to bottom:

@@ -1,8 +1,8 @@
 """Represent one condition of a run, with its settings and the content of its folder.
 
 ``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
-sha256 of the events at that moment. Every reader of a finished condition compares them first, so
-that a damaged file is never used as a result.
+sha256 of the events at that moment. Every reader of a finished condition compares these values
+first, so that a damaged file is never used as a result.
 """
 
 from __future__ import annotations
@@ -395,7 +395,7 @@ def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def files_in(command: Sequence[str]) -> Iterator[Path]:
-    """Yield the existing files in a command, given as words or after ``=``."""
+    """Yield the existing files that a command names in an argument, whole or after its ``=``."""
     for word in command:
         for text in (word, word.partition("=")[2]):
             # a word may also be code instead of a file name

@@ -44,7 +44,7 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    # a text that check_choice checks, because an error of Hydra would print the value
+    # Any, because a type error of Hydra would print the value; check_choice checks it instead
     safeguard: Any = "none"
     restore: str | None = None
     tokenizer: str | None = None

@@ -222,7 +222,8 @@ def main() -> None:
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     while _reap(child, pipe):
-        if os.getppid() != parent:  # exits at once if killed, because the run may be repeated
+        if os.getppid() != parent:
+            # mitigate was killed: end the command at once, because the run may be started again
             return _end(child, pipe, 0.0)
         if ending:
             return _end(child, pipe, GRACE)

@@ -116,7 +116,7 @@ class Recorder(Observer):
             result = {name: value for name, value in message.items() if name != "kind"}
             with atomic_text(self.draft / "end.json") as file:
                 json.dump(result, file)
-            # left by an earlier run, or by an earlier end of the episode in this run
+            # an earlier run left this folder, or this run has recorded the same episode before
             output.delete_folder(self.target)
             output.forget(self.draft)
             os.replace(self.draft, self.target)

@@ -97,7 +97,7 @@ def unwritten(file: Path, error: Exception) -> OSError:
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Load weights that :func:`save_weights` wrote into ``module``.
+    """Load into ``module`` the weights in a file that :func:`save_weights` wrote.
 
     Names and shapes must match exactly. Float tensors may have a different precision; integers,
     booleans and complex numbers must keep their type. If the weights contain no adapters (for

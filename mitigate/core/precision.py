@@ -86,7 +86,7 @@ def to_device(value: Any, device: torch.device) -> Any:
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}
-    if type(value) in (list, tuple):  # excludes named tuples, which objectives move themselves
+    if type(value) in (list, tuple):  # named tuples are moved by objectives
         return type(value)(to_device(item, device) for item in value)
     return value
 

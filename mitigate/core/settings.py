@@ -78,8 +78,8 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
     if actual != target:
         raise ValueError(
             f"{file} belongs to the agent {_short(actual)}, but the agent here is {target}. "
-            f"Choose the agent of these weights (agent={named(actual) or '...'}; in Python, "
-            "mitigate.load(folder, agent=...) fills an agent that you built)."
+            f"Choose the agent that the weights belong to (agent={named(actual) or '...'}; in "
+            "Python, mitigate.load(folder, agent=...) loads them into an agent that you built)."
         )
     for key, _ in _entries(settings):
         if any(part.startswith("_") for part in key.split(".")):

@@ -54,7 +54,7 @@ class Settings:
     unit: float | None = None  # metres per count of a 16-bit PNG; None assumes mm, after a check
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
-    no_reading: int = NO_READING  # count in a 16-bit PNG that means no reading, in addition to 0
+    no_reading: int = NO_READING  # 16-bit PNG value that, like 0, means no reading
     hfov: float | None = None  # degrees, horizontal field of view for camera faults
 
     def __post_init__(self) -> None:

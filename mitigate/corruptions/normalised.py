@@ -32,7 +32,7 @@ def corrupt_normalised(
         obs: The observation.
         corruption: The corruption.
         key: Key of the random draws.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         hfov: Horizontal field of view in degrees by entry, which camera faults need.
 
     Returns:

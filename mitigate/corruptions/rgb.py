@@ -157,14 +157,14 @@ def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Draw a black disk of radius 0.5 s min(H, W) at the centre."""
+    """Draw a black disk of radius 0.5 * severity * min(H, W) at the centre."""
     out = views.copy()
     masks.blacken(out, masks.disk_spans(severity, *views.shape[1:3]))
     return out
 
 
 def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Make each view of each frame black with probability s."""
+    """Make each view of each frame black with probability ``severity``."""
     out, value = np.empty_like(views), digest(key, "black_out", frame=True)
     for view in range(len(views)):
         out[view] = 0 if uniform(scramble(value, view)) < severity else views[view]

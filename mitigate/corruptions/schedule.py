@@ -130,7 +130,7 @@ class Schedule:
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
-        """Recompute the weights from success rates by name ("clean" and others are ignored).
+        """Recompute the weights from success rates by name; unknown names are ignored.
 
         A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
         rates; the other modes keep uniform weights.

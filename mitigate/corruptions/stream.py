@@ -65,7 +65,7 @@ class FrameStream:
     key and the frames of its episode only.
 
     Args:
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
         hfov: Horizontal field of view in degrees by entry, which camera faults need.
     """
@@ -131,7 +131,7 @@ class FrameStream:
         """Keep the frames and the pose of an instant, which later instants may show.
 
         Raises:
-            ValueError: A frame has another shape than the frame before it.
+            ValueError: A frame and the frame before it have different shapes.
         """
         if (key.seed, key.episode) != self._episode:
             self._past.clear()
@@ -154,7 +154,8 @@ class FrameStream:
         frame_shown = key.frame
         for late in (part for part in parts if shows_past(part)):
             frame_shown -= _draw(late, replace(key, frame=frame_shown))
-        frame_shown = max(frame_shown, key.frame - OLDEST)  # a pair may add two ages
+        # the delays of two temporal faults add up, but older frames are not stored
+        frame_shown = max(frame_shown, key.frame - OLDEST)
         instant, frame = self._recall(entry, frame_shown)
         arriving: dict[str, Any] = {entry: frame.copy()}
         if POSE in self._past:

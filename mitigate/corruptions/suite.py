@@ -116,13 +116,14 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     if name in registry.FAULTS:
         raise ValueError(
             f"The corruption must be one of single frames ({', '.join(allowed)}), got the "
-            f"{registry.family(name)} fault {name!r}. A fault can be a condition of an evaluation "
-            f"(conditions=[{name}]) or a Corruption; schedules of trainings do not draw faults."
+            f"{registry.family(name)} fault {name!r}. A fault can be used as a condition of "
+            f"an evaluation (conditions=[{name}]) or in a Corruption object; training schedules "
+            "do not sample faults."
         )
     if registry.AND in str(name):
         raise ValueError(
-            f"The corruption must be a single one, got the pair {name!r}. A pair can be a "
-            f"condition of an evaluation (conditions=[{name}]) or a Corruption."
+            f"corruption must be a single corruption, got the pair {name!r}. A pair can be used "
+            f"as a condition of an evaluation (conditions=[{name}]) or in a Corruption object."
         )
     raise ValueError(unknown("corruption", name, allowed))
 
@@ -290,7 +291,7 @@ def corrupt(
         key: Key of the random numbers; an int is used as the seed, a str as the episode.
         heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
             direction in the world. None (unknown): the flare keeps its place in view 0.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         hfov: Horizontal field of view in degrees, which camera faults need.
 
     Returns:
@@ -382,7 +383,7 @@ def corrupt_observation(
         obs: The observation; the heading is read from ``obs["pose"]``, if present.
         corruption: The corruption.
         key: Key of the random draws.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         hfov: Horizontal field of view in degrees by entry, which camera faults need.
 
     Returns:

@@ -255,7 +255,8 @@ class _Scores:
         """Return the mean over ``names`` of (corrupted - base) / (clean - base).
 
         PRS divides by the clean success of the same agent, as the paper does. Retention divides by
-        the clean return of the first agent, so that a loss on clean frames does not raise it.
+        the clean return of the first agent, so an agent cannot raise its retention by a lower
+        clean return.
         """
         values: dict[str, tuple[float, np.ndarray]] = {}
         for agent in self.agents:

@@ -31,9 +31,7 @@ class Curve:
 
 
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
-    """Return the curve of each column that has ``corruption`` at no fewer than ``least``
-    severities.
-    """
+    """Return a curve for each column with ``corruption`` at ``least`` or more severities."""
     lines = (_curve(grid, column, corruption, least) for column in grid.columns)
     return [line for line in lines if line is not None]
 

@@ -164,7 +164,8 @@ class Retention:
         corruptions: names of the K corruptions.
         clean: [N].
         corrupted: [K, N], for the same N episodes.
-        units: [N]; the bootstrap resamples episodes with equal numbers together.
+        units: [N], a number per episode; the bootstrap resamples episodes with the same number
+            together, as one unit.
     """
 
     corruptions: tuple[str, ...]

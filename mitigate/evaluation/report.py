@@ -167,7 +167,10 @@ def _changes(section: Section) -> list[Difference]:
 
 
 def _mean_sr(section: Section) -> list[list[str]]:
-    """Return the lines with the mean SR over all corruptions and its differences."""
+    """Return a line with the mean SR over all corruptions of each column.
+
+    If there are several columns, a second line has the differences from the reference.
+    """
 
     def cell(value: Retained | None, text: Callable[[Estimate], str]) -> str:
         marks = "" if value is None else _escaped(section.marks(value, *section.blocks))
@@ -320,8 +323,8 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
 
     Args:
         section: the results.
-        paper: the paper's column names under "columns", and its figures in the same order by row
-            ("PRS-SR (RGB)", "motion_blur").
+        paper: the paper's column names under "columns", and for each row name ("PRS-SR (RGB)",
+            "motion_blur") the figures of that row in the order of these columns.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))

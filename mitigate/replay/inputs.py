@@ -26,8 +26,8 @@ def load_agents(agents: Any) -> dict[str, Any]:
     """Load agents by unique names.
 
     Args:
-        agents: An agent, a folder of weights, ``module:callable`` of a callable that returns an
-            agent, a list of these, or a mapping of names to these.
+        agents: An agent, a folder of weights, or ``module:callable`` for a function that returns
+            an agent. Several agents are a list of these, or a mapping from names to these.
 
     Raises:
         FileNotFoundError: There are no weights at a path.

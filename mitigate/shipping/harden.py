@@ -1,7 +1,8 @@
 """``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
 The policy teaches its copy (``recipes/self_distil.py``), or the copy learns from the reward of the
-world (``recipes/ppo.py``). The episodes that compare both are never trained on.
+world (``recipes/ppo.py``). The episodes of the comparison
+are never used for training.
 """
 
 from __future__ import annotations
@@ -202,14 +203,14 @@ def harden(
     objective = METHODS[method](**shared_arguments, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
-        "losses": 2,  # version: the first had no imitation
+        "losses": 2,  # version of the losses; version 1 had no imitation
         "settings_of_policy": before.settings(),
         "names": list(names),
         "broad_share": broad_share,
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
     }
-    if method != "self_distil":  # runs of older versions have neither entry
+    if method != "self_distil":  # absent for the default, as in runs of older versions
         identity["method"] = method
     if schedule != "per_episode":
         identity["schedule"] = schedule
@@ -288,7 +289,7 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
 
 
 class _Training:
-    """Source of training episodes, which are a list or seeds that the comparison does not use."""
+    """Source of training episodes: a given list, or generated from seeds outside the comparison."""
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
         self.listed = None if listed is None else list(listed)

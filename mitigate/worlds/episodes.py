@@ -259,13 +259,12 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Return every n-th item of a list or range, so that for example scenes are divided among
-    workers.
+    """Return every n-th item of a list or range, for example to divide scenes among workers.
 
     Args:
         items: The list or range.
-        piece: Index of the worker's piece.
-        pieces: Number of pieces.
+        piece: Index of the worker.
+        pieces: Number of workers, n.
     """
     return items[piece % len(items) :: pieces]
 
@@ -299,7 +298,7 @@ class ListedEpisodes:
 
         Args:
             rng: Random generator.
-            share: The pair (piece, number of pieces) of this worker.
+            share: The pair (index of this worker, number of workers).
         """
         episodes = share_of(self._episodes, *share)
         return episodes[int(rng.integers(len(episodes)))]

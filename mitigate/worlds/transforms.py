@@ -35,12 +35,13 @@ class CorruptObservation(Transform):
     Everything about an episode (its corruption, the drops on its lens) is a function of the name in
     ``episode``, which changes at every reset. The pixels therefore do not depend on the number of
     parallel environments or on partial resets. They are also the same when a frame is corrupted
-    later, out of a replay buffer with clean frames (``forward``, which also corrupts
-    ``("next", ...)`` if it has frames). An environment without episode names needs an
+    later, when it is read from a replay buffer of clean frames (by ``forward``, which also
+    corrupts the frames in ``("next", ...)``). An environment without episode names needs an
     ``EpisodeCounter`` before this transform.
 
-    The only state is the last frames of each row, under a temporal fault. A replay buffer does not
-    return frames in order, so ``forward`` rejects these faults.
+    The transform keeps no state between steps, except for temporal faults, which need the last
+    frames of each batch row. A replay buffer does not return frames in order, so ``forward``
+    rejects temporal faults.
 
     Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
     [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
@@ -55,15 +56,16 @@ class CorruptObservation(Transform):
         depth: Name of the depth entry, which the data need not contain.
         sensor: Depth range, and value that marks missing depth.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres. None
-            means metres, but depth of a replay buffer that does not exceed 1 is rejected.
-        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
+            means metres; an error is raised if no depth in a replay buffer exceeds 1, because the
+            unit is then unclear.
+        hfov: Horizontal field of view of the cameras in degrees; camera faults require it.
         backend: "torch" computes on the device of the frames, "numpy" on the CPU. None selects
             torch for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
-        ValueError: Raised for data in which the episode or frame is missing, if the schedule
-            corrupts a missing entry, if a temporal fault is applied to a replay buffer, and in the
-            cases of ``corrupt_observation``.
+        ValueError: The data have no episode or frame number, the schedule corrupts a missing
+            entry, or a temporal fault is applied to a replay buffer; also as in
+            ``corrupt_observation``.
     """
 
     def __init__(

@@ -185,7 +185,8 @@ class TrainingEpisodes(Protocol):
 
         Args:
             rng: Random generator.
-            share: The pair (piece, number of pieces), by which scenes may be divided among workers.
+            share: The pair (index of this worker, number of workers), by which a world may divide
+                its scenes among workers.
         """
 
 

@@ -1,4 +1,4 @@
-"""Fixtures that run the stand-in lab's program as a user's command."""
+"""Fixtures that run ``lab/agent.py``, a program for a fake habitat-lab, as a user's command."""
 
 import json
 import os
@@ -28,7 +28,7 @@ AGENT = f"{sys.executable} {LAB / 'agent.py'} {{out}}/seen"
 
 
 def condition(name="clean", severity=0.6, **more):
-    """Return a condition by name, where clean has severity 0."""
+    """Return a condition by name; the severity of "clean" is 0."""
     corruption = Corruption(name, 0.0 if name == "clean" else severity)
     return Condition(corruption, seed=0, words=more.pop("words", Words()), **more)
 
@@ -67,7 +67,7 @@ class CommandResult:
 
 @pytest.fixture
 def command(tmp_path):
-    """Run the stand-in's program with options under a condition, as ``mitigate run`` does."""
+    """Run ``lab/agent.py`` with options under a condition, as ``mitigate run`` does."""
 
     def run(settings, *options, python=sys.executable, patience=10.0, **environment):
         folder = tmp_path / f"{settings.corruption.name}-{len(list(tmp_path.iterdir()))}"
@@ -105,7 +105,7 @@ class RunResult:
         return int(bool(self.stderr))
 
 
-# Their tests start new interpreters, as a user's command does; others start forks.
+# Tests in these modules start new interpreters, as a user's command does; other tests fork.
 NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
 
 
@@ -113,7 +113,8 @@ NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
 def run(request, capsys, monkeypatch):
     """Run a command as the command line does, in this process, without drawing heat maps.
 
-    Tests of the report check those; a picture takes a third of the time of a short condition.
+    The tests of the report check heat maps. Drawing one takes a third as long as a short
+    condition.
     """
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path.touch())
     monkeypatch.setattr(run_module, "PAUSE", 0.05)

@@ -129,7 +129,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
 
 
 def make_attempt(folder, *options):
-    """Return the first condition of a run with options, and its default folder."""
+    """Return the first condition of a run with these options, and the run's default folder."""
     typed = config("conditions=[clean]", *options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 

@@ -32,7 +32,7 @@ for name in "ab":
 
 
 def judge(tmp_path, finish, rule):
-    """Run a loop, and return (success, SPL) of its first episode by rule, its reports and
+    """Run a loop. Return (success, SPL) of the first episode for each rule, the reports, and the
     output."""
     with Listener(condition(), tmp_path) as listener:
         process = python(listener, LOOP % finish)

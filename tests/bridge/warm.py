@@ -195,7 +195,7 @@ class Fork:
 
 
 def start_program(words: list[str], start_new_session: bool) -> Fork | subprocess.Popen[bytes]:
-    """Start a script, or ``-c`` and code, as a fork, and everything else as a new process."""
+    """Fork to run a Python script or ``-c`` code; start other commands as new processes."""
     is_python = len(words) > 1 and words[0] == sys.executable
     if is_python and (words[1] == "-c" or Path(words[1]).is_file()):
         return Fork(words[1:])

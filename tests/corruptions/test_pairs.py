@@ -82,7 +82,7 @@ def test_pair_is_rejected_where_one_corruption_is_required(panorama):
         lambda: Schedule("per_frame", 0.6, names=("spatter+flare",)),
         lambda: Settings("spatter+flare", 0.5),
     ):
-        with pytest.raises(ValueError, match="must be a single one, got the pair"):
+        with pytest.raises(ValueError, match="must be a single corruption, got the pair"):
             call()
 
 

@@ -362,7 +362,7 @@ def test_faults_are_rejected_where_they_cannot_apply():
         corrupt(frame, "frozen_frame", 0.5, key=0)
     with pytest.raises(ValueError, match="FrameStream"):
         corrupt_observation({RGB: frame}, Corruption("intermittent+spatter", 0.5), 0)
-    with pytest.raises(ValueError, match="schedules of trainings do not draw faults"):
+    with pytest.raises(ValueError, match="training schedules do not sample faults"):
         Schedule("per_episode", 0.5, names=("frozen_frame",))
     with pytest.raises(ValueError, match="one instant"):
         corrupt_habitat({RGB: frame}, Corruption("frame_delay", 0.5), Key(0, "e"))

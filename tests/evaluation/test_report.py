@@ -413,9 +413,8 @@ def test_names_are_escaped_in_tables_and_pictures(tmp_path):
     records = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]
     text = write([*records, *column(4, ALL, **mine)], tmp_path)[0].read_text()
     displayed = next(line for line in text.splitlines() if line.startswith("| Corruption"))
-    assert (
-        len(re.findall(r"(?<!\\)\|", displayed)) == 4
-    )  # two columns and the first column, without another cell
+    # three cells: the name column and two result columns
+    assert len(re.findall(r"(?<!\\)\|", displayed)) == 4
     for mark in ("<script", "</script", "[y](", "![p]", "`c`", "\n#a"):
         assert not re.search(rf"(?<!\\){re.escape(mark)}", text)
     assert (tmp_path / "heatmap.png").is_file() and (tmp_path / "severity.png").is_file()

@@ -101,7 +101,8 @@ def test_cache_is_cleared_when_weights_change():
 
 
 class Mortal(torch.nn.Module):
-    """An agent that stops at once and, in one episode, kills its process (only one process)."""
+    """An agent that stops at once. In its third episode it kills its process, until ``deaths``
+    processes were killed."""
 
     settings = dict  # the episode in which the process dies is not part of the agent's fingerprint
 

@@ -75,7 +75,7 @@ def trained(continuous=False):
 
 
 def imitate(policy, env):
-    """Train a policy of stable-baselines3 on the correct sides."""
+    """Train a stable-baselines3 policy to choose the side on which the light is."""
     optimizer = torch.optim.Adam(policy.parameters(), 1e-3)
     env.reset(seed=7)
     for _ in range(40):

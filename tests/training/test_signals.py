@@ -73,7 +73,7 @@ class Calibrated(Slow):
 
 
 def end_within_another_block():
-    """Simulates a signal that arrives while workers measure for a training."""
+    """Simulate a signal that arrives while worker processes evaluate during training."""
     with delay_signals():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)

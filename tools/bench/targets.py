@@ -1,4 +1,4 @@
-"""Define time targets for the standard suite, in milliseconds, with the main cost."""
+"""Define time targets in milliseconds for the standard suite, and the reasons for most of them."""
 
 from __future__ import annotations
 

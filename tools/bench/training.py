@@ -4,8 +4,9 @@
 
 Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures the
 time of a step, the time for which the trainer waits for its batch, and the time of forward pass,
-backward pass and update. Then the same batches are computed in this process, and each part of this
-is timed. ``make bench`` calls this twice: with all processor instructions, and with AVX2 at most.
+backward pass and update. Then the tool computes the same batches in its own process and times each
+part of the computation. ``make bench`` runs the tool twice: with all processor instructions, and
+with AVX2 at most.
 """
 
 from __future__ import annotations

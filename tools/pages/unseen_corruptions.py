@@ -46,7 +46,7 @@ def page(
 
 
 def table(half: str) -> str:
-    """Return the table of formulas of one half."""
+    """Return the formulas of the unseen corruptions in one half (VALIDATION or TEST) as a table."""
     return formulas(registry.unseen_names("rgb", "depth", half=half))
 
 

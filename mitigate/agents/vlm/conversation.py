@@ -103,7 +103,7 @@ class AnsweringAgent(Agent):
         raise NotImplementedError(f"{type(self).__name__} defines no ask(memories)")
 
     def messages(self, instruction: str, system: str | None, images: Sequence[Any]) -> list[dict]:
-        """Return the conversation, with one entry of ``images`` per frame before the text."""
+        """Return the conversation. The entries of ``images``, one per frame, precede the text."""
         text = question(self.task, self.answers, instruction)
         user = {"role": "user", "content": [*images, {"type": "text", "text": text}]}
         if system is None:
@@ -111,7 +111,7 @@ class AnsweringAgent(Agent):
         return [{"role": "system", "content": [{"type": "text", "text": system}]}, user]
 
     def begin(self, instruction: str) -> Memory:
-        """Return the memory of a new episode. Raises TypeError if it is not a string."""
+        """Return the memory of a new episode; raise TypeError if the instruction is not a str."""
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         return Memory(instruction, self.system_prompt)
@@ -121,7 +121,7 @@ class AnsweringAgent(Agent):
     ) -> list[int]:
         """Return one low-level action per episode.
 
-        An episode whose last answer is not finished reads no observation.
+        An episode with pending actions of its last answer ignores its observation.
         """
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:

@@ -86,7 +86,7 @@ def swapped(views, strength, rng, now):
 
 
 def holes(views, strength, rng, now):
-    """Remove or replace up to the fraction 0.7 ``a`` of the pixels, where ``a`` is the strength.
+    """Remove or replace at most a fraction ``0.7 * strength`` of the pixels.
 
     The pixels are selected by a random mixture of a smooth map, chance, distance and edges.
     """

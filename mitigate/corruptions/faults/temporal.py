@@ -21,9 +21,9 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import FRAMES, TEMPORAL, Record
 
 DELAY = 5  # frames at severity 1
-FREEZE_PERIOD, LONGEST_FREEZE = 20, 15  # frames: one freeze per period
-BURST_PERIOD, LONGEST_BURST = 8, 6  # frames: one burst per period
-ACTIVE_PERIOD, ACTIVE = 20, 10  # frames: ``intermittent`` is active in one interval per period
+FREEZE_PERIOD, LONGEST_FREEZE = 20, 15  # in frames; each period has one freeze
+BURST_PERIOD, LONGEST_BURST = 8, 6  # in frames; each period has one burst
+ACTIVE_PERIOD, ACTIVE = 20, 10  # in frames; each period has one interval of ``intermittent``
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
 GAMMA = 2.2  # sRGB as a power law
 OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # largest age in frames that a draw can give

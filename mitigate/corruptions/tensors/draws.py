@@ -1,7 +1,7 @@
 """Keyed random numbers on a device, with the same bits as in ``mitigate/corruptions/keying.py``.
 
-The numbers of a row or a view (an angle, an offset) are few, and are drawn on the host by the
-functions of the numpy suite. The numbers of pixels are hashed on the device. Devices have no
+Random numbers per row or view (an angle, an offset) are few, so the functions of the numpy suite
+draw them on the host. Random numbers per pixel are hashed on the device. Devices have no
 unsigned 64-bit integers, so a word is an int64 with the same bits: sums and products wrap around,
 and right shifts are masked.
 """
@@ -36,13 +36,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Rows:
-    """What corrupts the rows of a batch.
+    """The parameters of the corruption of each row of a batch.
 
     Attributes:
         severities: Severity of each row, in (0, 1].
         keys: Key of each row.
         headings: Heading of each row in radians, or None where it is unknown.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
     """
 
     severities: Sequence[float]
@@ -51,7 +51,7 @@ class Rows:
     sensor: DepthSensor
 
     def only(self, chosen: Sequence[int]) -> Rows:
-        """Return the rows of these numbers."""
+        """Return the rows whose indices are in ``chosen``."""
         return Rows(
             [self.severities[row] for row in chosen],
             [self.keys[row] for row in chosen],
@@ -60,7 +60,7 @@ class Rows:
         )
 
     def draw(self, function: Callable[..., T], *size: int) -> list[T]:
-        """Return ``function(severity, key, *size)`` of each row."""
+        """Return ``function(severity, key, *size)`` for each row."""
         pairs = zip(self.severities, self.keys, strict=True)
         return [function(severity, key, *size) for severity, key in pairs]
 
@@ -69,7 +69,7 @@ class Rows:
         return np.array(self.severities) * factor
 
     def digests(self, name: str, *, frame: bool = False) -> list[int]:
-        """Return the digest of the random number ``name`` of each row."""
+        """Return the digest of each row for the random number called ``name``."""
         return [digest(key, name, frame=frame) for key in self.keys]
 
 
@@ -95,8 +95,8 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
     """Copy numbers to the device of ``like``.
 
     Args:
-        values: Numbers or equal arrays of each row. float64 becomes float32, and uint64 becomes
-            int64 with the same bits.
+        values: One number per row, or one array per row, all of equal shape. float64 becomes
+            float32, and uint64 becomes int64 with the same bits.
         like: A tensor on the device.
         trailing: Number of axes of length 1 that are appended, for broadcasting.
     """
@@ -110,13 +110,16 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return words of the random number ``name`` of each view, int64 [B, V, *counters.shape]."""
+    """Return the random words of each view for the random number called ``name``.
+
+    There is one word per counter: int64 [B, V, *counters.shape].
+    """
     streams = np.stack([view_streams(key, name, views.shape[1]) for key in rows.keys])
     return mix(on_device(streams, views, counters.dim()), counters)
 
 
 def pixel_words(rows: Rows, name: str, views: Tensor) -> Tensor:
-    """Return one word per pixel, with the pixel's number as its counter, int64 [B, V, H, W]."""
+    """Return one random word per pixel, int64 [B, V, H, W]; the counter is the pixel's index."""
     size = views.shape[2:4]
     counters = torch.arange(size.numel(), device=views.device).reshape(size)
     return view_words(rows, name, views, counters)

@@ -38,7 +38,7 @@ def corrupt_observations(
             ``Schedule.draw``. Corruptions of instructions change nothing here.
         keys: Key of each row.
         headings: Heading of each row in radians, or None where it is unknown.
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
         backend: As in ``corrupt_tensors``.
 

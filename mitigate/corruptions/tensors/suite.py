@@ -59,7 +59,7 @@ def corrupt_tensors(
         severity: s in [0, 1], one for all rows or one per row; rows with 0 are copied.
         keys: Key of each row.
         headings: Heading of each row in radians, or None where it is unknown (see ``corrupt``).
-        sensor: Depth range and value for no reading.
+        sensor: Depth range, and the value that marks a missing reading.
         backend: "torch" computes on the device of ``frames``, "numpy" on the host. None selects
             the numpy backend for tensors on the CPU, where it is faster, and else torch. A
             corruption without a function in ``FUNCTIONS`` always runs on the host.

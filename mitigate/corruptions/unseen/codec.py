@@ -50,7 +50,7 @@ def opponents() -> np.ndarray:
 
 @njit(cache=True)
 def _both_ways(matrix, cells, spare):
-    """Transform all n blocks, cells [b, b, n], to matrix @ block @ matrix^T in place."""
+    """Replace each of the n blocks in ``cells`` [b, b, n] by matrix @ block @ matrix^T."""
     side, _, count = cells.shape
     for k in range(side):
         for x in range(side):
@@ -84,8 +84,9 @@ def _lose(cells, least):
 
 @njit(cache=True)
 def _gather(view, weights, cells):
-    """Fill cells [b, b, n] with the blocks of one opponent colour of uint8 [H, W, 3]; edges are
-    repeated.
+    """Fill ``cells`` [b, b, n] with the blocks of one opponent colour of a view, uint8 [H, W, 3].
+
+    Pixels outside the view repeat its edge.
     """
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])

@@ -18,7 +18,9 @@ from mitigate.corruptions.unseen.optics import displaced
 WOBBLE = 0.05  # maximum shift as a fraction of W, at s = 1
 WOBBLE_WAVES = (1.0, 2.5)  # number of waves per frame height
 FLICKER = 0.8  # change of brightness at s = 1
-BANDS = (2.0, 4.0)  # number of bands per frame height, for 100 Hz light read out in 1/50 to 1/25 s
+# number of bands per frame height: the light flickers at 100 Hz, and the sensor reads out a frame
+# in 1/50 to 1/25 s
+BANDS = (2.0, 4.0)
 IMPULSES = 0.3  # fraction of the pixels at s = 1
 
 _U = np.uint64

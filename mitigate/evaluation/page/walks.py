@@ -77,7 +77,7 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
 
 
 AGREED = ("success", "spl", "steps")  # measures of the new runs that are compared with the rows
-CLOSE = 1e-6  # tolerance, because rows round measures to six digits
+CLOSE = 1e-6  # tolerance, because measures are rounded to six digits in rows
 COLOURS = 64  # colours per picture; few colours keep the page small (heuristic)
 
 

@@ -76,7 +76,7 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Yield for each neighbour, resampled into the view: values, weights and depth scale.
+    """Yield the values, weights and depth scale of each neighbour, resampled into the view.
 
     The shapes are [P * 12, c, s, s], [P * 12, 1 or c, s, s] and [s, s] (``ahead`` of
     :func:`neighbours`).

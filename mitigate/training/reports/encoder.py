@@ -31,7 +31,7 @@ from mitigate.training.plan import IDENTITY
 
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
-EACH = 12  # frames per evaluated episode (evaluation.episodes), the number of views of a panorama
+EACH = 12  # frames per episode of evaluation.episodes: as many as a panorama has views
 MOST_TRAIN = 2400  # number of frames for fitting the probe (heuristic)
 MEASURES = {
     "cosine": "centred cosine to the clean features",

@@ -97,8 +97,9 @@ def choose(name: str) -> Repairer:
 
 
 def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write text metrics after training: no safeguard, classifier, before and after.
+    """Print and write text metrics of a language model before and after fine-tuning.
 
+    They are compared with the metrics of the classifier, and of the text without a safeguard.
     ``cfg`` is the config of the training run. Each of the first ``evaluation.episodes``
     instructions of ``evaluation.split`` is corrupted by one family; attacks are from the test
     split. ``before`` is not used: the model before fine-tuning is the trained model without its
@@ -125,7 +126,7 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
 
 def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
     """Write ``text.md`` and ``repairs.jsonl`` into ``folder`` and print the tables."""
-    parts = [f"# Text metrics: {title}\n\nIn percent, but for the count.\n"]
+    parts = [f"# Text metrics: {title}\n\nValues are percentages, except the count.\n"]
     parts.append(summary({name: by_family(repairs) for name, repairs in results.items()}))
     for name, repairs in results.items():
         parts.append(f"\n## {name}\n\n{table(by_family(repairs))}\n")

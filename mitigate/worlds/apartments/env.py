@@ -16,8 +16,8 @@ class ApartmentsEnv(WorldEnv):
     """Vision-and-language navigation in apartments: a ``WorldEnv`` of ``ApartmentsWorld``.
 
     Args:
-        episodes: a VLN-CE file or a list of episodes, which repeat in order. None generates
-            training episodes from ``seed``.
+        episodes: a VLN-CE file or a list of episodes, which repeat in order. If None, training
+            episodes are generated from ``seed``.
         seed, worker, workers: see ``WorldEnv``.
         apartments: number of training layouts for generated episodes.
         ogn_share: fraction of object-goal episodes among generated episodes.

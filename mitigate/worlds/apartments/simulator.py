@@ -76,9 +76,9 @@ class Simulator:
         gap = float(np.hypot(*(self.space.centre(self.space.cell_of(xy)) - xy)))
         if not gap <= NEAR:
             raise ValueError(
-                f"The episode {self.episode.episode_id} {what} at {list(position)}, {gap:.1f} m "
-                f"from where one can stand in {self.episode.scene_id}. Positions are VLN-CE's: "
-                "(x, up, z) with z = -y of the plan."
+                f"The episode {self.episode.episode_id} {what} at {list(position)}, which is "
+                f"{gap:.1f} m from the nearest free position in {self.episode.scene_id}. "
+                "Positions have VLN-CE's order (x, up, z), where z is -y of the floor plan."
             )
 
     @property

@@ -70,7 +70,7 @@ class Bag(Source):
     stepped = False
 
     def __init__(self, path: Path, options: Options) -> None:
-        resolved = path.resolve()  # resolved, because `.` has no name
+        resolved = path.resolve()  # because the name of the path `.` is empty
         self.path = path
         self.unit = options.unit  # None: 0.001 for whole numbers, 1 for 32FC1
         self.tolerance = options.frame_gap
@@ -224,7 +224,8 @@ class Bag(Source):
                 decoded.
 
         Yields:
-            The name, the seconds (from the header, and as received), and the message or None.
+            The name, two times in seconds (in the message's header, and of its receipt), and the
+            message, or None if it was not decoded.
         """
         by_topic: dict[str, list[str]] = {}
         for name in names:

@@ -26,7 +26,8 @@ MAX_HFOV = 179.0
 MIN_VFOV = 1.0  # minimum vertical field of view in degrees
 # maximum distance of the principal point from the image centre, in image widths or heights
 MAX_CENTRE_OFFSET = 4.0
-# minimum horizontal part of a direction that has a heading: at most 73 degrees up or down
+# minimum horizontal component of a unit vector that has a heading; such a vector points at most
+# 73 degrees up or down
 MIN_LEVEL = 0.3
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02

@@ -162,7 +162,7 @@ def test_act_all_keeps_episodes_independent():
     seen = [World().reset(episode) for episode in episodes]
     memories = [new_agent.begin(episode.instruction.text) for episode in episodes]
     actions = new_agent.act_all(seen, memories)
-    for number in (2, 0):  # run alone, at a different position in the batch
+    for number in (2, 0):  # each acts alone, so its batch index differs
         alone = new_agent.begin(episodes[number].instruction.text)
         assert new_agent.act_all([seen[number]], [alone]) == [actions[number]]
         assert torch.equal(alone.state.hidden, memories[number].state.hidden)

@@ -235,7 +235,7 @@ def test_fingerprint_ignores_changes_by_episodes(walk):
 
 
 class Near(Holder):
-    """An agent that stops at a threshold, which is not a weight."""
+    """An agent with settings in plain attributes, which are not weights."""
 
     def __init__(self, near: float, *others: object) -> None:
         super().__init__(weight(1))

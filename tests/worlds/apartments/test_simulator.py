@@ -192,7 +192,7 @@ def test_reset_rejects_positions_outside_free_space(episodes):
         replace(first, start_position=(x, y, -z)),
         replace(first, goals=(replace(first.goals[0], position=(x + 500.0, y, z)),)),
     ):
-        with pytest.raises(ValueError, match=rf"{first.episode_id}.*where one can stand.*z = -y"):
+        with pytest.raises(ValueError, match=rf"{first.episode_id}.*free position.*z is -y"):
             Simulator(16).reset(wrong)
 
 
