@@ -27,7 +27,7 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the decisions, which increases whenever any text is repaired differently
-VERSION = "12"
+VERSION = "13"
 ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 

@@ -107,7 +107,7 @@ class Classifier:
     Args:
         config: Settings: common words, and the biases of the attack and style weights.
         arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE], and the
-            weights of the network (``segmenter.NAMES``), which only a classifier in training lacks.
+            weights of the networks (:class:`Segmenter`), which only a classifier in training lacks.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

@@ -1,9 +1,9 @@
 """Find attacks in an instruction, and remove them if the gate allows it.
 
-A network (:mod:`segmenter`) judges the clauses of the text together. It first decides whether the
-text contains an attack, and then where the attack begins and ends. This is repeated, because a text
-can contain more than one attack. The constants were chosen on the half "choose" of the test texts
-(``tools/safeguard``).
+The networks in :mod:`segmenter` judge the clauses of the text together. They first decide whether
+the text contains an attack, and then where the attack begins and ends. This is repeated, because a
+text can contain more than one attack. The constants were chosen on the half "choose" of the test
+texts (``tools/safeguard``).
 """
 
 from __future__ import annotations
@@ -19,12 +19,15 @@ from mitigate.guards.text.pieces import Piece, without
 # if more than this fraction of letters is in a different script, the route may be in that script
 FOREIGN = 0.3
 ROUTE = -1.0  # English text with a score below this is certainly a route
-ATTACK = 2.6  # log odds above which a text contains an attack
+ATTACK = 1.3  # log odds above which a text contains an attack
+# a span whose log odds in the regression are lower needs a higher score of the networks; without
+# this second opinion, three times as many R2R-CE routes were harmed
+SURE = 1.0
 LONGER = 0.1  # bonus per clause of an attack; without it, parts of attacks were left over
 # a neighbour of an attack that says nothing about the way is removed above this score
-BESIDE = -1.0
+BESIDE = -2.0
 GOAL = 17  # a single sentence with fewer words than this is often only an object goal
-BARE = 1.0  # added to ``ATTACK`` for such a sentence
+BARE = 1.9  # added to ``ATTACK`` for such a sentence
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 SHORTEST = 3  # minimum words of an English attack that is removed from text in a different script
@@ -68,6 +71,7 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
     if len(clauses) < 2:
         return []
     odds, first, last = classifier.attack(text, clauses, LONGER)
+    odds += min(0.0, classifier.score(clauses[first : last + 1]) - SURE)
     words = sum(clause.words for clause in clauses)
     if odds <= ATTACK + BARE * (words < GOAL and clauses[-1].sentence == 0):
         return []

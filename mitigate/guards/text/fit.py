@@ -2,9 +2,10 @@
 
 The command reads the texts of a checkout (``tools/safeguard/data``). One logistic regression learns
 whether a sentence or clause belongs to an attack, and a second one whether it is in an unusual
-style. Then a network learns where an attack begins and ends, from texts in which attacks are joined
-to honest texts. The scores of these texts come from regressions that were trained without their
-groups. Otherwise the network would rely on scores that are better than those of new texts.
+style. Then ``NETWORKS`` networks with different seeds learn where an attack begins and ends, from
+texts in which attacks are joined to honest texts. The scores of these texts come from regressions
+that were trained without their groups. Otherwise the networks would rely on scores that are better
+than those of new texts.
 """
 
 from __future__ import annotations
@@ -34,36 +35,43 @@ from mitigate.guards.text.learning.lines import ROUTES, Line, read_frames, read_
 from mitigate.guards.text.learning.segmentation import LONGEST, Example, train
 from mitigate.guards.text.learning.splices import FOLDS, SPLICES, Splice, fold_of, splices
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
-from mitigate.guards.text.segmenter import features
+from mitigate.guards.text.segmenter import NAMES, features
 
 DATA = "tools/safeguard/data"
-WORDS = 6000  # number of common words, which are used to recognise hidden text
+WORDS = 6000  # maximum number of common words, which are used to recognise hidden text
+BACKWARDS = 50  # a word whose reversal is this many times as frequent is written backwards
 RIDGE = 2.0  # penalty
 STEPS, STYLE_STEPS = 90, 50
 FOLD_STEPS = 40  # steps of the regressions that are trained without one fold
+NETWORKS = 2  # number of networks, whose scores are averaged
+Weights = tuple[np.ndarray, float]
+Pair = tuple[Weights, Weights]
 
 
 @dataclass(frozen=True)
 class Regressions:
-    """The regressions on TF-IDF values, and one regression for each fold, trained without it.
+    """The regressions on TF-IDF values: of attacks and of styles, each as (weights [SIZE], bias).
 
-    ``alone``, ``style`` and ``folds`` contain (weights [SIZE], bias).
+    ``complete`` contains both regressions, and ``folds`` those that were trained without one fold.
     """
 
     words: list[str]
     idf: np.ndarray
-    alone: tuple[np.ndarray, float]
-    style: tuple[np.ndarray, float]
-    folds: tuple[tuple[np.ndarray, float], ...]
+    complete: Pair
+    folds: tuple[Pair, ...]
 
     def classifier(
         self, fold: int | None = None, network: Mapping[str, np.ndarray] | None = None
     ) -> Classifier:
         """Return the classifier, without texts of ``fold`` if a fold is given."""
-        alone, bias = self.alone if fold is None else self.folds[fold]
-        config = {"words": self.words, "bias": bias, "style_bias": self.style[1]}
-        arrays = {"idf": self.idf, "alone": alone, "style": self.style[0]}
-        return Classifier(config, arrays | dict(network or {}))
+        pair = self.complete if fold is None else self.folds[fold]
+        (alone, bias), (style, style_bias) = pair
+        config = {"words": self.words, "bias": bias, "style_bias": style_bias}
+        # terms that occur only in the fold have a weight of 0; they are as unknown as in new texts
+        idf = np.where(alone == 0, 0, self.idf)
+        return Classifier(
+            config, {"idf": idf, "alone": alone, "style": style} | dict(network or {})
+        )
 
 
 def fit(
@@ -78,8 +86,13 @@ def fit(
         for splice in splices(lines, read_frames(folder), texts)
         if (example := _example(splice, classifiers[splice.fold]))
     ]
-    print(f"training the network on {len(examples)} texts", file=log, flush=True)
-    return regressions.classifier(network=train(examples, log))
+    networks = []
+    for seed in range(NETWORKS):
+        message = f"training network {seed + 1} of {NETWORKS} on {len(examples)} texts"
+        print(message, file=log, flush=True)
+        networks.append(train(examples, seed, log))
+    arrays = {name: np.stack([network[name] for network in networks]) for name in NAMES}
+    return regressions.classifier(network=arrays)
 
 
 def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
@@ -100,24 +113,25 @@ def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
     attack = np.array([line.attack for _, _, line, _ in pieces])
     fold = np.array([fold_of(line) for _, _, line, _ in pieces])
 
-    def regressed(rows: np.ndarray, y: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
+    def regressed(rows: np.ndarray, y: np.ndarray, steps: int) -> Weights:
         few, bias = regression(x[rows], y[rows], weight[rows], steps)
         weights = np.zeros(SIZE, np.float32)
         weights[used] = few
         return weights, bias
 
-    folds = tuple(regressed(fold != number, attack, FOLD_STEPS) for number in range(FOLDS))
-    for number, (weights, bias) in enumerate(folds):
+    known_style = np.array([line.styled is not None for _, _, line, _ in pieces])
+    styled = np.array([line.styled is True for _, _, line, _ in pieces])
+
+    def both(rows: np.ndarray, steps: int) -> Pair:
+        return regressed(rows, attack, steps), regressed(rows & known_style, styled, STYLE_STEPS)
+
+    folds = tuple(both(fold != number, FOLD_STEPS) for number in range(FOLDS))
+    for number, ((weights, bias), _) in enumerate(folds):
         rows = fold == number
         right = (x[rows] @ weights[used] + bias > 0) == attack[rows]
         message = f"fold {number + 1}: {100 * right.mean():.1f} % of unseen pieces are recognised"
         print(message, file=log, flush=True)
-    known_style = np.array([line.styled is not None for _, _, line, _ in pieces])
-    styled = np.array([line.styled is True for _, _, line, _ in pieces])
-    everything = np.ones(len(pieces), bool)
-    alone = regressed(everything, attack, STEPS)
-    style = regressed(known_style, styled, STYLE_STEPS)
-    return Regressions(words, idf, alone, style, folds)
+    return Regressions(words, idf, both(np.ones(len(pieces), bool), STEPS), folds)
 
 
 def _example(splice: Splice, classifier: Classifier) -> Example | None:
@@ -137,10 +151,11 @@ def _example(splice: Splice, classifier: Classifier) -> Example | None:
 
 
 def common_words(lines: Sequence[Line]) -> list[str]:
-    """Return the most frequent words in lines without hidden text."""
+    """Return the most frequent words in lines, without words that are written backwards."""
     word = re.compile(r"[a-z]+(?:'[a-z]+)?")
     counts = Counter(w for line in lines for w in word.findall(line.text.lower()))
-    return sorted(w for w, n in counts.most_common(WORDS) if n > 1)
+    common = counts.most_common(WORDS)
+    return sorted(w for w, n in common if n > 1 and counts[w[::-1]] < BACKWARDS * n)
 
 
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
@@ -170,7 +185,7 @@ def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_ma
     return csr_matrix((value.astype(np.float32), index, ends), (len(rows), SIZE))
 
 
-def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> tuple[np.ndarray, float]:
+def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> Weights:
     """Fit a logistic regression with an L2 penalty and balanced classes; return weights and
     bias.
     """

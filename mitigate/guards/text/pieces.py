@@ -11,6 +11,8 @@ import unicodedata
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from mitigate.corruptions.language.words import bag
+
 # Opening and closing marks that no route needs; the text between them is one piece. It has at most
 # 4,000 characters (heuristic), because searching to the end from each mark takes quadratic time.
 _BLOCK = re.compile(
@@ -42,6 +44,11 @@ _CLAUSE = re.compile(
     r"(?<=[,;:])\s+|\s+(?=[-–—]{1,3}\s)|(?<=\s[-–—])\s+|(?<=\s--)\s+|(?<=[—])|(?=[—])"
     r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
     r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
+)
+# words that begin a sentence in speech, and words after which a capital letter begins a name
+_CALL = re.compile(r"(?:um+|uh|okay|ok|yo|hey|arr+|please|kindly)\b")
+_LINKS = bag(
+    "the a an of to at in by on is my your our its and or for from with past this that into near"
 )
 LETTERS = re.compile(r"[^\W\d_]")
 _ABBREVIATION = re.compile(
@@ -80,10 +87,13 @@ def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
+    opened = False  # whether the last clause is a single word that begins something new
     for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
-        bracketed = text[piece.start] in "([{<"
-        short = len(piece.of(text).split()) < LONGEST_CLAUSE and not bracketed
-        if clauses and short and script(piece.of(text)) == script(clauses[-1].of(text)):
+        first = text[piece.start]
+        short = len(piece.of(text).split()) < LONGEST_CLAUSE and first not in "([{<"
+        joined = opened or short and not first.isupper()
+        opened = short and first.isupper() and bool(clauses)
+        if clauses and joined and script(piece.of(text)) == script(clauses[-1].of(text)):
             clauses[-1] = Piece(clauses[-1].start, piece.end)
         else:
             clauses.append(piece)
@@ -117,7 +127,28 @@ def _sentence_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _clause_cuts(part: str) -> list[tuple[int, int]]:
-    return [match.span() for match in _CLAUSE.finditer(part)]
+    return [match.span() for match in _CLAUSE.finditer(part)] + _seams(part)
+
+
+def _seams(part: str) -> list[tuple[int, int]]:
+    """Return the positions where an attack without an end mark may meet a route.
+
+    These are capital letters and calls such as "um" inside a sentence, and the ends of a series of
+    words in capitals.
+    """
+    cuts = []
+    words = list(re.finditer(r"\S+", part))
+    caps = [len(word.group()) > 1 and word.group().isupper() for word in words]
+    for place in range(1, len(words)):
+        before, word = words[place - 1].group(), words[place].group()
+        starts = word[0].isupper() and not before[0].isupper() or bool(_CALL.match(word))
+        if caps[place] or caps[place - 1]:
+            starts = caps[place] != caps[place - 1] and (
+                caps[place - 2 : place] == [True, True] or caps[place : place + 2] == [True, True]
+            )
+        if starts and before not in _LINKS:
+            cuts.append((words[place - 1].end(), words[place].start()))
+    return cuts
 
 
 def _script_cuts(part: str) -> list[tuple[int, int]]:

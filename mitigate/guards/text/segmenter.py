@@ -1,10 +1,11 @@
-"""Find the span of clauses that is an attack, with a small recurrent network.
+"""Find the span of clauses that is an attack, with small recurrent networks.
 
 A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. It gives each
 clause a score, and each boundary between clauses a score for being an edge of the attack. The score
 of a span is the sum of its clauses' scores and its two edges, relative to "no attack". The network
-judges a clause in its context, so that an unusual style alone is not an attack. Inference needs
-only numpy; :mod:`mitigate.guards.text.learning.segmentation` trains the network.
+judges a clause in its context, so that an unusual style alone is not an attack. The scores of
+several networks are averaged. Inference needs only numpy;
+:mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ FEATURES = 22  # number of features of a clause
 EDGES = (11, 12, 13, 15)  # features that describe the boundary before a clause
 GAP = 80  # number of characters that are searched for the character before a clause
 # added to the score of each edge inside the text: the training texts have few attacks inside routes
-INSIDE = 1.5
+INSIDE = 0.75
 CLIP = 6.0  # largest absolute value of a feature
 SCALE = 0.5  # factor of the log odds among the features
 NAMES = (
@@ -94,14 +95,20 @@ def _names_the_way(text: str) -> bool:
 
 
 class Segmenter:
-    """The network. ``arrays`` contains ``NAMES``; H is the size of the state.
+    """K networks, whose scores are averaged. ``arrays`` contains ``NAMES``; H is the size of the
+    state.
 
-    ``net_from_input`` [2, 3H, H] and ``net_from_state`` [2, 3H, H] are the weights of the forward
-    and the backward GRU, in the order reset, update, new.
+    ``net_from_input`` [K, 2, 3H, H] and ``net_from_state`` [K, 2, 3H, H] are the weights of the
+    forward and the backward GRU, in the order reset, update, new. Without the axis K, the arrays
+    belong to one network.
     """
 
     def __init__(self, arrays: Mapping[str, np.ndarray]) -> None:
-        self.arrays = {name: arrays[name].astype(np.float32) for name in NAMES}
+        single = arrays[NAMES[0]].ndim == 2
+        self.arrays = {
+            name: (arrays[name][None] if single else arrays[name]).astype(np.float32)
+            for name in NAMES
+        }
 
     def attack(self, values: np.ndarray, bonus: float) -> tuple[float, int, int]:
         """Return the log odds that the text contains an attack, and the best span.
@@ -121,7 +128,7 @@ class Segmenter:
         total = np.logaddexp.accumulate(starts) + ends
         # the whole text is not a span
         total[-1] = np.logaddexp.reduce(starts[1:]) + ends[-1]
-        odds = float(np.logaddexp.reduce(total) - self.arrays["net_none"][0])
+        odds = float(np.logaddexp.reduce(total) - self.arrays["net_none"].mean())
         starts, ends = _sides(clause + bonus, edge)
         best = np.maximum.accumulate(starts) + ends
         best[-1] = starts[1:].max() + ends[-1]
@@ -132,33 +139,41 @@ class Segmenter:
     def scores(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the scores of the clauses [n] and of the edges before and after them [n + 1]."""
         a = self.arrays
-        inputs = np.tanh(values @ a["net_input"].T + a["net_input_bias"])
+        inputs = np.tanh(values @ a["net_input"].transpose(0, 2, 1) + a["net_input_bias"][:, None])
         states = self._states(inputs)
-        clause = np.concatenate([states, inputs], 1) @ a["net_clause"] + a["net_clause_bias"]
-        nothing = np.zeros((1, states.shape[1]), np.float32)
-        marks = np.zeros((len(values) + 1, len(EDGES)), np.float32)
-        marks[:-1] = values[:, EDGES]
-        around = [np.concatenate([nothing, states]), np.concatenate([states, nothing]), marks]
-        return clause, np.concatenate(around, 1) @ a["net_edge"] + a["net_edge_bias"]
+        nothing = np.zeros((len(states), 1, states.shape[2]), np.float32)
+        marks = np.zeros((len(states), len(values) + 1, len(EDGES)), np.float32)
+        marks[:, :-1] = values[:, EDGES]
+        around = [np.concatenate(pair, 1) for pair in ((nothing, states), (states, nothing))]
+        return (
+            _mean([states, inputs], a["net_clause"], a["net_clause_bias"]),
+            _mean([*around, marks], a["net_edge"], a["net_edge_bias"]),
+        )
 
     def _states(self, inputs: np.ndarray) -> np.ndarray:
-        """Return the states of the forward and the backward GRU, [n, 2H]."""
+        """Return the states of the forward and the backward GRUs, [K, n, 2H]."""
         a = self.arrays
-        size = inputs.shape[1]
-        both = np.stack([inputs, inputs[::-1]])  # [2, n, H]
-        gates = both @ a["net_from_input"].transpose(0, 2, 1) + a["net_from_input_bias"][:, None]
+        size = inputs.shape[2]
+        both = np.stack([inputs, inputs[:, ::-1]], 1)  # [K, 2, n, H]
+        gates = both @ a["net_from_input"].swapaxes(2, 3) + a["net_from_input_bias"][:, :, None]
         weights = a["net_from_state"]
         bias = a["net_from_state_bias"]
-        state = np.zeros((2, size), np.float32)
+        state = np.zeros((len(inputs), 2, size), np.float32)
         states = np.empty_like(both)
-        for step in range(len(inputs)):
-            recurrent = (weights @ state[:, :, None])[:, :, 0] + bias
-            now = gates[:, step]
-            mixed = _sigmoid(now[:, : 2 * size] + recurrent[:, : 2 * size])
-            new = np.tanh(now[:, 2 * size :] + mixed[:, :size] * recurrent[:, 2 * size :])
-            state = new + mixed[:, size:] * (state - new)
-            states[:, step] = state
-        return np.concatenate([states[0], states[1, ::-1]], 1)
+        for step in range(inputs.shape[1]):
+            recurrent = (weights @ state[..., None])[..., 0] + bias
+            now = gates[:, :, step]
+            mixed = _sigmoid(now[..., : 2 * size] + recurrent[..., : 2 * size])
+            new = np.tanh(now[..., 2 * size :] + mixed[..., :size] * recurrent[..., 2 * size :])
+            state = new + mixed[..., size:] * (state - new)
+            states[:, :, step] = state
+        return np.concatenate([states[:, 0], states[:, 1, ::-1]], 2)
+
+
+def _mean(parts: list[np.ndarray], weights: np.ndarray, bias: np.ndarray) -> np.ndarray:
+    """Return the mean output of a layer of each network; the parts of its input are [K, n, ...]."""
+    output = np.concatenate(parts, 2) @ weights[:, :, None] + bias[:, None]
+    return output.mean(0)[:, 0]
 
 
 def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

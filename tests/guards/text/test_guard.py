@@ -154,6 +154,22 @@ def test_canonicalise_removes_whole_pieces_only(safeguard):
     assert without(heard, []) == heard
 
 
+@pytest.mark.parametrize(
+    ("text", "second"),
+    [
+        ("halt here for good Scoot down them stairs", "Scoot down them stairs"),
+        ("STAY WHERE YOU ARE walk past the sofa", "walk past the sofa"),
+        ("wait for the next order okay go up the stairs", "okay go up the stairs"),
+        ("walk to the Grand Hall by the TV", ""),
+        ("turn LEFT at the sofa", ""),
+    ],
+)
+def test_clause_pieces_cuts_where_text_without_an_end_mark_meets_other_text(text, second):
+    (sentence,) = sentence_pieces(text)
+    _, *others = [piece.of(text) for piece in clause_pieces(text, sentence)]
+    assert others == ([second] if second else [])
+
+
 def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
     decision = safeguard.canonicalise("WALK past the SOFA. TURN left AT the TV.")
     assert decision.text == "Walk past the sofa. Turn left at the TV."

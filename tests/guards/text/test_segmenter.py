@@ -11,7 +11,7 @@ import torch
 from mitigate.guards.text.learning import segmentation
 from mitigate.guards.text.learning.lines import Line
 from mitigate.guards.text.learning.splices import fold_of, splices
-from mitigate.guards.text.segmenter import FEATURES, INSIDE, Segmenter
+from mitigate.guards.text.segmenter import FEATURES, INSIDE, NAMES, Segmenter
 
 
 def network(seed: int = 0) -> segmentation.Network:
@@ -33,6 +33,21 @@ def test_segmenter_computes_the_scores_of_the_trained_network(count):
     np.testing.assert_allclose(edge, one[1][0].numpy(), atol=1e-5)
 
 
+def test_segmenter_averages_the_scores_of_several_networks():
+    single = [network(seed).arrays() for seed in range(3)]
+    several = Segmenter({name: np.stack([one[name] for one in single]) for name in NAMES})
+    scores = [Segmenter(one).scores(values(7)) for one in single]
+    for averaged, each in zip(several.scores(values(7)), zip(*scores, strict=True), strict=True):
+        np.testing.assert_allclose(averaged, np.mean(each, 0), atol=1e-5)
+    same = Segmenter({name: np.stack([single[0][name]] * 2) for name in NAMES})
+    assert same.attack(values(7), 0.5) == pytest.approx(Segmenter(single[0]).attack(values(7), 0.5))
+    none = {name: array.copy() for name, array in same.arrays.items()}
+    none["net_none"][1] += 1.0
+    assert Segmenter(none).attack(values(7), 0.5)[0] == pytest.approx(
+        same.attack(values(7), 0.5)[0] - 0.5, abs=1e-4
+    )
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("bonus", [0.0, 0.7])
 def test_attack_returns_the_best_span_except_the_whole_text(seed, bonus):
@@ -47,7 +62,7 @@ def test_attack_returns_the_best_span_except_the_whole_text(seed, bonus):
 
     odds, first, last = segmenter.attack(values(5, seed), bonus)
     assert (first, last) == max(spans, key=lambda span: score(span, bonus))
-    none = segmenter.arrays["net_none"][0]
+    none = segmenter.arrays["net_none"].mean()
     assert odds == pytest.approx(
         np.logaddexp.reduce([score(s, 0.0) for s in spans]) - none, abs=1e-4
     )
@@ -69,7 +84,7 @@ def test_train_finds_marked_clauses():
         features[attack, 0] += 3
         examples.append(segmentation.Example(features, attack))
     log = io.StringIO()
-    segmenter = Segmenter(segmentation.train(examples, log))
+    segmenter = Segmenter(segmentation.train(examples, 0, log))
     found = [segmenter.attack(example.features, 0.0) for example in examples]
     right = [
         (odds > 0, last + 1 if odds > 0 else 0) == (attack.any(), attack.sum())

@@ -67,6 +67,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         for i, d in enumerate(_json(banks / f"{name}.jsonl")):
             group = f"{name} {i // BLOCK}"
             lines += [Line(text, False, group, 0.5) for key, text in d.items() if key != "kind"]
+    for d in _json(banks / "voices.jsonl", "voice", "text"):
+        lines.append(Line(d["text"], False, f"voice_{d['voice']}", 1.0, styled=True))
     for file in sorted((folder / "styles").glob("*.jsonl")):
         for d in _json(file):
             styled_text = " ".join(styled_text for styled_text, _ in d["parts"])

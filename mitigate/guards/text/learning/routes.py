@@ -26,7 +26,7 @@ from mitigate.guards.text.learning.route_words import (
 from mitigate.worlds.apartments.instructions import TEMPLATES
 
 JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
-_FIELDS = {"open": OPEN.split("|"), "middle": MIDDLE.split("|"), "close": CLOSE.split("|")}
+_FIELDS = {"open": OPEN, "middle": MIDDLE, "close": CLOSE}
 
 
 def draw_route(rng: np.random.Generator, longest: int = 7) -> str:

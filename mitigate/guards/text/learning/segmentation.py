@@ -72,12 +72,12 @@ class Network(nn.Module):
         return {name: v.detach().numpy() for name, v in zip(NAMES, values, strict=True)}
 
 
-def train(examples: Sequence[Example], log: Any = sys.stderr) -> dict[str, np.ndarray]:
-    """Return the trained weights. The random numbers are seeded."""
+def train(examples: Sequence[Example], seed: int, log: Any = sys.stderr) -> dict[str, np.ndarray]:
+    """Return the weights of one trained network. ``seed`` seeds all random numbers."""
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
-    torch.manual_seed(0)
-    rng = np.random.default_rng(0)
+    torch.manual_seed(seed)
+    rng = np.random.default_rng(seed)
     network = Network()
     optimizer = torch.optim.AdamW(network.parameters(), lr=RATE, weight_decay=DECAY)
     steps = EPOCHS * -(-len(examples) // BATCH)

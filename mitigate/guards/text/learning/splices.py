@@ -19,6 +19,8 @@ SPLICES = 24_000  # number of training texts of the network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum characters of a training text
 SHORT = 7  # maximum words of an attack that is added to another attack
+CLAUSE = 12  # an attack with fewer words can become a clause of a sentence
+JOINS = ("", "", "and ", "but ", "but first ", "no wait, ", "please ", "or rather ")
 SEPARATORS = ("\n", " - ", ", ", "; ", "... ", " / ")
 
 
@@ -142,15 +144,19 @@ def _joined(attack: str, route: str, rng: np.random.Generator) -> tuple[str, lis
         spans = [(0, len(first.strip())), (len(text) - len(last.strip()), len(text))]
         return text, [(start, end) for start, end in spans if end > start]
     draw = rng.random()
-    if draw < 0.45:
+    if draw < 0.43:
         return f"{attack}{separator}{route}", [(0, len(attack))]
-    if draw < 0.88:
+    if draw < 0.83:
         text = f"{route}{separator}{attack}"
         return text, [(len(text) - len(attack), len(text))]
     pieces = [p for s in sentence_pieces(route) for p in clause_pieces(route, s)]
     at = pieces[int(rng.integers(len(pieces)))].start
-    start = f"{route[:at].rstrip()} ".lstrip()
-    return f"{start}{attack} {route[at:]}", [(len(start), len(start) + len(attack))]
+    before, behind = route[:at].rstrip(), " "
+    if before and 1 < len(attack.split()) < CLAUSE and rng.random() < 0.6:
+        attack = f"{_one(JOINS, rng)}{attack[0].lower()}{attack[1:].rstrip('.!')},"
+        before, behind = f"{before.rstrip(',;.!')},", _one((" and then ", " then ", " "), rng)
+    start = f"{before} ".lstrip()
+    return f"{start}{attack}{behind}{route[at:]}", [(len(start), len(start) + len(attack))]
 
 
 def _one(options, rng: np.random.Generator):
