@@ -288,6 +288,7 @@ def test_page_separates_lists_of_a_split(rows):
     assert [line["label"] for line in data["sections"][0]["columns"]] == ["base", "hard"]
 
 
+@pytest.mark.slow
 def test_report_rejects_rows_that_no_browser_can_show(monkeypatch, tmp_path):
     """Issue T2, item 9."""
     many = column(8, {f"made_up_{n}": 2 for n in range(3000)})
