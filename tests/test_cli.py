@@ -126,10 +126,12 @@ def test_dash_in_a_command_is_an_underscore(capsys):
 
 
 def test_closed_pipe_ends_the_command_silently():
+    reader, writer = os.pipe()
+    os.close(reader)  # before the start, so that no process of another test inherits it
     command = [sys.executable, "-m", "mitigate.table1", "--help"]
-    process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
-    process.stdout.close()
-    assert (process.stderr.read(), process.wait()) == (b"", 141)
+    process = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE)
+    os.close(writer)
+    assert (process.stderr, process.returncode) == (b"", 141)
 
 
 def test_help_into_a_closed_pipe_ends_without_a_traceback():
