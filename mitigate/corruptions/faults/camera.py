@@ -28,6 +28,7 @@ HEIGHT = 0.6  # metres at severity 1
 PITCH, ROLL, YAW = 30.0, 20.0, 30.0  # degrees at severity 1
 FOV = 30.0  # degrees at severity 1
 NARROWEST, WIDEST = 10.0, 150.0  # degrees: limits of the field of view
+TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
 _DECIMALS = 12  # of a rotation, so that the last bit of a machine's sine does not reach the pixels
 
 
@@ -199,6 +200,9 @@ def camera_fov(severity: float, key: Key) -> Mount:
     return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
 
 
+DRAWS = (camera_height, camera_pitch, camera_roll, camera_yaw, camera_fov)
+
+
 def random_mount(key: Key) -> Mount:
     """Return a random displacement for training: one or two faults, each with its own severity."""
     value = digest(key, "camera")
@@ -206,10 +210,6 @@ def random_mount(key: Key) -> Mount:
     second = (first + 1 + int(uniform(value, 1) * (len(DRAWS) - 1))) % len(DRAWS)
     chosen = [first, second][: 1 + (uniform(value, 2) < TWO_FAULTS)]
     return total(DRAWS[place](uniform(value, 3 + place), key) for place in chosen)
-
-
-DRAWS = (camera_height, camera_pitch, camera_roll, camera_yaw, camera_fov)
-TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
 
 
 _record = partial(
