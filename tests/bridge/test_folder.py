@@ -145,6 +145,7 @@ def test_table_holds_all_finished_conditions(run, program, tmp_path):
     assert measured(out) == expected and (out / "severity.png").exists()
 
 
+@pytest.mark.slow
 def test_table_leaves_out_other_settings(run, program, tmp_path):
     out = tmp_path / "o"
     run(out, "conditions=[low_light]", program)

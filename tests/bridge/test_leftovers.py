@@ -78,7 +78,8 @@ def running(folder):
     return [pid for pid in matches if pid != os.getpid()]
 
 
-@pytest.mark.parametrize("how", ["setsid", *(slow(how) for how in DETACHED if how != "setsid")])
+@pytest.mark.slow
+@pytest.mark.parametrize("how", DETACHED)
 def test_run_does_not_finish_a_condition_whose_command_detaches(run, sleeper, tmp_path, how):
     result = run(tmp_path / "o", "conditions=[clean]", sleeper(how))
     assert result.returncode == 1 and "1 process that it started still ran" in result.stderr, (

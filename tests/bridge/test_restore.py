@@ -142,6 +142,7 @@ def test_hook_gives_the_frames_of_a_callable(command):
             assert (brighter[look]["frames"][name] != digest) == name.startswith("rgb")
 
 
+@pytest.mark.slow
 def test_callable_changes_the_agent_in_rows(run, tmp_path):
     options = "conditions=[clean] name=stand split=toy"
     agents = {}

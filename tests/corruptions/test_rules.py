@@ -82,7 +82,8 @@ def test_mean_absolute_depth_error_never_falls(name, episode, scene):
     assert np.diff(errors).min() >= 0.0 and errors[-1] > 0.05, errors
 
 
-@pytest.mark.parametrize("size", [(48, 64), pytest.param((96, 96), marks=pytest.mark.slow)])
+@pytest.mark.slow
+@pytest.mark.parametrize("size", [(48, 64), (96, 96)])
 def test_strength_on_fine_grid_decreases_within_the_bound(size, scene):
     matches = curves(scene.draw(*size)[0][None], scene.draw(*size)[1][None, ..., None])
     assert list(matches) == list(NAMES)

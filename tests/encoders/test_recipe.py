@@ -66,7 +66,8 @@ def config(tmp_path, pictures, *options: str):
     return conf.load_config("train", [*settings, *small, f"runs={tmp_path}", "workers=0"])
 
 
-@pytest.mark.parametrize("gate", [pytest.param(False, marks=pytest.mark.slow), True])
+@pytest.mark.slow
+@pytest.mark.parametrize("gate", [False, True])
 def test_training_reduces_the_distance_to_clean_features(tmp_path, pictures, gate):
     encoder = result(adapters={"targets": [r"blocks\.\d"], "reduction": 1, "gate": gate})
     recipe = recipe_of(encoder, pictures)

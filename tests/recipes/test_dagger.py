@@ -72,6 +72,7 @@ def test_stored_rollouts_are_plain_data_and_half_as_large(tmp_path):
     assert piece["seen"]["views"].dtype == torch.float16
 
 
+@pytest.mark.slow
 def test_kept_walks_have_gradients_as_fresh_ones(tmp_path):
     objective = recipe(tmp_path, every=1).train()
     for step in range(2):

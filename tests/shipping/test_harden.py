@@ -99,7 +99,7 @@ SHORT = {"steps": 6, "every": 3, "episodes": 2, "batch": 8, "suite": ["low_light
 FEW = seeded_episodes(range(4))
 
 
-def test_harden_returns_a_hardened_copy_and_a_report(tmp_path):
+def test_harden_returns_and_writes_a_hardened_copy_and_a_report(tmp_path):
     net = trained()
     before = checkpoint.weights_sha(net)
     result = mitigate.harden(net, world, listed=FEW, out=tmp_path, **SHORT)
@@ -110,10 +110,6 @@ def test_harden_returns_a_hardened_copy_and_a_report(tmp_path):
     line = result.report.line("**SR (%), mean of 2 corruptions**")
     assert line.values["before"].value == 100.0
     assert "| change |" in str(result)
-
-
-def test_harden_writes_weights_that_load_policy_restores(tmp_path):
-    result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT)
     loaded = mitigate.load_policy(Net(), tmp_path / "agent")
     assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(result.policy)
 
@@ -122,12 +118,13 @@ PPO = {"method": "ppo", "steps": 6, "rollout": 15, "epochs": 2, "batch": 7}
 PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("kind", "options"),
     [
         (SelfDistil, SHORT),
-        pytest.param(SelfDistil, SHORT | {"tune": "adapters"}, marks=pytest.mark.slow),
-        pytest.param(Ppo, PPO, marks=pytest.mark.slow),
+        (SelfDistil, SHORT | {"tune": "adapters"}),
+        (Ppo, PPO),
     ],
 )
 def test_harden_resumes_to_the_same_bits(tmp_path, kind, options, monkeypatch):

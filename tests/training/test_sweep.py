@@ -75,7 +75,10 @@ def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):
     assert [len(chains) for chains, _, _ in fake] == [2]
 
 
-@pytest.mark.parametrize("named", [["--config-dir", "mine"], ["--config-dir=mine"]])
+@pytest.mark.parametrize(
+    "named",
+    [["--config-dir", "mine"], pytest.param(["--config-dir=mine"], marks=pytest.mark.slow)],
+)
 def test_configs_of_ones_own_are_those_of_every_run(monkeypatch, fake, tmp_path, named):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine/recipe").mkdir(parents=True)

@@ -151,6 +151,7 @@ def test_error_is_reported_once_before_any_cell_runs(tmp_path, monkeypatch, opti
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.slow
 def test_column_with_changed_options_is_rejected_with_rows(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
@@ -203,6 +204,7 @@ def test_table1_columns_are_agents_or_trainings(table, split, suite):
             assert node.env.split == split, "an agent that follows no routes"
 
 
+@pytest.mark.slow
 def test_report_has_pooled_seeds_and_paper_figures(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)

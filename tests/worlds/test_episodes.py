@@ -242,6 +242,7 @@ def test_read_episodes_suggests_a_file_name(tmp_path):
         list(read_episodes(tmp_path / "val_sen.json.gz"))
 
 
+@pytest.mark.slow
 def test_read_episodes_memory_does_not_grow(tmp_path):
     def peak(count: int) -> int:
         path = tmp_path / f"{count}.json.gz"

@@ -33,6 +33,7 @@ def test_report_tries_every_text_in_every_family():
     assert [r.repaired for r in loud] == TEXTS and all(r.heard != r.clean for r in loud)
 
 
+@pytest.mark.slow
 def test_report_command_writes_tables_and_repairs(tmp_path, capsys):
     (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
     arguments = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
