@@ -4,11 +4,12 @@
         + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel
 
 The last term counts wrong pixels instead of measuring their error, so that correct pixels next to
-drops, stripes or noise are not changed. In the first term, depth that is too far is weighted by
-``w_far``. The reason is that a path that does not exist can make an episode fail, while a missed
-path only costs a detour. RGB is in [0, 1], depth is divided by its range; pixels that have no valid
-clean depth are ignored. Training does not use an agent, so one restorer can be used with all
-agents. The restorer's gate is trained afterwards on fixed maps (``restore_gate.py``).
+drops, stripes or noise are not changed. In the first term, the error of restored depth that is too
+far is multiplied by ``w_far``: depth that is too far shows free paths that do not exist, which can
+make an episode fail, while depth that is too near only costs a detour. RGB is in [0, 1], and depth
+is divided by its range. Pixels without a valid clean depth are ignored. Because no agent is used in
+training, one restorer works with all agents. The restorer's gate is trained afterwards on fixed
+maps (``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.training.restoration_pairs import Pairs, pairs_of
 
-SCALES = (1, 4)  # scales in pixels, for errors of edges and of surfaces (heuristic)
+SCALES = (1, 4)  # pooling sizes in pixels: 1 compares edges, 4 compares surfaces (heuristic)
 RESTORER = "This recipe trains a restorer: set agent=restorer (docs/restoration.md)."
 
 

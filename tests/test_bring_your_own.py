@@ -20,7 +20,7 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.training.config import read
 from mitigate.training.plan import leave_out_stages
 
-# only one worker of pytest trains, instead of each
+# one pytest worker trains for all workers
 pytestmark = pytest.mark.xdist_group("bring your own")
 
 ROOT = Path(__file__).parent.parent
@@ -60,7 +60,7 @@ def files(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def folder(files) -> Path:
-    """The same folder after the commands of the page: training, evaluation and export."""
+    """The folder of :func:`page` after the page's commands, which train, evaluate and export."""
     for command in COMMANDS:
         run(files, *shlex.split(command)[1:])
     return files
@@ -88,7 +88,7 @@ def test_own_agent_trains_with_every_kind_of_recipe(folder):
 
 @pytest.mark.slow
 def test_saved_agent_equals_the_trained_one(folder):
-    """The settings are read with the weights, so the command does not name adapters."""
+    """The command need not name the adapters, because the settings are loaded with the weights."""
     rows = "rows.jsonl"
     trained = folder / "runs/corridor-s0.6-seed0" / rows
     assert success(folder / "again" / rows) == success(trained)

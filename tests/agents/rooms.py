@@ -38,14 +38,14 @@ class Corner(ApartmentsWorld):
 
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return the logits [120, 12] of a waypoint predictor without errors."""
+    """Return the logits [120, 12] that a perfect waypoint predictor would return."""
     return np.where(free_directions(space, xy, heading) > 0.5, 20.0, -20.0)
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
     """Return an untrained agent that predicts free space everywhere. ``stop`` is the bias of the
-    stop score. At -50 the agent stops only at the limit of decisions; near 0 this depends on the
-    frames."""
+    stop score. At -50 the agent stops only when it reaches the limit of decisions; near 0 stopping
+    depends on the frames."""
     seeding.seed_everything(0, "wanderer")
     small = {"heads": 2, "text_layers": 1, "layers": 1}
     agent = TopologicalAgent(16, small, blind, size=16).eval()
