@@ -36,14 +36,15 @@ for name in 'abcd':
 
 @pytest.fixture
 def program(tmp_path):
-    """A loop that fails in the named episodes if a frame is corrupted."""
+    """A program whose loop fails in some episodes if a frame is corrupted."""
     file = tmp_path / "nav.py"
     file.write_text(PROGRAM)
     return f"{sys.executable} {file} x"
 
 
 def finish_again(folder):
-    """Mark a condition as finished with its current events."""
+    """Update the note of a finished condition to the number of episodes that its events now
+    report."""
     entries = json.loads((folder / "done.json").read_text())
     write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
 
@@ -110,7 +111,7 @@ def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypa
 
     monkeypatch.setattr(
         attempt, "DISCONNECT_TIME", 0.5
-    )  # the command waits for processes in a separate session
+    )  # the time that the command waits for processes in a separate session
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")

@@ -24,7 +24,7 @@ PROGRAM = Path(__file__).parent / "real" / "lab_agent.py"
 
 @pytest.fixture(scope="module")
 def lab():
-    """Return a Python with habitat-lab."""
+    """Return the path of a Python interpreter with habitat-lab."""
     matches = Path(os.environ.get("MITIGATE_PYTHONS", "")) / "lab" / "bin" / "python"
     if "MITIGATE_PYTHONS" not in os.environ or not matches.is_file():
         pytest.skip("no environment with habitat-lab: tools/pythons.sh makes one")
@@ -33,7 +33,7 @@ def lab():
 
 @pytest.fixture(scope="module")
 def episodes(tmp_path_factory):
-    """Return episodes of this project, as export_scene writes them for habitat-lab."""
+    """Return a file of this project's episodes that was exported for habitat-lab."""
     out = tmp_path_factory.mktemp("habitat")
     export(out, "val_unseen", 1, ["vln"])
     return out / "datasets" / "vln" / "val_unseen.json.gz"

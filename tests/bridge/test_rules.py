@@ -1,4 +1,5 @@
-"""Tests of success rules: which rule judges an episode, and messages if a rule cannot."""
+"""Tests of success rules: which rule judges an episode, and the message if a rule cannot judge
+it."""
 
 import json
 import sys
