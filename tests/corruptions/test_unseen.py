@@ -1,4 +1,5 @@
-"""Tests of unseen corruptions: the suite's rules, their halves, and no use in training."""
+"""Tests that unseen corruptions follow the suite's rules, are split into two halves, and are not
+used in training."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from tools.pages.descriptions import DESCRIPTIONS
 KEY = Key(3, "episode-7", 4)
 RGB, DEPTH = unseen_names("rgb"), unseen_names("depth")
 UNSEEN_NAMES = RGB + DEPTH
-LOSE = ("edge_shadow", "range_limit")  # removes depth values, as missing_data does
+LOSE = ("edge_shadow", "range_limit")  # these corruptions remove depth values, as missing_data does
 TENTHS = np.linspace(0.0, 1.0, 11)
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").glob("*.yaml"))
 SCHEDULES = sorted(path.stem for path in (conf.CONF / "schedule").glob("*.yaml"))
@@ -137,7 +138,7 @@ def test_severity_zero_changes_no_bit_and_the_input_stays(name, panorama):
         out = corrupt(frame, name, severity, key=KEY, heading=0.3)
         assert frame.tobytes() == before and not np.shares_memory(out, frame)
         assert out.shape == frame.shape and out.dtype == frame.dtype
-    assert not same(out, frame) or name == "glossy_floor"  # that scene has no floor
+    assert not same(out, frame) or name == "glossy_floor"  # the generated scene has no floor
 
 
 @pytest.mark.parametrize("name", RGB)
@@ -232,7 +233,8 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:
-    """Return the depth [H, W] of a wall, with the floor ``tall`` metres under a level camera."""
+    """Return the depth [H, W] of a wall and of the floor, which is ``tall`` metres below a level
+    camera."""
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     floor = np.where(down > 0, tall / np.maximum(down, 1e-6), np.inf)
     return np.repeat(np.minimum(floor, wall)[:, None], width, axis=1).astype(np.float32)

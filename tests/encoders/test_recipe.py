@@ -226,7 +226,7 @@ def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):
         result().load(tmp_path)
-    (tmp_path / MANIFEST).unlink()  # in the form that earlier versions wrote
+    (tmp_path / MANIFEST).unlink()  # earlier versions wrote no manifest
     with pytest.raises(ValueError, match="sensor must not be"):
         result().load(tmp_path)
 
@@ -239,7 +239,7 @@ def test_card_contains_no_import_path(tmp_path):
 
 
 def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
-    """No import path is written, and an import path in the folder is ignored."""
+    """The folder contains no import path, and an import path that is added to it is rejected."""
     cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
     out = train.run(cfg) / "agent"
     assert "tests.encoders" not in (out / "config.yaml").read_text()

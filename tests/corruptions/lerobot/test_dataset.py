@@ -1,4 +1,5 @@
-"""Metadata of LeRobot datasets: versions, features, paths, episodes, damage."""
+"""Tests of reading the metadata of LeRobot datasets: versions, features, paths, episodes and
+damaged files."""
 
 from __future__ import annotations
 
