@@ -220,7 +220,7 @@ def test_callable_changes_only_what_it_returns():
 
 def test_callable_that_changes_nothing_leaves_the_same_objects():
     observed = frames()
-    observed[DEPTH][0, 0] = np.nan  # as in a hole of a real sensor
+    observed[DEPTH][0, 0] = np.nan  # real sensors return this value for holes
     assert open_callable(f"{FILTERS}:unchanged").observe(observed)[RGB] is observed[RGB]
     before = {name: np.array(frame) for name, frame in observed.items()}
     output = open_callable(f"{FILTERS}:in_place").observe(observed)
