@@ -1,4 +1,4 @@
-"""Tests of the Habitat world without its simulator; episodes are tested by hand
+"""Tests of the Habitat world with a fake simulator; whole episodes are tested by hand
 (docs/habitat.md)."""
 
 import json
@@ -53,7 +53,7 @@ def test_habitat_world_rejects_invalid_arguments_first(value, words):
 
 
 class Simulator:
-    """A replacement for habitat-sim; ``walkable`` states whether a navmesh can be computed."""
+    """A fake habitat-sim; ``walkable`` is true if a navmesh can be computed."""
 
     walkable, loaded = True, ""
     pathfinder = None

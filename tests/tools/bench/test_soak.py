@@ -1,4 +1,5 @@
-"""Tests that the soak test detects growth of memory and files, and reports short series."""
+"""Tests that the soak test detects growing memory and open files, and reports series that are too
+short."""
 
 from __future__ import annotations
 
@@ -15,7 +16,7 @@ HOURS = np.linspace(0, 1, 600)
 
 
 def wander(seed: int, share: float = 0.9) -> np.ndarray:
-    """Return noise with standard deviation 3 in which each value is near the previous one."""
+    """Return autocorrelated noise with a standard deviation of 3."""
     rng = np.random.default_rng(seed)
     values = np.zeros(len(HOURS))
     for n in range(1, len(values)):
