@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-WARM_UP = 0.25  # fraction of a series that is skipped, because caches fill once (heuristic)
+# fraction of a series that is skipped, because memory grows while caches fill (heuristic)
+WARM_UP = 0.25
 RESAMPLES = 2000
 LEVEL = 0.95
 DAY = 24.0  # hours
@@ -36,7 +37,9 @@ class Growth:
 
     @property
     def verdict(self) -> str:
-        """Return "grows", "flat" or "too short to say", depending on both ends of the interval."""
+        """Return "grows", "flat" or "too short to say"; the result depends on both ends of the
+        interval.
+        """
         limit = LIMIT * max(self.mean, 1e-9) / DAY
         if self.hours < MIN_HOURS:  # slow waves look like a slope in a short series
             return "too short to say"
@@ -46,10 +49,10 @@ class Growth:
 
 
 def growth(hours: np.ndarray, values: np.ndarray, seed: int = 0) -> Growth:
-    """Return the growth of a series, without its first quarter.
+    """Return the growth of a series after its first quarter.
 
-    The interval is a percentile interval of the residuals' moving-block bootstrap (Kuensch 1989),
-    with blocks of about the square root of N, because measurements are correlated in time.
+    Measurements are correlated in time, so the interval is a percentile interval of a moving-block
+    bootstrap of the residuals (Kuensch 1989). The block length is about the square root of N.
 
     Args:
         hours: Times [N].

@@ -1,10 +1,10 @@
 """Endless loads for ``tools.bench.soak``: ``python -m tools.bench.loads NAME FOLDER``.
 
-- training: rollouts and steps of the shipped agent in 64 apartments, with a checkpoint every 20
-  steps. The caches are full after some minutes.
-- evaluation: 20 episodes under the suite with two workers, repeated with different seeds.
-- bridge: episodes of 20 steps with RGB and depth, under each condition of the suite in turn, with
-  a new server per condition.
+- training: rollouts and training steps of the shipped agent in 64 apartments, with a checkpoint
+every 20 steps. The caches are full after a few minutes.
+- evaluation: 20 episodes under the suite with two workers, again and again with new seeds.
+- bridge: episodes of 20 steps with RGB and depth. The conditions of the suite are run in turn, each
+with a new server.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def bridge(folder: Path) -> None:
         events = folder / f"{number}"
         with Listener(Condition(corruption, 0, Words()), events) as listener:
             os.environ.update(listener.environment())
-            session = mitigate_hook.Session()  # this opens a separate connection
+            session = mitigate_hook.Session()  # a session opens its own connection
             for name in map(str, range(EPISODES)):
                 episode = mitigate_hook.Episode(session, name, "soak", None)
                 for _ in range(STEPS):

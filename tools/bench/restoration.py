@@ -4,7 +4,7 @@
     ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2 python -m tools.bench.restoration
 
 If the gate classifies a frame as clean, only the gate runs; for any other frame, the whole network
-runs. Both times are the fastest of many calls (``tools/bench/timing.py``).
+runs. Each time is that of the fastest of many calls (``tools/bench/timing.py``).
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def costs(restorer: Restorer, seconds: float) -> dict[tuple[str, str], tuple[flo
     """Return the time in milliseconds for a clean and for a restored frame, by size and sensor.
 
     Args:
-        restorer: The restorer, whose thresholds are changed and then restored.
+        restorer: The restorer; its thresholds are changed and then set back.
         seconds: Duration of each measurement.
     """
     times: dict[tuple[str, str], tuple[float, float]] = {}

@@ -1,10 +1,11 @@
-"""Measure whether memory or open files grow: ``python -m tools.bench.soak --minutes 60``.
+"""Measure whether the memory or the number of open files grows: ``python -m tools.bench.soak
+--minutes 60``.
 
 Training, evaluation and bridge traffic (``loads.py``) run one after the other (with ``--together``,
-in parallel), each for ``--minutes``. Every few seconds the memory (RSS) and the open file
-descriptors of all their processes are recorded. The tool writes ``soak.csv``, ``soak.png`` and
-``soak.md`` (slopes with 95 % intervals, and a result) to the output folder. It exits with 1 if a
-measure grows or a load ends early. Linux only.
+in parallel), each for ``--minutes``. Every few seconds, the tool records the memory (RSS) and the
+number of open file descriptors of all their processes. The tool writes ``soak.csv``, ``soak.png``
+and ``soak.md`` (slopes with 95 % intervals, and a result) to the output folder. Its exit status is
+1 if a measure grows or a load ends early. It runs only on Linux.
 """
 
 from __future__ import annotations
@@ -34,15 +35,16 @@ from tools.bench.loads import LOADS
 PAGE = os.sysconf("SC_PAGE_SIZE")
 MEASURES = ("RSS, MiB", "file descriptors")
 COLUMNS = ("load", "seconds", "processes", "rss_mib", "descriptors")
-GRACE = 60.0  # seconds that a load has to end
-Sample = tuple[float, int, float, int]  # all COLUMNS except the first
+GRACE = 60.0  # seconds after which a load that does not end is killed
+Sample = tuple[float, int, float, int]  # the values of all COLUMNS except the first
 
 
 def measured(pid: int) -> tuple[int, float, int]:
     """Return the number of processes, the memory (RSS, MiB) and the number of open files of ``pid``
     and its descendants.
 
-    Shared memory is counted in each process. Processes that end during the call are not counted.
+    Shared memory is counted once for each process that uses it. Processes that end while they are
+    counted are left out.
     """
     processes = 0
     memory = 0
@@ -68,7 +70,7 @@ def family(pid: int) -> Iterator[int]:
 
 
 def watch(name: str, seconds: float, every: float, out: Path) -> tuple[list[Sample], str]:
-    """Run a load; return its samples and, if it ended early, the end of its output.
+    """Run a load; return its samples and, if it ended early, the last part of its output.
 
     Args:
         name: Name of the load.

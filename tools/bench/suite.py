@@ -1,4 +1,6 @@
-"""Measure the time of every corruption (steady, per frame, first frame), and of other libraries."""
+"""Measure the time of every corruption (steady state, new severity, new episode) and of other
+libraries.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,13 @@ from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # severity for R2R in the paper
+SEVERITY = 0.6  # the severity that the paper uses for R2R
 SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the slowest pair, low_light_noise and then multipath
-EPISODES = 4  # the steady state is a mean over this many episodes
-TINY = 4  # side in pixels of a frame so small that the time of a call does not depend on it
+# for the slowest pair: low_light_noise, then multipath
+PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2
+EPISODES = 4  # number of episodes over which the steady state is averaged
+TINY = 4  # side in pixels of a frame that is too small to influence the time of a call
 
 
 @dataclass(frozen=True)
@@ -69,9 +72,9 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Return costs by size and corruption, with unseen corruptions only at the last size.
+    """Return costs by size and corruption; unseen corruptions are measured only at the last size.
 
-    This takes about ``seconds`` for each of several hundred measurements.
+    There are several hundred measurements, and each takes about ``seconds``.
     """
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
@@ -111,7 +114,8 @@ def cost(
         bar: The target in milliseconds; None without a target.
     """
     tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
-    heading = 0.3 if len(frame) > 1 else None  # without heading: the flare is in one view
+    # a single view needs no heading, because the flare is in that view
+    heading = 0.3 if len(frame) > 1 else None
 
     def episode(i, image=frame, number=0):
         key = Key(SEED, f"bench {number}", i)
@@ -140,7 +144,9 @@ def cost(
 
 
 def worst_pair(seconds: float) -> float:
-    """Return milliseconds of low light with noise and multipath on a panorama, 12 x 224 x 224."""
+    """Return the milliseconds of low_light_noise and multipath together on a panorama of 12 x 224 x
+    224.
+    """
     rgb, depth = frames(*PANORAMA)
 
     def both(i):

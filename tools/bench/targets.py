@@ -1,4 +1,4 @@
-"""Define time targets in milliseconds for the standard suite, and the reasons for most of them."""
+"""Define time targets in milliseconds for the standard suite, with reasons for most targets."""
 
 from __future__ import annotations
 
