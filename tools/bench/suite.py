@@ -1,4 +1,4 @@
-"""Measure the time of every corruption (steady state, new severity, new episode) and of other
+"""Measure the time of every corruption (steady state, new episode, new severity) and of other
 libraries.
 """
 

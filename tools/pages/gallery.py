@@ -36,14 +36,15 @@ from tools.pages import unseen_corruptions as unseen_page
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 SUFFIXES = (".png", ".jpg", ".jpeg")  # file formats of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # sizes in pixels: gap between cells, column titles, row labels
-LINE = 16  # pixels between lines of a label
+LINE = 16  # line height of a label in pixels
 JPEG_QUALITY = 88
-PAPER, INK = (33, 37, 43), (235, 235, 235)  # a dark sheet suits both modes of the site
+# a dark sheet suits the light and the dark mode of the site
+PAPER, INK = (33, 37, 43), (235, 235, 235)
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
+PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and the view size in pixels for the page
 CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama that are used for the curves
 BOTH = ("rgb", "depth")
-SHEETS = {  # maps the name of a suite to the corruptions on its sheet
+SHEETS = {  # the corruptions on the sheet of each suite
     "full": NAMES,
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
@@ -82,9 +83,9 @@ def contact_sheet(
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same time step and size.
         path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
-        key: the random key of the whole sheet; a repeated name gets a new key.
+        key: the random key of the whole sheet; if a name is repeated, it gets a new key.
         views: the views of a panorama that each cell shows, from left to right.
-        names: the corruptions.
+        names: names of the corruptions.
 
     The result is the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path``
     has an unsupported suffix.
@@ -160,7 +161,7 @@ def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
 
 
 def varied_view(depth: np.ndarray) -> int:
-    """Return the index of the view of [V, H, W, 1] whose depth varies most."""
+    """Return the index of the view in ``depth`` [V, H, W, 1] whose depth varies most."""
     return int(depth.std(axis=(1, 2, 3)).argmax())
 
 

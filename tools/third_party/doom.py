@@ -15,7 +15,7 @@ METRES = 7.35 / 32
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
-    """Wrapper that reduces all frames to HEIGHT x WIDTH and removes the game variables."""
+    """Wrapper that shrinks all frames to HEIGHT x WIDTH and removes the game variables."""
 
     def __init__(self, env: gymnasium.Env) -> None:
         super().__init__(env)
@@ -45,6 +45,7 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         frame_skip=frame_skip,
         screen_resolution="RES_160X120",
         depth_buffer_enabled=True,
-        doom_config_path=os.devnull,  # by default, this is a file in the working folder
+        # by default, ViZDoom writes a config file into the working folder
+        doom_config_path=os.devnull,
     )
     return SmallFrames(env)

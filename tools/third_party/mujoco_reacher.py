@@ -1,7 +1,7 @@
 """Train on MuJoCo's ``Reacher-v5`` from pixels, with continuous actions and a plain ``nn.Module``.
 
-A controller that reads the simulator's state labels the frames of the student's own rollouts
-(DAgger).
+Training uses DAgger: a controller that reads the simulator's state labels the frames of the
+student's rollouts.
 """
 
 from __future__ import annotations
@@ -28,10 +28,11 @@ ROUNDS, EPISODES, EPOCHS = 8, 15, 4
 
 
 class SpringDriven(gymnasium.ActionWrapper):
-    """Wrapper in which each joint moves by a damped spring, whose extension in radians is the
-    action.
+    """Wrapper in which a damped spring moves each joint; the action is the extension of the springs
+    in radians.
 
-    With plain torques, a policy needs the speeds of the joints, which a single frame does not show.
+    If actions were torques, a policy would need the speeds of the joints, which a single frame does
+    not show.
     """
 
     def action(self, action):
@@ -99,7 +100,9 @@ def expert(env: gymnasium.Env) -> np.ndarray:
 
 
 def rollout(env: gymnasium.Env, policy: nn.Module | None, seed: int, frames: list, labels: list):
-    """Run one episode of the student, or of the controller, and record the controller's labels."""
+    """Run one episode with ``policy`` or, if it is None, with the controller; record the
+    controller's labels.
+    """
     observation, _ = env.reset(seed=seed)
     over = False
     total = 0.0
