@@ -1,4 +1,4 @@
-"""Train the gate of a restorer, which decides for which frames restoring reduces the error.
+"""Train the gate of a restorer, which decides which frames are restored.
 
     L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
 
@@ -30,7 +30,8 @@ from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_shar
 CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 # the error after restoring must be below this fraction of the error before (heuristic)
 BETTER = 0.85
-SPENT = 0.15  # maximum loss of correct pixels, as a fraction of all pixels (heuristic)
+# maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
+SPENT = 0.15
 # First step number of each purpose. No purpose uses the time steps of another one, or those on
 # which the network was trained.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
@@ -80,7 +81,7 @@ class RestoreGate(Objective):
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
-    here = True  # jobs run here because a step takes only milliseconds
+    here = True  # jobs run in this process, because a step takes only milliseconds
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
 
@@ -98,7 +99,7 @@ class RestoreGate(Objective):
         super().__init__()
         if not (0 <= single <= 1 and 0 < touched < 1 and min(instants, held, batch) >= 1):
             raise ValueError(
-                "recipe.single and recipe.touched must be shares from 0 to 1, got "
+                "recipe.single and recipe.touched must be fractions from 0 to 1, got "
                 f"{single} and {touched}; recipe.instants, held and batch must be >= 1, got "
                 f"{instants}, {held} and {batch}."
             )
@@ -149,7 +150,7 @@ class RestoreGate(Objective):
         }
 
     def _logits(self, judged: Judged) -> Tensor:
-        """Return the logit of each time step [N]."""
+        """Return the gate's logit for each time step [N]."""
         stats, textures = (part.flatten(0, 1) for part in judged[:2])
         return self.net.gate(stats, textures, judged.stats.shape[1]).float()
 

@@ -88,7 +88,7 @@ class SafeguardLora(Objective):
         return (job, *self.encode_pair(self.pair(job)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for workers, which excludes the large language model."""
+        """Return the state for workers without the language model, which is large."""
         return {**self.__dict__, "_modules": {}}
 
     def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:

@@ -53,7 +53,7 @@ SETTLED_CLEAN = 0.75  # fraction of clean frames in the last part of training (h
 
 
 class SelfDistil(Objective):
-    """Trains a policy to act under corruptions as it does on clean frames.
+    """Trains a policy to take the same actions under corruptions as on clean frames.
 
     Args:
         agent: the student, which is trained in place; if it has adapters, only these are trained.
@@ -140,7 +140,9 @@ class SelfDistil(Objective):
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return clean frames and two corruptions of each, by sensor [B * window, ...]."""
+        """Return clean frames and two corrupted versions of each; the arrays of a sensor are [B *
+        window, ...].
+        """
         for number in range(len(self._stored), step // self.every + 1):
             self._stored.append(self._round(number * self.every))
         rng = generator(self.seed, "self-distil", step)
@@ -286,7 +288,7 @@ def clean_teacher(policy: Policy) -> Policy:
 def _mean(
     loss: Callable[[Answer, Answer], Tensor], teacher: list[Answer], student: list[Answer]
 ) -> Tensor:
-    """Return the mean loss over the positions in a window."""
+    """Return the loss averaged over the positions in a window."""
     pairs = [loss(one, other) for one, other in zip(teacher, student, strict=True)]
     return torch.stack(pairs).mean()
 

@@ -186,7 +186,7 @@ def _write_rows(
         file = path / f"data/chunk-000/file-{number:03d}.parquet"
         with pq.ParquetWriter(file, table.schema) as writer:
             start = 0
-            for episode in episodes:  # one row group per episode, as lerobot writes them
+            for episode in episodes:  # like lerobot, write one row group per episode
                 writer.write_table(table.slice(start, LENGTHS[episode]))
                 start += LENGTHS[episode]
 

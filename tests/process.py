@@ -28,7 +28,7 @@ composed: dict[tuple, DictConfig] = {}
 
 
 def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
-    """Compose each set of options once per process, since Hydra takes 0.2 s each time."""
+    """Compose each set of options only once per process, because Hydra needs 0.2 s each time."""
     overrides = [*words]
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
@@ -55,7 +55,7 @@ for command in (
     import_module(COMMANDS[command].module)  # registers the types of the command's options
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks
+@pytest.hookimpl(tryfirst=True)  # runs before pytest-xdist reads the marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Send all tests of a module to one worker, and mark the tests that use slow fixtures.
 
@@ -83,7 +83,7 @@ def compile_kernels(share: int, workers: int) -> None:
         corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reports the tests
+@pytest.hookimpl(tryfirst=True)  # runs before pytest-xdist reports the tests
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 

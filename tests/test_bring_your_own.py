@@ -28,7 +28,9 @@ PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
 CONFIGS = dict(re.findall(r"`(mine/[\w/]+\.yaml)`[^\n]*\n\n```yaml\n(.*?)```", PAGE, re.DOTALL))
 COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
-LONGEST = 80  # maximum lines of a world and an agent that can be trained, evaluated and exported
+# maximum number of lines in which a user can write a world and an agent that trains, evaluates and
+# exports
+LONGEST = 80
 
 
 def run(folder: Path, *command: str) -> None:

@@ -1,4 +1,4 @@
-"""Tests of the command ``mitigate``: its list of commands, and messages about missing parts."""
+"""Tests of the command ``mitigate``: its list of commands, and messages about missing packages."""
 
 from __future__ import annotations
 

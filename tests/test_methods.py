@@ -33,7 +33,7 @@ FRAMES = 4000
 
 
 def draws(schedule: Schedule, episodes: int, frames: int) -> list[list[str]]:
-    """Return the names of the corruptions of each frame of each episode."""
+    """Return, for each episode, the names of the corruptions of its frames."""
     return [
         [schedule.draw(0, str(episode), frame)[0].name for frame in range(frames)]
         for episode in range(episodes)

@@ -12,8 +12,8 @@ from mitigate.training.objective import Objective, split_arguments
 
 
 class TinyAgent(nn.Module):
-    """A network whose output depends on random state (dropout), and whose ``frozen`` must not
-    change."""
+    """A network with dropout, so that its output depends on random state. Its layer ``frozen`` must
+    not change."""
 
     def __init__(self, width: int = 8) -> None:
         super().__init__()

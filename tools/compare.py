@@ -1,8 +1,8 @@
 """Compare the results of two commits on one machine: ``python tools/compare.py COMMIT [COMMIT]``.
 
-The tool checks that moving or rewriting code has not changed results. In a checkout of each
-commit, every recipe trains two steps and every shipped agent runs 20 episodes under the whole
-suite, with the normal commands. Weights and rows must be equal bit for bit. Training uses fp32,
+The tool checks that moving or rewriting code has not changed results. In a checkout of each commit,
+the normal commands train two steps with every recipe, and evaluate every shipped agent in 20
+episodes under the whole suite. Weights and rows must be equal bit for bit. Training uses fp32,
 because older commits measured times to choose the precision. Bits differ between processors, so
 digests are valid only on one machine. They are stored in ``runs/compare`` for later comparisons.
 

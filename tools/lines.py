@@ -80,7 +80,7 @@ def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table; exit with an error if the count is above ``--most``."""
+    """Print the table; exit with an error if there are more lines of code than ``--most``."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

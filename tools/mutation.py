@@ -87,7 +87,7 @@ def outcome(mutation: Mutation) -> str:
                 shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=COMPILED)
             else:
                 shutil.copy(ROOT / name, copy / name)
-        # folders that are large and to which no test writes
+        # linked instead of copied, because this folder is large and no test writes to it
         (copy / "checkpoints").symlink_to(ROOT / "checkpoints")
         source = (copy / mutation.source).read_text(encoding="utf-8")
         if source.count(mutation.old) != 1:

@@ -19,7 +19,8 @@ from mitigate.agents.vlm.agent import likelihoods
 
 # published sizes of the language models; the other weights (image encoder, projector) are rounded
 MODELS = {
-    # name: layers, hidden, intermediate, heads, key-value heads, vocabulary, other weights
+    # name: layers, hidden size, intermediate size, heads, key-value heads, vocabulary size, number
+    # of other weights
     "SmolVLM-256M": (30, 576, 1536, 9, 3, 49280, 93e6 + 7e6),
     "LLaVA-OneVision-0.5B": (24, 896, 4864, 14, 2, 152000, 400e6),
     "Qwen2.5-VL-3B": (36, 2048, 11008, 16, 2, 151936, 668e6),
@@ -31,7 +32,7 @@ TARGETS = ["q_proj", "k_proj", "v_proj", "o_proj"]
 
 
 def language_model(name: str, rank: int) -> nn.Module:
-    """Return the language model of ``name`` with LoRA, on the meta device."""
+    """Return the language model called ``name`` with LoRA, on the meta device."""
     from peft import LoraConfig, get_peft_model
     from transformers import Qwen2Config, Qwen2ForCausalLM
 
@@ -89,7 +90,8 @@ def estimate(name: str, precision: str, prompt: int, rank: int = 16) -> dict[str
         activations *= 2
     parts = {
         "weights": linear * BYTES[precision] + tables * wide,
-        "lora": lora * 16.0,  # fp32 weights, gradients and two moments of AdamW
+        # bytes per weight in fp32: the weight, its gradient and two moments of AdamW
+        "lora": lora * 16.0,
         "decision": float(activations),
     }
     return {part: size / GIB for part, size in parts.items()}

@@ -1,4 +1,4 @@
-"""Small worlds for the tests of agents: an empty room, and an untrained agent that can move."""
+"""Small worlds and an untrained agent for the tests of agents."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Brief(ApartmentsWorld):
 
 
 class Corner(ApartmentsWorld):
-    """Apartments with only the first few places, so that few features are stored."""
+    """Apartments that offer only their first few places, so that only a few features are stored."""
 
     def points(self) -> np.ndarray:
         return super().points()[:400]

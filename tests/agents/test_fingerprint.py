@@ -576,7 +576,8 @@ def _biased_planner(bias):
 
 
 def _with(owner, name, value, output):
-    """Replace an attribute of a class or module during the test, and return an agent."""
+    """Return a function that replaces an attribute of a class or module during the test and returns
+    an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)

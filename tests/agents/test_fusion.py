@@ -13,7 +13,7 @@ from tests.agents.topological.test_planner import decision
 
 
 def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
-    """Return the mean of views weighted by reliability, and the weights."""
+    """Return the mean of the views weighted by reliability, and the weights."""
     weights = reliability(views, **how)
     return (views * weights.unsqueeze(-1)).sum(-2), weights
 
@@ -92,7 +92,8 @@ def test_learned_reliability_learns_beyond_magnitudes():
     """If features of equal magnitude replace views, the magnitude rule misses it, but a learned
     score detects it."""
     torch.manual_seed(0)
-    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # features of a broken view
+    # the features that broken views get
+    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)
 
     def draw() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         mixed = torch.randn(32, 1, 64) + 0.5 * torch.randn(32, 12, 64)
@@ -162,7 +163,8 @@ def test_planner_with_equal_weights_takes_means(features):
 
 
 def test_planner_normalises_the_weights_of_ghosts(features):
-    """A single view determines the token; of two views, the more reliable one has more weight."""
+    """If one view saw a ghost, it alone determines the token. If two views saw it, the more
+    reliable one has more weight."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)

@@ -50,7 +50,8 @@ class Network(nn.Module):
 
 
 class ChunkPolicy(nn.Module):
-    """A policy with the methods of lerobot: a queue of actions, and forward as the loss."""
+    """A policy with the methods of a lerobot policy: it has a queue of actions, and ``forward``
+    returns the loss."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -34,7 +34,7 @@ def condition(name="clean", severity=0.6, **more):
 
 
 def config(*options):
-    """Return the typed options of a run."""
+    """Return the options of ``mitigate run`` as a typed config."""
     return OmegaConf.to_object(load_config("run", [*options]))
 
 
@@ -67,7 +67,7 @@ class CommandResult:
 
 @pytest.fixture
 def command(tmp_path):
-    """Run ``lab/agent.py`` with options under a condition, as ``mitigate run`` does."""
+    """Run ``lab/agent.py`` with these options under a condition, as ``mitigate run`` does."""
 
     def run(settings, *options, python=sys.executable, patience=10.0, **environment):
         folder = tmp_path / f"{settings.corruption.name}-{len(list(tmp_path.iterdir()))}"
@@ -95,7 +95,7 @@ def command(tmp_path):
 
 @dataclass
 class RunResult:
-    """The output of a run, and its error if there is one."""
+    """The output of a command, and its error message if it failed."""
 
     stdout: str
     stderr: str = ""

@@ -59,7 +59,7 @@ def contents(folder):
 
 
 def with_damaged_line(data, number):
-    """Return the bytes of a file with a damaged line ``number``."""
+    """Return ``data`` (the bytes of a file) with line ``number`` damaged."""
     lines = data.splitlines(keepends=True)
     lines[number - 1] = b"[" + lines[number - 1][1:]
     return b"".join(lines)

@@ -81,7 +81,8 @@ def test_server_reports_missing_space_for_frames(command, monkeypatch):
 
 
 def test_hook_cannot_be_caught_by_the_agent(tmp_path):
-    """WMNav's loop catches every exception and continues with the next step."""
+    """An error must end the process, because WMNav's loop catches every exception and continues
+    with the next step."""
     code = (
         "import mitigate_hook, numpy\n"
         "episode = mitigate_hook.connect('7')\n"

@@ -1,4 +1,5 @@
-"""Tests of a run's folder: complete conditions, repeated conditions, and the table."""
+"""Tests of the folder of ``mitigate run``: complete conditions, repeated conditions, and the result
+table."""
 
 import json
 import re
@@ -319,7 +320,7 @@ def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
     assert (tmp_path / "thesis.txt").read_text() == "mine"
     if name == "lock":
         assert result.returncode == 1 and "lock must be a regular file" in result.stderr
-    else:  # results of an earlier attempt are moved away
+    else:  # files of an earlier attempt are moved away, and the run succeeds
         assert result.returncode == 0 and (folder / name).is_file()
 
 

@@ -1,4 +1,5 @@
-"""Tests of the bridge under the real habitat-lab 0.3, if an environment with it is available.
+"""Tests of the bridge with the real habitat-lab 0.3; they are skipped if no environment with it is
+available.
 
 ``tools/pythons.sh FOLDER`` creates ``FOLDER/lab``; ``MITIGATE_PYTHONS`` must name the folder.
 """

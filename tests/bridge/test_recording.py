@@ -1,4 +1,4 @@
-"""Tests of recordings of a program: their files, and errors."""
+"""Tests of recording a program's frames: the written files, and errors."""
 
 import json
 import os

@@ -1,4 +1,4 @@
-"""Tests that every YAML in conf/ composes with existing targets, and that wrong options are
+"""Tests that every YAML file in conf/ composes, that its targets exist, and that wrong options are
 explained."""
 
 from __future__ import annotations

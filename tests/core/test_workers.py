@@ -1,4 +1,5 @@
-"""Tests of worker processes: results for any number of workers, and recovery from deaths."""
+"""Tests of worker processes: results are equal for any number of workers, and dead workers are
+replaced."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ from tests.deaths import die_in_a_message
 
 @dataclass
 class Squares:
-    """A task that squares numbers; a job may also die, fail, wait or signal its process."""
+    """A task that squares numbers. A job may also kill its process, fail, wait, or send a signal to
+    its process."""
 
     folder: Path
     preload = "mitigate.core.workers"

@@ -140,7 +140,7 @@ def test_only_views_facing_the_light_flare(episode):
 def test_light_stays_in_the_world_when_the_agent_turns():
     key = Key(0, "a")
     before, _ = flared(key, 0.2)
-    # after a turn to the left, the scene moves one view to the right
+    # if the agent turns left by one view, the scene moves one view to the right
     left, _ = flared(key, 0.2 + TURN)
     assert np.abs(np.roll(left, -1, axis=0).astype(int) - before).max() <= 1
     around, _ = flared(key, 0.2 + 2 * np.pi)

@@ -1,4 +1,4 @@
-"""Tests of the depth errors of named cameras."""
+"""Tests of the corruptions that model the depth errors of specific cameras."""
 
 from __future__ import annotations
 

@@ -122,7 +122,7 @@ def test_dropped_frames_are_black_in_the_bursts_of_repeated_frames():
     repeated = [i for i, number in enumerate(shown("repeated_frames")) if number != i]
     for number, frames in enumerate(run("dropped_frames")):
         lost = number in repeated
-        if number:  # frame 0 can be lost, but has no earlier frame to repeat
+        if number:  # frame 0 can be lost, but there is no earlier frame that could be repeated
             assert lost == (not frames[RGB].any()) == (not frames[DEPTH].any())
 
 

@@ -32,8 +32,7 @@ def same(a, b):
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
-# --------------------------------------------------------------------- definition of the unseen
-# corruptions
+# definition of the unseen corruptions ---------------------------------------------------------
 
 
 def test_unseen_halves_are_separate_from_the_suite():
@@ -74,8 +73,7 @@ def test_unseen_corruptions_are_in_their_suites_only():
             assert not set(suite(path.stem)) & set(UNSEEN_NAMES), path
 
 
-# ------------------------------------------------------------------------------ no recipe trains on
-# unseen corruptions
+# no recipe trains on unseen corruptions -------------------------------------------------------
 
 
 def schedules(node) -> list[dict]:
@@ -126,7 +124,7 @@ def test_python_schedule_draws_unseen_corruptions_only_by_name():
     assert Schedule.always("haze", 0.6).draw(0, "e", 1)[0] == Corruption("haze", 0.6)
 
 
-# ----------------------------------------------------------------------------- the suite's rules
+# the suite's rules ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
@@ -228,8 +226,7 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
     assert np.abs(full - small).mean() < 0.15 * np.abs(small - half).mean() + 0.6
 
 
-# ------------------------------------------------------------------------- the effect of each
-# corruption
+# the effect of each corruption ----------------------------------------------------------------
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""Tests of the command that evaluates an agent, without long episodes."""
+"""Tests of ``mitigate evaluate`` that run no long episodes."""
 
 from __future__ import annotations
 

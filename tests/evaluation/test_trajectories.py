@@ -1,4 +1,4 @@
-"""Tests that pictures of episodes agree with their rows, and how episodes are chosen."""
+"""Tests that pictures of episodes agree with their rows, and of the choice of episodes."""
 
 from __future__ import annotations
 

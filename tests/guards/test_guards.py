@@ -40,7 +40,7 @@ class Dark(Guard):
 
 
 class Room:
-    """A world of four steps with frames."""
+    """A world with episodes of four steps, which shows frames."""
 
     rule, sensors, done = "STOP", {}, False
 
@@ -133,7 +133,7 @@ def test_guarded_world_changes_frames_when_they_are_read():
 
 
 class Lower:
-    """A stand-in for the safeguard."""
+    """A fake safeguard."""
 
     identity = "lower 1"
 

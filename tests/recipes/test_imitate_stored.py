@@ -54,7 +54,8 @@ def folder(tmp_path_factory):
 
 
 def spread(output: ImitateStored) -> tuple[float, float]:
-    """Return how much the stored RGB and depth features differ."""
+    """Return the standard deviation over poses of the stored RGB features and of the stored depth
+    features."""
     views, depth = (
         output.rollouts.store.features(SCENE).views.astype(np.float32),
         output.agent.planner.widths[-1],

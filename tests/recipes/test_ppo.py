@@ -1,4 +1,5 @@
-"""PPO under corruption: its first loss, the targets of its critic, and that it learns."""
+"""Tests of PPO under corruption: its first loss, the targets of its critic, and that the policy
+improves."""
 
 import numpy as np
 import pytest

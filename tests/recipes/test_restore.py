@@ -1,4 +1,5 @@
-"""Tests that restorers are trained on random poses or a folder, and that thresholds are set."""
+"""Tests that restorers are trained on random poses or on the frames in a folder, and that
+thresholds are set."""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""Tests of self-distillation: the loss is zero for equal answers, and the operations of a step run
-in the right order."""
+"""Tests of self-distillation: the loss is zero if the answers are equal, and a training step does
+everything in the right order."""
 
 import numpy as np
 import pytest

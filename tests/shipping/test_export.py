@@ -202,7 +202,7 @@ def copied(place, tmp_path) -> Path:
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card, and update its sha256 in the manifest."""
+    """Change entries of the card, and update the card's sha256 in the manifest."""
     card = json.loads((folder / "card.json").read_text())
     (folder / "card.json").write_text(json.dumps({**card, **changes}))
     folders.seal(folder, "hardened")

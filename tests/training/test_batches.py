@@ -24,7 +24,7 @@ from tests.tiny import TinyRecipe
 
 
 class Shared(TinyRecipe):
-    """An objective whose batches consist of three pieces that depend on the seed and the
+    """An objective whose batches have three pieces; each piece depends on the seed and the
     weights."""
 
     def __init__(self, ahead: bool = False, fatal: str = "") -> None:

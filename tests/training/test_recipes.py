@@ -48,12 +48,12 @@ def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
     monkeypatch.setattr(stored, "SPACING", 2.0)  # fewer poses, so that fewer features are stored
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # episodes for measuring success
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
-    options.append("workers=0")  # two workers per stage take longer to start than to compute
+    options.append("workers=0")  # starting two workers per stage takes longer than the computation
     cfg = conf.load_config("train", options)
     # a tiny language model, because the real one takes half a minute to load
     if "base" in cfg.agent:
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
-    if cfg.agent.get("encoder", "own") != "own":  # needs an extra, and is slow
+    if cfg.agent.get("encoder", "own") != "own":  # other encoders need an extra and are slow
         cfg.agent.encoder, cfg.agent.size, cfg.env.size = "own", 64, 64
     if "adapters" in cfg.agent and "model" in cfg.agent:  # the default encoder needs an extra
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)

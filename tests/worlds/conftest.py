@@ -1,4 +1,4 @@
-"""Fixtures: a panorama in the formats of the suite and of Habitat."""
+"""Fixtures with a panorama in the format of the suite and in the format of Habitat."""
 
 import numpy as np
 import pytest

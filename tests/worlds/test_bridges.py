@@ -30,7 +30,8 @@ def episode(seed: int) -> Episode:
 
 
 class Brightness:
-    """An agent that stops in dark frames, otherwise takes action 1, and records its frames."""
+    """An agent that stops if the frame is dark and otherwise takes action 1. It records its
+    frames."""
 
     def reset(self, instruction):
         self.seen = []

@@ -88,7 +88,7 @@ def test_failed_scene_is_loaded_again(tmp_path, monkeypatch):
 
 
 def started(rule, monkeypatch):
-    """Return a world at the start of an episode, without a simulator."""
+    """Return a Habitat world at the start of an episode; it has no simulator."""
     reported = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
     habitat = HabitatWorld("scenes", rule=rule)
     vars(habitat).update(episode=reported, path=[np.zeros(3)], start_distance=2.0)

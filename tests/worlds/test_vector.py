@@ -1,4 +1,4 @@
-"""Tests of the wrapper for vector environments of tensors."""
+"""Tests of the wrapper for vector environments that return tensors."""
 
 import gymnasium
 import numpy as np

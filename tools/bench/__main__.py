@@ -3,8 +3,9 @@ evaluation and the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-All measurements except training stages and one evaluation run in this process, on one thread.
-``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an idle machine.
+Training stages and one evaluation run in other processes. All other measurements run in this
+process, on one thread. ``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an
+idle machine.
 """
 
 from __future__ import annotations

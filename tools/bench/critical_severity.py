@@ -32,7 +32,7 @@ CENSORED = 1.0  # value that errors use for a critical severity above 1
 
 @dataclass(frozen=True)
 class Curve:
-    """Parameters of the success curve of an agent.
+    """Parameters of a simulated agent's success curve.
 
     Attributes:
         mean, deviation: normal distribution of the limits.

@@ -1,4 +1,6 @@
-"""Measure evaluation episodes per CPU second, with conditions run separately and together."""
+"""Measure how many evaluation episodes run per CPU second if conditions run separately, and if they
+run together.
+"""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ _POSES = 40  # number of random poses of MiniWorld's agent
 def ours(size: int) -> Callable[[], int]:
     """Return a function that renders a panorama at a random free pose.
 
-    The returned function returns the number of views.
+    The result of the returned function is the number of views that it rendered.
     """
     apartment = Apartment(7)
     renderer = Renderer(size)
@@ -52,9 +52,9 @@ def ours(size: int) -> Callable[[], int]:
 def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return functions that render one view of a MiniWorld scene, in two ways.
 
-    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws it
-    once and reads both images, which is not possible with a public call. Only the scene that was
-    opened last can be drawn, because MiniWorld stores each scene in OpenGL's display list 1.
+    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws a
+    view once and reads both images; no public call can do this. MiniWorld stores every scene in
+    OpenGL's display list 1, so only the scene that was opened last can be drawn.
 
     Raises:
         ImportError: MiniWorld is not installed. If system libraries are missing, pyglet raises

@@ -32,8 +32,9 @@ class Cost:
 
     Attributes:
         steady: Time for consecutive frames of an episode.
-        per_frame: Time if each frame starts a new episode, as in the schedule ``per_frame``.
-        first: Time if each frame also has a new severity, so that tables must be built.
+        per_frame: Time per frame if each frame starts a new episode, as with the schedule
+            ``per_frame``.
+        first: Time per frame if each frame also has a new severity, for which tables must be built.
         copy: Time for a plain copy of the frame.
         peers: Times of other libraries, by name.
     """

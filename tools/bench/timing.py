@@ -15,7 +15,8 @@ from datetime import date
 from importlib import metadata
 from pathlib import Path
 
-CYCLE = 8  # number of different calls in the steady state, such as the frames of an episode
+# number of different calls that are repeated in the steady state, like the frames of an episode
+CYCLE = 8
 LEAST = 5  # minimum number of measured calls, even if they take longer than the given time
 PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")
 

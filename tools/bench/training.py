@@ -102,7 +102,7 @@ class Stage:
 
 
 class Clock:
-    """A clock that adds up the seconds spent in calls of a function."""
+    """A clock that adds up the time of all calls of a function, in seconds."""
 
     def __init__(self) -> None:
         self.seconds = 0.0

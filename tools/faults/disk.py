@@ -1,4 +1,4 @@
-"""Mount a small file system in memory, and fill it."""
+"""Mount a small in-memory file system and fill it."""
 
 from __future__ import annotations
 

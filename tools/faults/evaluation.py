@@ -169,7 +169,7 @@ def close_stdout(evaluation: Evaluation) -> str:
 
 
 def close_reader(evaluation: Evaluation) -> str:
-    """Let the program that reads the output end after the first line, as ``head`` does."""
+    """Pipe the output into ``head``, which ends after the first line."""
     return evaluation.start(redirect="| head -n 1").problem(0)
 
 
@@ -185,7 +185,7 @@ def kill_on_cluster(
 
     Args:
         evaluation: The evaluation.
-        package: The package that the launcher needs.
+        package: The Python package that the launcher needs.
         options: Options of the launcher.
         word: A part of the command line of the process to kill.
         message: A part of the message that reports the lost worker.

@@ -125,7 +125,7 @@ def descendants(pid: int, word: bytes) -> list[int]:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that the threads of ``pid`` started."""
+    """Return the ids of the processes that were started by threads of ``pid``."""
     pids = []
     for file in Path(f"/proc/{pid}/task").glob("*/children"):
         with suppress(OSError):

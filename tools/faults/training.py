@@ -39,8 +39,9 @@ REPLACED = "a new one repeats its work"  # part of the message that reports a de
 # seconds after which a dead worker is usually noticed, because its work is missing
 NOTICE_TIME = 10.0
 TRIES = 4  # maximum attempts to inject a fault before training ends
-DISK = 800  # MB of the file system that is filled
-MAX_FREE = 12 << 20  # free bytes on a full disk (heuristic: less than a checkpoint)
+DISK = 800  # size in MB of the file system that is filled
+# bytes that stay free on the full disk; less than a checkpoint needs (heuristic)
+MAX_FREE = 12 << 20
 
 
 class TooLate(Exception):
@@ -108,7 +109,9 @@ class Training:
         return f"it does not say how to resume: {command.last_lines()}"
 
     def check_resumed(self, command: Command) -> str:
-        """Describe the problem if a stage did not resume from its newest valid checkpoint."""
+        """Return a description of the problem if a stage did not resume from its newest valid
+        checkpoint.
+        """
         for stage, done in self.checkpoints.items():
             matches = re.findall(
                 rf"^{stage}: (?:resumed at step (\d+) |already trained for (\d+) |\d+ steps$)",

@@ -50,7 +50,7 @@ def page(curves: dict[str, Curve], seed: int) -> str:
 
 
 def suites() -> str:
-    """Return a table of ``conf/suite`` with the name and first comment of each file."""
+    """Return a table with the name and the first comment of each file in ``conf/suite``."""
     rows = []
     for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
         head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())

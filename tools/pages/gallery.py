@@ -54,7 +54,7 @@ SHEETS = {  # the corruptions on the sheet of each suite
 
 
 def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
-    """Return the requested views, corrupted, side by side as uint8 RGB."""
+    """Corrupt the requested views; return them side by side as uint8 RGB."""
     if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
@@ -94,8 +94,8 @@ def contact_sheet(
     depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
     if depth.shape != (*rgb.shape[:3], 1):
         raise ValueError(
-            f"RGB {rgb.shape} and depth {depth.shape} are not of the same instant and size. Pass "
-            "[V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
+            f"RGB {rgb.shape} and depth {depth.shape} must have the same number of views and the same "
+            "size. Pass [V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
         )
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
@@ -131,8 +131,9 @@ def primitives(name: str, key: Key) -> list[str]:
 
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start in apartment
-    ``seed``."""
+    """Return RGB [12, H, W, 3] and depth [12, H, W, 1] at the start of an episode in apartment
+    ``seed``.
+    """
     from mitigate.worlds.apartments.apartment import Apartment
     from mitigate.worlds.apartments.simulator import Simulator
     from mitigate.worlds.apartments.tasks import make_episode
@@ -168,7 +169,7 @@ def varied_view(depth: np.ndarray) -> int:
 def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
     """Read RGB from a picture file and depth in metres from a .npy file.
 
-    Raises FileNotFoundError, or ValueError for a file with different content.
+    Raises FileNotFoundError if a file is missing, and ValueError if a file cannot be used.
     """
     for path in (rgb, depth):
         if not path.is_file():
@@ -194,8 +195,9 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run from the command line (see the module's docstring). A mistake of the user exits with
-    status 2 and one line."""
+    """Run from the command line (see the module's docstring). Invalid input prints one line, and
+    the exit status is 2.
+    """
     parser = argparse.ArgumentParser(prog="tools.pages.gallery", description=__doc__)
     parser.add_argument("--out", type=Path, help="picture to write: .png, .jpg or .jpeg")
     parser.add_argument("--rgb", type=Path, help="picture of one view")

@@ -22,7 +22,8 @@ from tools.third_party.ppo import WEIGHTS
 
 PATH = WEIGHTS / "mujoco_reacher.safetensors"
 LINKS = 0.1, 0.11  # metres
-STIFFNESS, DAMPING = 0.5, 0.05  # torque per radian and per radian/s (tuned by hand)
+# spring constant (torque per radian) and damping (torque per radian/s), tuned by hand
+STIFFNESS, DAMPING = 0.5, 0.05
 CAMERA = {"distance": 0.62, "elevation": -90.0, "azimuth": 90.0, "lookat": np.zeros(3)}
 ROUNDS, EPISODES, EPOCHS = 8, 15, 4
 
@@ -84,7 +85,7 @@ def forward(policy: nn.Module, observation: torch.Tensor) -> torch.Tensor:
 
 
 def expert(env: gymnasium.Env) -> np.ndarray:
-    """Return the action of a controller that knows the inverse kinematics."""
+    """Return the action of a controller that computes the inverse kinematics."""
     positions = env.unwrapped.data.qpos
     angles = positions[:2]
     target = positions[2:4]

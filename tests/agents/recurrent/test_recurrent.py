@@ -135,7 +135,8 @@ def test_collect_weights_changes_of_action():
 
 
 def test_rgb_agent_ignores_depth(monkeypatch):
-    monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # the untrained agent does not stop earlier
+    # the untrained agent does not stop before this limit
+    monkeypatch.setattr(simulator, "MAX_STEPS", 60)
     new_agent, episode = agent(RGB), load_episodes("val_seen")[1]
     clean = run_episode(new_agent, World(), episode, Corruption("clean", 0.0), 0)
     gone = run_episode(new_agent, World(), episode, Corruption("missing_data", 1.0), 0)
@@ -174,7 +175,8 @@ def test_act_all_keeps_episodes_independent():
 def test_evaluation_of_many_episodes_gives_equal_rows(tmp_path):
     new_agent, episodes = agent(), load_episodes("val_seen")[:4]
     with torch.no_grad():
-        new_agent.policy.act[-1].bias[STOP] = 0.1  # the agent takes some steps
+        # with this bias, the agent takes some steps before it stops
+        new_agent.policy.act[-1].bias[STOP] = 0.1
     met = [CLEAN, Corruption("low_light", 0.8), Corruption("black_box", 1.0)]
     how = {"name": "test", "split": "val_seen"}
     records = evaluate(new_agent, World, episodes, met, out=tmp_path / "all.jsonl", **how)

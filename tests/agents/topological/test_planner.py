@@ -23,7 +23,7 @@ def planner() -> Planner:
 
 
 def decision(moves: int) -> Decision:
-    """Return a decision after some moves, with about 3 ghosts per move."""
+    """Return the inputs of a decision after some moves; each move adds about 3 ghosts."""
     rng = np.random.default_rng(moves)
     graph, pose = TopologicalMap(), np.zeros(3)
     for _ in range(moves):

@@ -132,7 +132,7 @@ def test_roll_out_depends_only_on_its_generator():
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """Return an untrained agent and its features of the first training apartment."""
+    """Return an untrained agent, and its stored features of the first training apartment."""
     agent = wanderer()
     store = Store(agent, partial(ApartmentsWorld, SIZE, 1), tmp_path_factory.mktemp("stored"))
     store.build()

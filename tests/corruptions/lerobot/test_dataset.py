@@ -45,7 +45,7 @@ def original(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def folder(original, tmp_path) -> Path:
-    """A copy, which a test may damage."""
+    """A copy of the dataset, which a test may damage."""
     return Path(copytree(original, tmp_path / "cups"))
 
 

@@ -1,4 +1,4 @@
-"""Tests that the page contains the numbers and episodes of the rows up to a limit."""
+"""Tests that the page contains the numbers of the rows, and their episodes up to a limit."""
 
 from __future__ import annotations
 
@@ -188,7 +188,7 @@ def test_choose_alternates_outcomes_and_corruptions():
 
 
 def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
-    """Return clean and low-light rows of agents, by their hashes."""
+    """Return clean and low-light rows of the agents with these hashes."""
     output = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):

@@ -1,4 +1,5 @@
-"""Tests of bags as robots record them: camera shapes, encodings, topics, times and damage."""
+"""Tests of bags as robots record them: camera shapes, encodings, topics, times and damaged
+files."""
 
 from __future__ import annotations
 

@@ -241,7 +241,8 @@ def recorded(tmp_path):
         for i, p in enumerate(path_poses())
     ]
     (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    copytree(episode, episode.with_name(".18.4711.tmp"))  # left over from a run that was killed
+    # a temporary folder that a killed run has left behind
+    copytree(episode, episode.with_name(".18.4711.tmp"))
     return tmp_path / "recorded"
 
 
