@@ -94,8 +94,8 @@ def contact_sheet(
     depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
     if depth.shape != (*rgb.shape[:3], 1):
         raise ValueError(
-            f"RGB {rgb.shape} and depth {depth.shape} must have the same number of views and the same "
-            "size. Pass [V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
+            f"RGB {rgb.shape} and depth {depth.shape} must have the same number of views and the "
+            "same size. Pass [V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
         )
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:

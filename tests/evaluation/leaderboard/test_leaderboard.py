@@ -358,8 +358,8 @@ class Dark(ApartmentsWorld):
 
 @pytest.mark.slow
 def test_benchmark_runs_the_script_of_the_page(tmp_path):
-    """The script calls ``benchmark`` without ``if __name__ == "__main__"`` and defines the agent
-    itself; a second run does the same interactively."""
+    """The script defines the agent, and calls ``benchmark`` without ``if __name__ == "__main__"``.
+    It runs from a file and with ``python -c``."""
     script = (
         "import mitigate\n"
         f"{inspect.getsource(Straight)}"
