@@ -4,12 +4,12 @@
         + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel
 
 The last term counts wrong pixels instead of measuring their error. It keeps the restorer from
-changing correct pixels next to drops, stripes or noise. In the first term, the error of restored
-depth that is too far is multiplied by ``w_far``: depth that is too far shows free paths that do not
-exist, which can make an episode fail, while depth that is too near only costs a detour. RGB is in
-[0, 1], and depth is divided by its range. Pixels without a valid clean depth are ignored. Because
-no agent is used in training, one restorer works with all agents. The restorer's gate is trained
-afterwards on fixed maps (``restore_gate.py``).
+changing correct pixels next to drops, stripes or noise. In the first term, the error is multiplied
+by ``w_far`` if restored depth is too far. Depth that is too far can make an episode fail, because
+it shows free paths that do not exist. Depth that is too near only costs a detour. RGB is in [0, 1],
+and depth is divided by its range. Pixels without a valid clean depth are ignored. Because no agent
+is used in training, one restorer works with all agents. The restorer's gate is trained afterwards
+on fixed maps (``restore_gate.py``).
 """
 
 from __future__ import annotations

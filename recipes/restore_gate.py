@@ -2,11 +2,11 @@
 
     L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
 
-The second condition is needed because blurring a partly wrong frame can lower the mean error,
-although an agent loses details. A corrupted frame is ignored if restoring makes it neither clearly
-better nor worse. The inputs of the gate do not change in this stage, so they are computed only
-once, for ``instants`` random time steps. At the end, the threshold is set such that a fraction
-``touched`` of held-out clean frames of the training scenes is above it.
+The limit ``SPENT`` is needed, because blurring a partly wrong frame can reduce its mean error
+although details are lost. A corrupted frame is ignored if restoring makes it neither clearly better
+nor worse. The inputs of the gate do not change in this stage, so they are computed only once, for
+``instants`` random time steps. At the end, the threshold is set such that a fraction ``touched`` of
+held-out clean frames of the training scenes is above it.
 """
 
 from __future__ import annotations

@@ -8,8 +8,8 @@ has four terms:
 * ``w_policy``: the KL divergence of the action distributions (the squared error for actions without
   a distribution),
 * ``w_imitation``: the cross-entropy of the teacher's likeliest action (the squared error for
-  continuous actions), because a small change of the probabilities changes the action of an
-  undecided policy,
+  continuous actions); it is needed because small changes of nearly equal probabilities change the
+  action,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
 * ``w_consistency``: the divergence between the student's answers to two corruptions of one frame.
 

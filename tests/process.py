@@ -87,10 +87,9 @@ def compile_kernels(share: int, workers: int) -> None:
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 
-    Garbage collection is enabled again, but ignores the modules and tests that are loaded by now.
-    It is started here because it starts only once per process, and the first test that needs
-    workers may preload fewer modules. Without pytest-xdist it is not started here, because a single
-    test would have to wait for it.
+    The fork server starts only once per process, and a test might start it with fewer modules. In
+    runs without pytest-xdist it is not started here, because a single test would have to wait for
+    it. Garbage collection is enabled again, but ignores all modules and tests that are loaded now.
     """
     gc.freeze()
     gc.enable()

@@ -1,7 +1,7 @@
 """Run programs as forks of a Python process that has already imported NumPy.
 
-A new interpreter needs a third of a second of CPU time to import NumPy, and the tests of the bridge
-run hundreds of programs. Each fork is set up like a new interpreter, with its own arguments,
+A new interpreter needs a third of a second of CPU time to import NumPy. The tests of the bridge run
+hundreds of programs. Each fork is set up like a new interpreter, with its own arguments,
 environment, path and output. Like a new interpreter, it imports ``sitecustomize``, which loads the
 hook. ``run`` starts one program. ``popen`` starts the supervisor of ``mitigate run``, which starts
 its program as a fork. Some tests start new interpreters (``conftest.py``).

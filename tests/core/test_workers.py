@@ -216,8 +216,8 @@ def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
 
 
 def test_signal_ends_many_jobs_within_a_training(tmp_path):
-    """Measuring success rates takes minutes, so a signal ends the jobs although training delays
-    signals until its step is done."""
+    """Training delays signals until the end of its step. Jobs are ended at once, because measuring
+    success rates takes minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()

@@ -1,5 +1,5 @@
-"""Tests of self-distillation: the loss is zero if the answers are equal, and a training step does
-everything in the right order."""
+"""Tests of self-distillation: the loss is zero if the answers are equal, and the operations of a
+training step have the right order."""
 
 import numpy as np
 import pytest

@@ -2,11 +2,10 @@
 
     python -m tools.bench.training da_per_episode ts_distill --steps 8
 
-Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures the
-time of a step, the part of it in which the trainer waits for the batch, and the time of the forward
-pass, backward pass and update. Then the tool computes the same batches in its own process and times
-each part of the computation. ``make bench`` runs the tool twice: with all processor instructions,
-and with AVX2 at most.
+Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures three
+times: of a whole step, of waiting for the batch, and of the forward pass, backward pass and update.
+Then the tool computes the same batches in its own process and times each part of the computation.
+``make bench`` runs the tool twice: with all processor instructions, and with AVX2 at most.
 """
 
 from __future__ import annotations

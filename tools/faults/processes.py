@@ -81,8 +81,8 @@ class Command:
         return bool(condition())
 
     def message_problem(self, *words: str) -> str:
-        """Wait until the command ends. Return a description of the problem, or "" if the command
-        reports an error with one of the ``words`` and exits with status 1.
+        """Wait until the command ends. Return "" if the command reports an error with one of the
+        ``words`` and exits with status 1, or else a description of the problem.
         """
         problem = self.problem(1)
         named = any(word in self.output() for word in words)

@@ -1,8 +1,8 @@
 """Inject faults into the training run of a recipe, and compare its weights with those of an
 undisturbed run.
 
-The same training run is disturbed by all faults in turn, and resumes after each. If a training run
-ends before a fault could be injected, its weights are compared, and it is deleted and started
+The same training run is disturbed by all faults in turn, and resumes after each. A training run may
+end before a fault is injected. Then its weights are compared, and the run is deleted and started
 again.
 """
 

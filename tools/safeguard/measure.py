@@ -2,9 +2,9 @@
 classifier``.
 
 The texts in ``data/fresh`` were written only for measuring. ``--authors`` selects the texts of some
-authors. A hash of each text assigns it to one of two halves: results on the half "choose" are used
-to choose settings, and results on the half "report" are only reported. ``--r2r FILE`` adds real
-routes, which are not shipped because of their licence.
+authors. A hash of each text assigns it to one of two halves. Settings are chosen on the half
+"choose", and results are reported on the half "report". ``--r2r FILE`` adds real routes, which are
+not shipped because of their licence.
 """
 
 from __future__ import annotations

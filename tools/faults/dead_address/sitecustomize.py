@@ -1,4 +1,4 @@
-"""Put an address that never answers before the addresses of every host, in each Python process
+"""Give every host an additional first address that never answers. This affects each Python process
 whose PYTHONPATH contains this folder.
 
 ``DEAD_PORT`` names a port of this machine whose queue of connections is full, so that a connection
