@@ -1,4 +1,5 @@
-"""Tests of a restorer with the bridge: frames are restored per panorama or camera."""
+"""Tests of a restorer with the bridge: a panorama is restored as a whole, other cameras one by
+one."""
 
 from __future__ import annotations
 
@@ -24,7 +25,7 @@ FILTERS = "tests.guards.filters"
 
 @pytest.fixture
 def restorer():
-    """A restorer that changes every frame to twice the brightness or depth."""
+    """A restorer that doubles the brightness or the depth of every frame."""
     model = Restorer(width=4, depth_width=4).eval()
     with torch.no_grad():
         for sensor, net in model.parts().items():

@@ -40,7 +40,7 @@ class Dark(Guard):
 
 
 class Room:
-    """A world of four steps with frames."""
+    """A world with episodes of four steps, which shows frames."""
 
     rule, sensors, done = "STOP", {}, False
 
@@ -133,7 +133,7 @@ def test_guarded_world_changes_frames_when_they_are_read():
 
 
 class Lower:
-    """A stand-in for the safeguard."""
+    """A fake safeguard."""
 
     identity = "lower 1"
 
@@ -219,7 +219,7 @@ def test_callable_changes_only_what_it_returns():
 
 def test_callable_that_changes_nothing_leaves_the_same_objects():
     observed = frames()
-    observed[DEPTH][0, 0] = np.nan  # as in a hole of a real sensor
+    observed[DEPTH][0, 0] = np.nan  # real sensors return this value for holes
     assert open_callable(f"{FILTERS}:unchanged").observe(observed)[RGB] is observed[RGB]
     before = {name: np.array(frame) for name, frame in observed.items()}
     output = open_callable(f"{FILTERS}:in_place").observe(observed)

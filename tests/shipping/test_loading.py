@@ -1,4 +1,4 @@
-"""Tests that one call loads an agent from any folder, and that its kind is inferred."""
+"""Tests that one function loads an agent from any folder and infers the kind of agent."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from tools.bench.tensors import Batch
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # target: maximum fraction of a training step in which no network computes
+AIM = 0.15  # target: maximum fraction of a training step during which no network computes
 COLUMNS = (
     "corruption",
     "steady",

@@ -1,4 +1,6 @@
-"""Measure the time of every corruption (steady, per frame, first frame), and of other libraries."""
+"""Measure the time of every corruption (steady state, new episode, new severity) and of other
+libraries.
+"""
 
 from __future__ import annotations
 
@@ -17,11 +19,11 @@ from tools.bench.peers import peers
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # severity for R2R in the paper
+SEVERITY = 0.6  # the severity that the paper uses for R2R
 SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-PANORAMA = (12, 224, 224)  # of the slowest pair, low_light_noise and then multipath
-EPISODES = 4  # the steady state is a mean over this many episodes
+PANORAMA = (12, 224, 224)  # for the slowest pair: low_light_noise, then multipath
+EPISODES = 4  # number of episodes over which the steady state is averaged
 
 
 @dataclass(frozen=True)
@@ -30,8 +32,9 @@ class Cost:
 
     Attributes:
         steady: Time for consecutive frames of an episode.
-        per_frame: Time if each frame starts a new episode, as in the schedule ``per_frame``.
-        first: Time if each frame also has a new severity, so that tables must be built.
+        per_frame: Time per frame if each frame starts a new episode, as with the schedule
+            ``per_frame``.
+        first: Time per frame if each frame also has a new severity, for which tables must be built.
         copy: Time for a plain copy of the frame.
         peers: Times of other libraries, by name.
     """
@@ -58,9 +61,9 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Return costs by size and corruption, with unseen corruptions only at the last size.
+    """Return costs by size and corruption; unseen corruptions are measured only at the last size.
 
-    This takes about ``seconds`` for each of several hundred measurements.
+    There are several hundred measurements, and each takes about ``seconds``.
     """
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
@@ -95,7 +98,8 @@ def cost(name: str, frame: np.ndarray, seconds: float, others: dict[str, float])
         seconds: Duration of each measurement.
         others: Times of other libraries.
     """
-    heading = 0.3 if len(frame) > 1 else None  # without heading: the flare is in one view
+    # a single view needs no heading, because the flare is in that view
+    heading = 0.3 if len(frame) > 1 else None
 
     def episode(i, number):
         key = Key(SEED, f"bench {number}", i)
@@ -122,7 +126,9 @@ def cost(name: str, frame: np.ndarray, seconds: float, others: dict[str, float])
 
 
 def worst_pair(seconds: float) -> float:
-    """Return milliseconds of low light with noise and multipath on a panorama, 12 x 224 x 224."""
+    """Return the milliseconds of low_light_noise and multipath together on a panorama of 12 x 224 x
+    224.
+    """
     rgb, depth = frames(*PANORAMA)
 
     def both(i):

@@ -1,4 +1,4 @@
-"""Tests of the benchmark: its clocks, other libraries, and its page."""
+"""Tests of the benchmark: its clocks, its calls of other libraries, and its page."""
 
 from __future__ import annotations
 
