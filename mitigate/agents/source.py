@@ -36,8 +36,9 @@ def _is_users(module: str, file: str) -> bool:
 
 
 def named_values(function: types.FunctionType) -> dict[str, Any]:
-    """Return the values of the global variables and closure variables that ``function`` uses. If
-    ``function`` uses attributes of the user's modules, their values are included.
+    """Return the values of the global variables and closure variables that ``function`` uses.
+
+    If ``function`` uses attributes of the user's modules, their values are included.
     """
     codes = [function.__code__]
     for code in codes:
@@ -58,6 +59,7 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
 
 def source_files(modules: list[str]) -> dict[str, str | None]:
     """Return the source of ``modules`` and of the modules that they import, if the user wrote them.
+
     Comments and layout are left out. The source is None for a module without Python source, such as
     a notebook.
     """

@@ -265,8 +265,8 @@ class Rig:
             memory: Shared memory.
             offsets: Offset of each camera in ``memory``.
             corruption: Corruption to apply; parts for other modalities are ignored.
-            key: Determines the random numbers. heading: The agent's heading in radians; None if
-                unknown.
+            key: Determines the random numbers.
+            heading: The agent's heading in radians; None if unknown.
         """
         changed: list[str] = []
         for group in (g for g in self.groups if g.cameras[0].kind in corruption.modalities):
@@ -393,8 +393,9 @@ def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
 
 
 def _make_groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
-    """Return the groups of a kind of camera, sorted by decreasing size and then by name. This order
-    makes random numbers independent of the order in which cameras are described.
+    """Return the groups of a kind of camera, sorted by decreasing size and then by name.
+
+    This order makes random numbers independent of the order in which cameras are described.
     """
     rings: dict[tuple, dict[int, Camera]] = {}
     single = []

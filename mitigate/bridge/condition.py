@@ -155,8 +155,8 @@ class Words:
             message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
                 ``category``.
             corruption: The corruption of the condition.
-            key: Determines the random numbers. guards: Guards that change the instruction after the
-                corruption.
+            key: Determines the random numbers.
+            guards: Guards that change the corrupted instruction.
 
         Raises:
             ValueError: The corrupted instruction cannot be passed to the agent.
