@@ -97,7 +97,7 @@ def unwritten(file: Path, error: Exception) -> OSError:
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Load weights, which :func:`save_weights` wrote, into ``module``.
+    """Load the weights at ``path``, which :func:`save_weights` wrote, into ``module``.
 
     Names and shapes must match exactly. Float tensors may have a different precision; integers,
     booleans and complex numbers must keep their type. If the weights contain no adapters (like
