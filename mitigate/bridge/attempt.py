@@ -83,7 +83,7 @@ class Attempt:
         except BlockingIOError as error:
             self.lock.close()
             raise ValueError(
-                f"Another run is at work in {folder}. Wait for it, or choose another folder "
+                f"Another run is using {folder}. Wait until it ends, or choose another folder "
                 "(out=...)."
             ) from error
         self.root = output.register(folder, self.lock)

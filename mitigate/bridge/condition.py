@@ -275,7 +275,8 @@ class Subset:
         bound = choice.get("bound")
         if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(choice.get("of")):
             raise ValueError(
-                f"{file} is damaged: bound must be from 0 to 1, and of a whole number >= 0. {again}"
+                f'{file} is damaged: "bound" must be from 0 to 1, and "of" must be a whole number '
+                f">= 0. {again}"
             )
         if choice.get("episodes") != self.count:
             raise ValueError(

@@ -111,8 +111,8 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     constraint = allowed("episode_id", episode_name(scene, episode))
     if constraint:
         raise ValueError(
-            "scene file and id of an episode must make a name that rows can hold "
-            f"({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
+            "the name of an episode, which consists of its scene file and its id, must be valid in "
+            f"rows ({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
         )
     return scene, episode
 

@@ -84,9 +84,9 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     if unexplained:
         raise ValueError(
             f"{file} holds {counted(len(before), 'row')}, and {lost.total()} of them belong to "
-            f"episodes that are in no finished condition any more ({', '.join(unexplained)}). The "
-            "file was not changed. Run these conditions again, or move the file to another folder "
-            "and run the same command again."
+            f"episodes of conditions that are not finished any more ({', '.join(unexplained)}). "
+            "The file was not changed. Run these conditions again, or move the file to another "
+            "folder and run the same command again."
         )
     labels = {name: {row[name] for row in new_rows} for name in LABELS}
     same_episodes = [row for row in before if _condition_and_episode(row) in now]

@@ -35,8 +35,8 @@ def check_url(url: str) -> None:
     """Raise ValueError if ``url`` is not a URL, or if it contains a user, a password or a key."""
     if any(mark in url for mark in "@?#"):
         raise ValueError(
-            "The endpoint's URL holds a user, a password or a key (an @, ? or # in it), which "
-            "would get into the names of results. Give the key in the environment variable "
+            "The endpoint's URL contains a user, a password or a key (an @, ? or #), which would "
+            "become part of names in the results. Give the key in the environment variable "
             f"OPENAI_API_KEY. {_EXAMPLE}"
         )
     try:
@@ -62,14 +62,14 @@ def check_choice(choice: object) -> None:
     url, at, model = choice.rpartition("@")
     if not at and "//" not in choice:
         raise ValueError(
-            "This value names no safeguard that exists, and it is not the address of an endpoint. "
+            "This value names no safeguard that exists and is not the address of an endpoint. "
             f"A name or a path consists of letters, digits and . / ~ + - _. {_EXAMPLE}"
         )
     check_url(url if at else choice)
     if not _MODEL.fullmatch(model) or not urlsplit(url).path:
         raise ValueError(  # without a path, the part before the @ may be a password
             "The endpoint needs the name of a model after the last @, and a path before it. "
-            f"{_EXAMPLE} Where there is no path, end the URL in a slash."
+            f"{_EXAMPLE} If there is no path, end the URL with a slash."
         )
 
 

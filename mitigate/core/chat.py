@@ -144,7 +144,7 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     try:
         answer = answers.get(timeout=seconds)
     except Empty:
-        raise TimeoutError(f"no whole answer within {seconds:g} s") from None
+        raise TimeoutError(f"no complete answer within {seconds:g} s") from None
     if isinstance(answer, Exception):
         raise answer
     return answer
@@ -175,7 +175,7 @@ def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, mo
         pool.clear()
     if len(answer) > most:
         raise ValueError(f"the answer has more than {most} bytes")
-    raise TimeoutError(f"no whole answer within {seconds:g} s")
+    raise TimeoutError(f"no complete answer within {seconds:g} s")
 
 
 def _content(reply: Any) -> str:

@@ -146,7 +146,7 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
         k.removeprefix(prefix): v for k, v in load_tensors(file).items() if k.startswith(prefix)
     }
     if not tensors:
-        raise ValueError(f"The weights {file} hold no part {name!r}.")
+        raise ValueError(f"The weights {file} contain no part {name!r}.")
     used = {*module.state_dict(), *_borrowed(module)}
     tensors = {name: value for name, value in tensors.items() if name in used}
     _fill(module, tensors, file)
@@ -169,7 +169,7 @@ def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> No
         raise ValueError(
             f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} tensors are "
             f"missing, unknown, or of another shape or type ({', '.join(wrong[:4])} ...). "
-            "Build the agent with the config that made them (config.yaml in their folder) or "
+            "Build the agent with the config of these weights (config.yaml in their folder), or "
             "choose other weights."
         )
     module.load_state_dict(tensors, strict=False)
@@ -347,8 +347,8 @@ def _fill_in(module: Any, state: dict[str, Any], prefix: str, *_: Any) -> None:
         raise ValueError(
             f"These weights need {module.public_name} with sha256 "
             f"{bytes(source.tolist()).hex()[:12]}, but the installed one has "
-            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that they were made "
-            "with."
+            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that was used in "
+            "training."
         )
     for name, value in module.public_tensors.items():
         state.setdefault(prefix + name, value)

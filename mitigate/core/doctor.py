@@ -1,6 +1,6 @@
 """Report which requirements this machine meets and which are missing: ``make doctor``.
 
-This module needs only Python itself.
+It needs only Python itself.
 """
 
 from __future__ import annotations

@@ -135,7 +135,7 @@ def _check_kind(folder: Path, kind: str) -> None:
     loose = {"weights", "agent"}
     if manifest is not None and manifest.kind != kind and not {manifest.kind, kind} <= loose:
         raise ValueError(
-            f"{folder} holds files of another kind ({manifest.kind}, not {kind}), which are not "
+            f"{folder} holds files of another kind ({manifest.kind}, not {kind}). They are not "
             "replaced. Name another folder, or delete this one."
         )
 

@@ -90,7 +90,7 @@ class Root:
             if not stat.S_ISDIR(mode):
                 raise UnsafePathError(
                     f"{place} must be a folder, got {_kind(mode)}. {self.folder} itself may be a "
-                    f"link, but nothing inside it. Delete {place} and run the command again."
+                    f"link, but must not contain links. Delete {place} and run the command again."
                 )
             self.seen.add(place)
 

@@ -1133,7 +1133,7 @@ def _check_non_negative(value, name):
     except (TypeError, ValueError):
         number = math.nan
     if not number >= 0:
-        raise ValueError(f"finish({name}={value!r}): it must be a number that is not negative.")
+        raise ValueError(f"finish({name}={value!r}): it must be a number >= 0.")
     return number
 
 
