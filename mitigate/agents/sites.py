@@ -26,7 +26,7 @@ class Site:
         batch: the axis of the frames.
         shape: the shape for two frames.
         order: position of the module's first call among all modules.
-        calls: number of calls in one forward pass.
+        calls: number of calls of the module in one forward pass.
     """
 
     kind: str

@@ -6,8 +6,8 @@ share one embedding space.
 
 A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint. Otherwise, weights could be loaded with a different vocabulary of the same size, and
-each embedding would belong to a wrong word.
+fingerprint. Weights that are loaded with a different vocabulary of the same size would raise no
+error, but assign each embedding to a wrong word.
 """
 
 from __future__ import annotations
@@ -44,7 +44,7 @@ _WORDS = """
     straight swing table take that the then there through to toilet towards turn tv up wait
     walk wardrobe washing way when white with yellow you your
 """
-WORDS = tuple(_WORDS.split())  # all words of the training instructions for apartments
+WORDS = tuple(_WORDS.split())  # all words that occur in the training instructions for apartments
 _WORD = re.compile(r"\[MASK\]|[a-z]+")
 
 

@@ -26,7 +26,7 @@ from mitigate.core.output import open_output
 from mitigate.core.signals import uninterrupted
 
 DISCONNECT_TIME = 5.0  # maximum seconds until the connections of an ended command close (heuristic)
-# a command that lost an episode hangs if it is silent this many times ``patience`` (heuristic)
+# if a command that lost an episode is silent for this many times ``patience``, it hangs (heuristic)
 MAX_SILENCE = 10
 MAX_NAMED = 3  # maximum number of processes that a message lists
 CRASH = (
@@ -65,7 +65,7 @@ class Attempt:
     def start(self) -> None:
         """Start the server and the command in an empty folder.
 
-        Files of an earlier attempt are moved away first.
+        Files of an earlier attempt are moved to another folder first.
 
         Raises:
             ValueError: Another run uses the folder, or the command cannot be started.
@@ -123,7 +123,7 @@ class Attempt:
         """Return None while the command runs; then return a description of the problem, or ""."""
         try:
             return self._poll()
-        except ValueError as error:  # the events are damaged
+        except ValueError as error:  # the file of events is damaged
             self.kill()
             return str(error)
 
@@ -145,7 +145,7 @@ class Attempt:
         self._check_events()
         self.kill()
         problem = self._describe_problem(status)
-        # the clean condition must be measured again
+        # delete its mark, so that the clean condition is measured again
         if cell.clean is not None and cell.extra_episodes():
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:

@@ -22,10 +22,10 @@ from mitigate.guards.guard import Guards
 # maximum bytes of all frames in a call (heuristic); 24 cameras of 1080 x 1920 pixels need 5e8
 MAX_BYTES = 1 << 30
 MAX_CAMERAS = 256  # maximum number of cameras per call (heuristic)
-MAX_MEDIAN = 100.0  # with a larger median depth (metres), a range must be declared (heuristic)
+MAX_MEDIAN = 100.0  # if the median depth is larger (metres), a range must be declared (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")
-_LEVEL = 1e-3  # a camera is level if pitch and roll are smaller (radians)
+_LEVEL = 1e-3  # a camera is level if its pitch and roll are smaller than this (radians)
 _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 
@@ -194,7 +194,7 @@ class Rig:
             for the first rig.
 
     Raises:
-        ValueError: A camera cannot be corrupted, or there are too many.
+        ValueError: A camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(

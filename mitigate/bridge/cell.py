@@ -1,7 +1,7 @@
 """Represent one condition of a run, with its settings and the content of its folder.
 
-``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
-sha256 of the events at that moment. Every reader of a finished condition compares these values
+``done.json`` marks a condition as finished. This file records how many episodes ended, and the size
+and sha256 of the events at that moment. Every reader of a finished condition compares these values
 first, so that a damaged file is never used as a result.
 """
 
@@ -38,7 +38,7 @@ from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
 TAIL = 12  # number of lines of the command's output that an error message repeats
-MAX_HASHED = 1 << 30  # bytes; of larger files that the command names, only the size is compared
+MAX_HASHED = 1 << 30  # for larger files (bytes) that the command names, only the size is compared
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -238,7 +238,7 @@ class Cell:
         if missing := self.missing_episodes():
             return self.describe_missing(missing)
         reports = self.reports()
-        if reports.lost:  # another count_closed was set, or an older version measured it
+        if reports.lost:  # it was measured with another count_closed or by an older version
             return describe_lost(reports)
         if self.recording is not None and not is_whole(self.recording, reports.ends.values()):
             return f"it was not recorded in {self.recording}, or only in part"

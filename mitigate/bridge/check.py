@@ -1,6 +1,7 @@
 """``mitigate run --check -- COMMAND``: run a program up to its first frames, and stop it.
 
-It prints the cameras, the instruction and the applicable conditions, and draws corrupted frames.
+The check prints the cameras, the instruction and the applicable conditions, and draws corrupted
+frames.
 """
 
 from __future__ import annotations

@@ -65,7 +65,7 @@ class Observer:
 
 @dataclass
 class Condition:
-    """A corruption, its seed, and how it is applied.
+    """A corruption, its seed, and the settings with which it is applied.
 
     Attributes:
         corruption: The corruption.
@@ -122,7 +122,9 @@ def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
 
 
 def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> bool:
-    """Return whether the agent needs tokens of corrupted words and ``tokenizer=`` is not set."""
+    """Return whether the agent needs tokens of corrupted words although ``tokenizer=`` is not
+    set.
+    """
     changes_words = any(part.modality == "instruction" for part in corruption.parts)
     reads_tokens = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
     return changes_words and reads_tokens and words.tokenizer is None

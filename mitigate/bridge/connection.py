@@ -48,7 +48,7 @@ def _describe_error(kind: str, error: Exception) -> str:
     """
     if type(error) is ValueError:
         return str(error)
-    if isinstance(error, OSError):  # the error is on the server side, not in the agent's process
+    if isinstance(error, OSError):  # the server, not the agent's process, caused the error
         if error.strerror is None:
             return str(error)
         return f"the run cannot write {error.filename}: {error.strerror}."
@@ -133,7 +133,7 @@ class Connection:
         self.episode = ""
         self.open = False  # whether an episode is running
         self.loop = False  # whether the program runs its own loop without Habitat
-        self.chosen = False  # whether the program supports the choice of episodes
+        self.chosen = False  # whether the program asked which episodes to run
         self.names: list[str] = []  # episode names of a dataset that were received so far
         self.described: list[Any] = []  # camera descriptions that were received so far
         self.kinds: set[str] = set()  # kinds of cameras in this episode ("rgb", "depth")
@@ -212,7 +212,7 @@ class Connection:
         return True
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer a description of cameras by providing shared memory for their frames."""
+        """Answer the description of the cameras with shared memory for their frames."""
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = (
@@ -344,7 +344,8 @@ class Connection:
         for all.
 
         The names arrive in several messages. The final answer is sent when all ``count`` names are
-        known. ``least`` is the minimum number to keep, because Habitat rejects an empty dataset.
+        known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
+        dataset.
         """
         keep = self.condition.keep
         self.names += [str(key) for key in message["keys"]]
@@ -355,7 +356,7 @@ class Connection:
         least = 0 if message.get("least") == 0 else 1
         write_event(self.folder, event="dataset", episodes=count)
         indices = None if keep is None else keep(names, least)
-        if least == 0:  # names from ``wanted``: the program runs exactly these episodes
+        if least == 0:  # the names come from ``wanted``, so the program runs exactly these episodes
             number = count if indices is None else len(indices)
             write_event(self.folder, event="dataset", episodes=count, wanted=number)
         return {"keep": indices}

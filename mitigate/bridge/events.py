@@ -26,7 +26,7 @@ EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
 # maximum bytes of one event (heuristic); a message has at most 1 << 24 bytes
 LONGEST_LINE = 1 << 26
 COUNTS = ("steps", "calls")
-METRES = ("start_distance", "distance")  # they are infinite if no goal can be reached
+METRES = ("start_distance", "distance")  # these may be infinite, if no goal can be reached
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
 HOW = (OVER, RESET, CLOSE)  # ways in which an episode can end with a result
 # metrics that rows contain in addition to success and SPL
@@ -79,7 +79,7 @@ def put_aside(folder: Path, kind: str) -> None:
     """Move the files of an earlier attempt to ``<folder>.<kind>``, replacing that folder.
 
     The lock file stays. Results that the program wrote to ``folder`` are also moved. ``done.json``
-    is deleted first, so that the condition counts as unfinished at once.
+    is deleted first, so that the condition immediately counts as unfinished.
 
     Raises:
         UnsafePathError: ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.

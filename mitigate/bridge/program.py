@@ -5,10 +5,11 @@
     python program.py PARENT PIPE PROGRAM ...
 
 A process that detaches itself (``setsid``, a double fork, ``nohup ... &``) leaves its session. When
-its parent ends, it is no longer a descendant of the command. The supervisor is a child subreaper
-(prctl(2), Linux): such orphans become its children, so the supervisor knows every descendant. The
-supervisor runs until the last descendant has ended. It ends all descendants when it receives
-SIGTERM, or when PARENT, the process that started it, has ended.
+the parent of such a process ends, the process is no longer a descendant of the command. The
+supervisor is a child subreaper (prctl(2), Linux): such orphans become its children, so the
+supervisor knows every descendant. The supervisor runs until the last descendant has ended. The
+supervisor ends all descendants when it receives SIGTERM, or when PARENT, the process that started
+it, has ended.
 
 A fork of the supervisor starts the program and waits for it. If the program kills its parent, it
 kills only this fork, and the supervisor stays alive.
@@ -115,8 +116,9 @@ class Command:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
         Args:
-            connected: Returns whether any of the processes is connected to the bridge. If the
-                command has ended and no process is connected, SIGKILL follows at once.
+            connected: Function that returns whether any of the processes is connected to the
+                bridge. If the command has ended and no process is connected, SIGKILL follows at
+                once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)

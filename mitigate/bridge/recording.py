@@ -1,6 +1,6 @@
 """Record an agent's episodes: clean frames, instructions, poses, actions and metrics.
 
-A recording has one folder ``<scene>/<episode>/`` per episode. It contains one file
+A recording has one folder ``<scene>/<episode>/`` per episode. This folder contains one file
 ``<camera>/000000.png`` per camera and call (RGB, or depth as 16-bit millimetres), ``cameras.json``,
 ``episode.json``, ``steps.jsonl`` (one line per call) and ``end.json``. ``mitigate corrupt``,
 ``mitigate replay`` and ``recipe=encoder`` (env=frames) read such recordings.
@@ -54,8 +54,8 @@ def unique_part(name: str) -> str:
 class Recorder(Observer):
     """Observer that writes frames, poses and results to ``folder``.
 
-    An episode is first written to a temporary folder. When it ends, this folder replaces any
-    earlier recording of the episode.
+    An episode is first written to a temporary folder. When the episode ends, this folder replaces
+    any earlier recording of the episode.
 
     Attributes:
         folder: The folder of the condition.

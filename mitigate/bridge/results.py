@@ -101,8 +101,7 @@ class Reports:
             )
 
     def without_closed(self) -> Reports:
-        """Discard episodes that ended because their Env was closed, if several Envs ran in
-        parallel.
+        """Discard the episodes that closing an Env ended, if several Envs ran in parallel.
 
         An evaluator with parallel environments cuts off running episodes when it closes the Envs. A
         single Env, however, may be closed to end its episode.
@@ -225,9 +224,9 @@ def _common_rules(reports: Reports) -> list[Rule]:
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
     """Return the requested success rule and the common success rule.
 
-    The common rule is omitted if the task has none. It is also omitted if it cannot judge every
-    episode that the agent's own rule can judge, or if neither this condition nor the clean
-    condition reports a distance.
+    The common rule is omitted if the task has none. The common rule is also omitted if it cannot
+    judge every episode that the agent's own rule can judge, or if neither this condition nor the
+    clean condition reports a distance.
     """
     common = _common_rules(reports)
     ends = [*reports.ends.values()]
@@ -264,8 +263,8 @@ def _goal_distance(end: dict[str, Any]) -> Any:
 def _missing(end: dict[str, Any], rule: Rule) -> str:
     """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or "".
 
-    A reported failure without a distance is a failure by every rule. So is an episode that ends too
-    far from the goal, with or without STOP.
+    A reported failure without a distance is a failure by every rule. An episode that ends too far
+    from the goal is also a failure, with or without STOP.
     """
     metres = _goal_distance(end)
     if metres is None:

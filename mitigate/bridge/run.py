@@ -141,7 +141,7 @@ def _check_rule(cells: Sequence[Cell]) -> None:
 
 
 def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """Return the corrupted conditions whose corruption can reach the agent.
+    """Return the conditions whose corruption can reach the agent.
 
     The function prints the other conditions, and the number of instructions in other languages.
 
@@ -215,9 +215,9 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
         while waiting or running:
             while waiting and len(running) < jobs:
                 attempt = Attempt(waiting.pop(0))
-                # append before the start, so that an interrupted start is cleaned up
+                # append the attempt before its start, so that an interrupted start is cleaned up
                 running.append(attempt)
-                if start_problem := _start(attempt):  # the others continue
+                if start_problem := _start(attempt):  # the other conditions continue
                     running.remove(attempt)
                     problems.append(f"{attempt.cell.name}: {start_problem}")
             time.sleep(PAUSE)
@@ -352,7 +352,7 @@ def hydra_main(cfg: DictConfig) -> None:
         run(config, _command)
 
 
-_command: list[str] = []  # the words after --
+_command: list[str] = []  # the words after "--"
 
 
 def main() -> None:

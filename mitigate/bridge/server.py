@@ -32,7 +32,7 @@ MEMORY = Path("/dev/shm")
 
 
 class Listener:
-    """Serves the processes of a command, in a separate process, until it is closed.
+    """Server for the processes of a command; it runs in a separate process until it is closed.
 
     Args:
         condition: Corrupts frames and instructions.
@@ -74,7 +74,7 @@ class Listener:
         listening.close()
         # the child has already done this, or it has ended
         with suppress(PermissionError, ProcessLookupError):
-            os.setpgid(self.pid, self.pid)  # in its own group, its forks end with it
+            os.setpgid(self.pid, self.pid)  # its forks are in the same group and end with it
         return self
 
     def __exit__(self, *_: object) -> None:

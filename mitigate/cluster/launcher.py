@@ -34,7 +34,7 @@ def chosen(launcher: LauncherConfig) -> LauncherConfig:
 
 
 def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int) -> int:
-    """Return how many workers (for SLURM: jobs) to start.
+    """Return the number of workers to start (for SLURM, the number of SLURM jobs).
 
     Args:
         launcher: place where the workers run.

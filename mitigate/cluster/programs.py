@@ -104,8 +104,8 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``). A result is a problem, or "" after
-    success.
+    """Task that runs chains in workers (``core/workers.py``). The result of a chain is a problem,
+    or "".
     """
 
     preload: ClassVar[str] = "mitigate.cluster.programs"

@@ -32,8 +32,8 @@ from mitigate.core.workers import SECOND, Task, lost, numbered
 from mitigate.core.workers import results as run_here
 
 CLUSTERS = ("slurm", "local")
-LATE = 30.0  # maximum seconds until SLURM jobs without remaining work end (heuristic)
-TASK = "task.pickle"  # only files of this name, which the submitting process wrote, are unpickled
+LATE = 30.0  # maximum seconds that SLURM jobs may take to end after their last result (heuristic)
+TASK = "task.pickle"  # only this file, which the submitting process wrote, is unpickled
 
 
 @dataclass
@@ -43,7 +43,7 @@ class _Share:
     Attributes:
         job: the job object of submitit.
         groups: groups of (number, job).
-        lines: the file to which it writes results.
+        lines: the file to which the SLURM job writes results.
         left: the jobs that have no result yet, by number.
         attempt: number of the attempt.
         read: number of bytes of ``lines`` that were read.
@@ -191,7 +191,7 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield each new result of a share; an incomplete last line is read later.
+    """Yield each new result of a SLURM job; an incomplete last line is read later.
 
     Raises a ValueError if the job wrote one.
     """

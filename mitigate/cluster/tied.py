@@ -2,8 +2,8 @@
 
 When a worker of a cluster is killed, its programs would otherwise keep running and write to the
 same files as the next worker. On Linux, the programs end together with the worker (prctl(2)); on
-other systems they do not. This file imports only the standard library. Its process then replaces
-itself by the program.
+other systems they do not. This file imports only the standard library. The process that runs it
+then replaces itself by the program.
 """
 
 import ctypes

@@ -49,7 +49,7 @@ def check_url(url: str) -> None:
 
 
 def check_choice(choice: object) -> None:
-    """Raise ValueError if a value of ``safeguard=`` is not text or is an invalid address.
+    """Raise ValueError if a value of ``safeguard=`` is not a string or is an invalid address.
 
     Names, paths without special characters and existing folders are accepted. Any other value may
     contain a password in any form, so it must have the form ``URL@model``.

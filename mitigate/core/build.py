@@ -25,8 +25,8 @@ COLLECT = "builtins.dict"  # a _target_ that only returns the built arguments
 def build(node: Mapping[str, Any], **arguments: Any) -> Any:
     """Return the object that ``node`` describes.
 
-    The constructor receives nested lists and mappings as plain lists and dicts. It receives an
-    entry with ``_partial_: true`` as a :class:`Maker`.
+    The constructor receives nested lists and mappings as plain lists and dicts. The constructor
+    receives an entry with ``_partial_: true`` as a :class:`Maker`.
 
     Args:
         node: a mapping with ``_target_`` and the arguments of the target.

@@ -2,9 +2,9 @@
 safetensors file.
 
 A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256
-(``checksums.py``). Both are checked before the weights are read. Weights without a checksum, from
-an older version or another project, are also accepted. ``training/states.py`` handles the states
-from which training resumes.
+(``checksums.py``). Manifests and sidecars are checked before the weights are read. Weights without
+a checksum, from an older version or another project, are also accepted. ``training/states.py``
+handles the states from which training resumes.
 """
 
 from __future__ import annotations
@@ -205,7 +205,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
         ValueError: The file is damaged.
         PermissionError: The user has no permission to read the file.
     """
-    # raise PermissionError here, because such a file is not damaged
+    # a missing permission raises PermissionError here, because it does not mean that the file is
+    # damaged
     file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
@@ -228,7 +229,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 def _header_problem(file: Path) -> str:
     """Describe the problem if the header does not fit the size of the file; do not read tensors.
 
-    Otherwise, computing the sha256 of a sparse file of several terabytes would take hours.
+    Without this check, computing the sha256 of a sparse file of several terabytes would take hours.
     """
     try:
         with safe_open(file, "pt"):
@@ -265,8 +266,8 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
     """Write the weights of ``agent`` and its settings into ``folder``.
 
     Args:
-        agent: the agent. If it has a method ``save`` (:class:`OwnFormat`), this method writes the
-            weights; otherwise :func:`save_weights` does.
+        agent: the agent. If the agent has a method ``save`` (:class:`OwnFormat`), this method
+            writes the weights; otherwise :func:`save_weights` does.
         folder: the folder.
         config: text of ``config.yaml``, or None to write no such file.
     """

@@ -3,7 +3,7 @@
 The states of training runs have sidecars. Folders have a manifest instead (``core/folders.py``).
 
 While a file is being replaced, its sidecar lists the checksums of the old and of the new file.
-Therefore, the file matches its sidecar even if the program is killed at that moment.
+The file therefore matches its sidecar even if the program is killed during the replacement.
 """
 
 from __future__ import annotations
@@ -60,7 +60,7 @@ def problem(path: Path) -> str:
         sidecar.
 
     Raises:
-        PermissionError: The user has no permission to read the file, so damage is not known.
+        PermissionError: The user has no permission to read the file; it may be intact.
     """
     note = sidecar(path)
     if not note.is_file():

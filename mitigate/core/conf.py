@@ -304,9 +304,7 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
 
 
 def _notice(key: str, whole: bool, exists: bool, names: list[str]) -> str:
-    """Return the warning for ``+key=``; ``whole`` tells whether its value is a list or a
-    mapping.
-    """
+    """Return the warning for ``+key=``; ``whole`` is true if the value is a list or a mapping."""
     if exists and not whole:
         return ""  # Hydra rejects it
     if exists:

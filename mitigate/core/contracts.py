@@ -15,14 +15,12 @@ def read(thing: Any, *names: str, default: Any = None) -> Any:
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """Copy those attributes in ``names`` that ``thing`` has to ``view``, replacing its defaults."""
+    """For each of ``names`` that ``thing`` has, replace the attribute of ``view`` by its value."""
     for name in names:
-        if hasattr(thing, name):  # only this function reads these attributes of a user's object
+        if hasattr(thing, name):  # no other function reads these attributes of a user's object
             setattr(view, name, getattr(thing, name))
 
 
 def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return those ``names`` that ``thing`` does not have, or whose value is empty (the
-    default).
-    """
+    """Return those ``names`` that ``thing`` lacks, or whose value is empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

@@ -28,8 +28,8 @@ _INSTALLED = {"site-packages", "dist-packages"}
 def error_message(error: ValueError | OSError) -> str:
     """Return a paragraph that explains an error.
 
-    For an error in the user's code, the paragraph names the file and line. For a system error, it
-    names the file, and how to fix a full disk. Control characters are escaped.
+    For an error in the user's code, the paragraph names the file and line. For a system error, the
+    paragraph names the file, and what to do if the disk is full. Control characters are escaped.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)

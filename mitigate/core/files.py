@@ -74,7 +74,7 @@ def places(path: str | Path) -> list[Path]:
     The candidates are in the current folder, the package mitigate-weights, the checkout, and the
     folder that ``MITIGATE_WEIGHTS`` names.
     """
-    path = Path(os.path.expanduser(path))  # stays unchanged if the user is unknown
+    path = Path(os.path.expanduser(path))  # "~" stays unchanged if the user is unknown
     if path.parts[:1] != (WEIGHTS,):
         return [path, ROOT / path, PACKAGE / path]
     package = find_spec(WEIGHTS_PACKAGE)
@@ -209,8 +209,8 @@ def draft_path(path: Path) -> Path:
 def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty temporary file that is renamed to ``path`` after the block.
 
-    The temporary file is in the same folder, which is created if needed. It is flushed to disk and
-    gets the permissions of the umask. If the block raises an error, the file is deleted.
+    The temporary file is in the same folder, which is created if needed. The file is flushed to
+    disk and gets the permissions of the umask. If the block raises an error, the file is deleted.
     """
     temporary = draft_path(path)
     with output.writing(path):
@@ -221,7 +221,8 @@ def _draft(path: Path) -> Iterator[Path]:
         yield temporary
         with output.writing(path):
             output.check(path)
-            temporary.chmod(mode)  # safetensors replaces the file by a file with mode 600
+            # needed because safetensors replaces the file by a file with mode 600
+            temporary.chmod(mode)
             with open(temporary, "rb+") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)

@@ -10,9 +10,9 @@ Every folder that this project ships or trains has the same layout::
 A folder in the format of another library keeps the names of that library, such as
 ``adapter_config.json`` of PEFT. ``core/older_folders.py`` reads folders of earlier versions.
 
-When a folder is updated, files are replaced one by one. Meanwhile, the manifest lists both the new
-files and the files that they replace. A reader therefore gets either all old files or all new
-files, or rejects the folder.
+When a folder is updated, files are replaced one by one. During the update, the manifest lists both
+the new files and the files that they replace. A reader therefore gets either all old files or all
+new files, or rejects the folder.
 """
 
 from __future__ import annotations
@@ -104,7 +104,7 @@ def replace_folder(target: Path) -> Iterator[Path]:
     """Yield an empty temporary folder that is renamed to ``target`` if the block succeeds.
 
     An existing ``target`` is replaced as a whole. If the process is killed at any moment, the next
-    call repairs the folder (:func:`repair_folder`).
+    call repairs ``target`` (:func:`repair_folder`).
     """
     repair_folder(target)
     aside = draft_path(target)
@@ -218,7 +218,8 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
-    """Return the manifest of ``folder``, or the file list in an older folder's card, or None.
+    """Return the manifest of ``folder``, or the list of files in the card of an older folder, or
+    None.
 
     Raises:
         ValueError: The manifest or the card is invalid. The message ends with the advice ``again``.
@@ -330,7 +331,7 @@ def problem(file: Path) -> str:
         manifest or sidecar lists it.
 
     Raises:
-        PermissionError: The user has no permission to read the file, so damage is not known.
+        PermissionError: The user has no permission to read the file; it may be intact.
     """
     try:
         manifest = read_manifest(file.parent)

@@ -32,9 +32,9 @@ class FolderLock:
     """Context manager that creates ``folder`` and locks it while a process writes to it.
 
     The lock is a record lock of the system (``fcntl``) on a file in the folder. The system releases
-    it when the process ends, even if the process is killed. Worker processes do not inherit the
-    lock. The lock also excludes processes on other machines if the file system supports this. On a
-    file system without locks, nothing is locked.
+    the lock when the process ends, even if the process is killed. Worker processes do not inherit
+    the lock. The lock also excludes processes on other machines if the file system supports this.
+    On a file system without locks, nothing is locked.
 
     While a folder is locked, every write below the folder checks that the folder and the lock file
     are still the same (``core/output.py``). The same check is made at the end of the block.
@@ -119,7 +119,7 @@ class FolderLock:
             self._file = None
 
     def _in_use_message(self, file: IO[str]) -> str:
-        """Return the error message for a lock that another process has."""
+        """Return the error message for a lock that another process holds."""
         file.seek(0)
         try:
             note = json.loads(file.read(4096))
@@ -146,8 +146,9 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
     not searched.
 
-    Call this while the lock is held: then an unfinished file with this process's number must belong
-    to an earlier process, for example after a container was restarted.
+    Call this only while this process holds the lock. Then an unfinished file with the process id of
+    this process must come from an earlier process with the same id, for example after a restart of
+    a container.
     """
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]

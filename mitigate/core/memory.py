@@ -13,7 +13,7 @@ class Memory:
 
     A result is an array, a tensor, or a tuple of these. Results are returned without a copy, so
     callers must not change them. The cache has no lock, so that a process may fork at any time.
-    Therefore, two threads may compute the same result.
+    Two threads may therefore compute the same result.
     """
 
     def __init__(self, limit: int) -> None:
@@ -47,7 +47,7 @@ class Memory:
 def give_back() -> None:
     """Return freed memory to the system; this takes a few milliseconds.
 
-    glibc keeps freed memory for later use. If array sizes vary, it keeps more and more memory.
+    glibc keeps freed memory for later use. If array sizes vary, glibc keeps more and more memory.
     """
     with suppress(AttributeError, OSError, TypeError):  # the C library may not be glibc
         ctypes.CDLL(None).malloc_trim(0)

@@ -59,7 +59,7 @@ def printable(message: str) -> str:
     """Return ``message`` without control characters except line breaks, for output on a terminal.
 
     A message may quote names from files, and these may contain escape sequences of terminals. A
-    message that is longer than ``LONGEST_MESSAGE`` is cut.
+    message longer than ``LONGEST_MESSAGE`` characters is cut.
     """
     lines = message[:LONGEST_MESSAGE].split("\n")
     return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)

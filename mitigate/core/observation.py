@@ -8,9 +8,9 @@ agent.
 * ``pose``   float32 ``[3]`` = (x, y, heading): metres, metres, radians, in the plan frame
 
 View ``k`` faces ``30 k`` degrees to the RIGHT of the heading (clockwise, seen from above).
-``heading`` is an angle in counter-clockwise direction; the agent faces ``(-sin h, cos h)``. A point
-(x, y) of the plan frame has the coordinates ``x = x`` and ``z = -y`` in the VLN-CE frame, where
-``y`` is the height.
+``heading`` is an angle in counter-clockwise direction; the agent faces ``(-sin h, cos h)``. The
+point (x, y) in the plan frame is the point (x, height, -y) in VLN-CE's frame, whose second axis
+points up.
 """
 
 from __future__ import annotations
@@ -108,7 +108,7 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
 
 class Observation(Mapping[str, Any]):
-    """An observation whose frames are rendered when one of them is first read.
+    """An observation that renders its frames when one of them is read for the first time.
 
     Args:
         ready: available entries, such as the pose.

@@ -1,8 +1,8 @@
 """Parse paths, ``key=value`` options and flags of a command line, before any config is read.
 
 Commands without Hydra use :func:`paths_and_options`. The other commands pass their options to Hydra
-(``core/conf.py``). Before that, they check for words that Hydra would accept without a warning or
-reject with an unclear message.
+(``core/conf.py``). Before that, these commands reject words that Hydra would accept without a
+warning or reject with an unclear message.
 """
 
 from __future__ import annotations
@@ -145,7 +145,7 @@ def check_dashes(options: Sequence[str]) -> None:
 def flags_first(words: Sequence[str]) -> list[str]:
     """Move the multirun flag and the option for the folder of configs to the front of ``words``.
 
-    Between other options, Hydra does not recognise them.
+    Hydra does not recognise these options between others.
     """
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])

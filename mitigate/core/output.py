@@ -2,8 +2,8 @@
 
 Every file that is written in place goes through :func:`open_output`, and every file that replaces
 an existing file goes through ``mitigate/core/files.py``. A folder that was cloned or unpacked may
-contain links, FIFOs and devices instead of our files. These are rejected before anything is
-written.
+contain links, FIFOs and devices instead of our files. Links, FIFOs and devices are rejected before
+anything is written.
 """
 
 from __future__ import annotations
@@ -127,8 +127,8 @@ def lost(*paths: Path) -> FolderLostError:
 def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
     """Watch an existing ``folder`` until :func:`unregister`.
 
-    Until then, every write below the folder checks that the folder and its ``lock`` are unchanged,
-    and that no subfolder on the path is a link.
+    While the folder is watched, every write below it checks that the folder and its ``lock`` are
+    unchanged, and that no subfolder on the path is a link.
     """
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
@@ -150,7 +150,7 @@ def unregister(root: Root) -> None:
 def writing(path: Path | str) -> Iterator[None]:
     """Explain system errors that occur while the block writes the file or folder ``path``.
 
-    The error keeps its type, and its message states that the path cannot be written and what to do.
+    The error keeps its type. Its message states that the path cannot be written, and what to do.
     """
     try:
         yield

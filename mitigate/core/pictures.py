@@ -38,7 +38,9 @@ def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.n
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """Return the RGB frame of an observation, or else its depth, as uint8 [H, W, 3], or None."""
+    """Return a picture uint8 [H, W, 3] of an observation's RGB frame, or else of its depth, or
+    None.
+    """
     entries = observation or {}
     frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
     if frame is None:

@@ -3,9 +3,9 @@
 The choice depends only on the device. The choice is not based on timing, because on a busy machine
 the same command could then choose a different format and train different weights.
 
-The trainer stores its choice in the checkpoint. It runs all computations inside :func:`computing`:
-forward passes, rollouts, teachers and feature caches. Weights stay float32, and evaluations compute
-in float32, so that rows from different machines can be compared.
+The trainer stores its choice in the checkpoint. The trainer runs all computations inside
+:func:`computing`: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
+evaluations compute in float32, so that rows from different machines can be compared.
 """
 
 from __future__ import annotations

@@ -35,8 +35,8 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     if precision in ("int8", "nf4"):
         from transformers import BitsAndBytesConfig
 
-        # hide a warning that bitsandbytes would repeat for every matrix product: it computes in
-        # float16
+        # hide the warning that products are computed in float16, which would be repeated for every
+        # product
         logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
         quantised: dict[str, Any] = {"load_in_8bit": True}
         if precision == "nf4":

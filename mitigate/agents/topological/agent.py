@@ -2,7 +2,7 @@
 
 ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
 agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
-observation renders no other frames.
+observation renders frames only for decisions.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, POSE, RGB, 
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# only for type checkers, because this module imports tensordict, which is as slow as torch
+# only for type checkers, because the module imports tensordict, whose import is as slow as torch's
 if TYPE_CHECKING:
     from mitigate.agents.topological.stored import Store
 
@@ -101,7 +101,8 @@ class TopologicalAgent(Agent, nn.Module):
     """
 
     fingerprint_kind = (
-        "mitigate.agents.topological.agent.TopologicalAgent"  # in published fingerprints
+        # this name is part of published fingerprints
+        "mitigate.agents.topological.agent.TopologicalAgent"
     )
 
     run_state = ("_memory", "_started")
@@ -149,7 +150,7 @@ class TopologicalAgent(Agent, nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
-            size = SIZE  # same depth encoder as in the base agent
+            size = SIZE  # use the same depth encoder as the base agent
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -298,7 +299,7 @@ class TopologicalAgent(Agent, nn.Module):
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return the view features of one sensor's frames (``agents/agent.py``).
 
-        For RGB, they include the probabilities of concepts.
+        The features of RGB frames include the probabilities of concepts.
         """
         if sensor == DEPTH:
             features, logits = self.encode_depth(frames)
@@ -406,8 +407,8 @@ class TopologicalAgent(Agent, nn.Module):
         return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the route after a motion that the agent did not choose. It decides at the next
-        step.
+        """Discard the route after a motion that the agent did not choose. The agent decides again
+        at its next step.
         """
         self.controller = Controller()
         self._chosen = None

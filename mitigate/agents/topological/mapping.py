@@ -13,7 +13,7 @@ import numpy as np
 
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
-MERGE = 0.6  # metres (ETPNav: 0.5)
+MERGE = 0.6  # distance in metres; ETPNav uses 0.5
 SIGHTINGS = 4  # number of views that are stored per ghost
 GEOMETRY = 12  # number of features of a token's position relative to the agent
 _STOP, _NODE, _GHOST = 0, 1, 2

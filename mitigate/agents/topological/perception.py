@@ -10,7 +10,7 @@ target here is the free space itself.
 ``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
 its ImageNet weights. It is an example of the pretrained encoders that users have, such as ResNet-50
 or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied. A
-checkpoint contains only the other tensors, such as adapters.
+checkpoint contains only tensors that are not public, such as adapters.
 """
 
 from __future__ import annotations

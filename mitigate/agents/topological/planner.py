@@ -55,7 +55,7 @@ class DecisionBatch:
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
     """Pad decisions and join them into a batch.
 
-    For decision i, ``episodes[i]`` is the index of its text, and ``offsets[i]`` the index of the
+    ``episodes[i]`` is the index of the text of decision i, and ``offsets[i]`` is the index of the
     first panorama of its episode.
     """
     n = max(len(d.nodes) for d in decisions)
@@ -90,9 +90,9 @@ class Planner(TextReader):
         text_layers: transformer layers over the text.
         layers: cross-modal layers.
         dropout: dropout rate.
-        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). They weight the views
-            of a node or ghost by the reliability of the encoder features. If None, all views have
-            equal weights.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). The weigher weights
+            the views of a node or ghost by the reliability of the encoder features. If None, all
+            views have equal weights.
         vocabulary: words of the instructions, or None for the default vocabulary.
     """
 

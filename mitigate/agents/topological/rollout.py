@@ -2,7 +2,7 @@
 
 The oracle chooses among the ghost nodes of the map; a schedule sets the fraction of decisions that
 follow the oracle. A *walk* executes the decisions of one episode. The class ``LiveWalk`` executes
-them in any world, and ``StoredWalk`` (``stored.py``) moves between poses with stored features.
+decisions in any world, and ``StoredWalk`` (``stored.py``) moves between poses with stored features.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from mitigate.worlds.world import World, expert_of
 
 # the oracle stops at most this many metres from the goal, if the world counts that as success
 STOP_WITHIN = 1.0
-STOP_BEST = 1.75  # the limit if no ghost node is closer to the goal
+STOP_BEST = 1.75  # this limit applies if no ghost node is closer to the goal
 # temperature in metres; ghost nodes with similar costs get similar target probabilities
 _TEMPERATURE = 0.3
 STOP_WEIGHT = 1.5  # weight of stop decisions, which are about one decision in six
@@ -171,7 +171,7 @@ def roll_out(
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run all walks until the oracle stops, the limit is reached or the episode ends.
+    """Run all episodes; each runs until the oracle stops, the limit is reached or the episode ends.
 
     Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
     from the planner's distribution over ghosts. The planner never stops an episode, so that traces
@@ -180,7 +180,7 @@ def roll_out(
     Args:
         planner: the planner.
         tokens: int64 [E, L], the instructions.
-        walks: one walk per episode.
+        walks: one :class:`Walk` per episode.
         look: function that encodes the current panorama of each walk.
         follow_oracle: probability of following the oracle.
         rngs: one random generator per walk, so that its samples do not depend on the other walks.

@@ -334,8 +334,8 @@ class Store:
         features do not depend on the number of processes.
 
         Args:
-            workers: number of worker processes. None uses one per core if there is enough work, and
-                0 uses only this process.
+            workers: number of worker processes. None starts one process per core if there is enough
+                work, and 0 uses only this process.
         """
         for folder in (self.folder, self.corrupted) if self.variants else (self.folder,):
             delete_abandoned(make_folder(folder).glob(".*.tmp"))

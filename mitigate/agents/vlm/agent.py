@@ -2,7 +2,8 @@
 
 The logits of a decision are the log-likelihoods of the allowed answers, so every objective that
 trains on decisions (imitation, distillation, self-distillation) also trains this agent. Only LoRA
-weights are trained. ``save`` writes them as a PEFT folder, which other code can load.
+weights are trained. ``save`` writes the LoRA weights as a PEFT folder, which other programs can
+load.
 """
 
 from __future__ import annotations
@@ -82,7 +83,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     frozen = ("network",)
     own_config_only = ("model",)
     brings_weights = True
-    base_sha256: Tensor  # uint8 [32], of the model's weights
+    base_sha256: Tensor  # uint8 [32], the sha256 of the model's weights
     _answer_ids: Tensor  # [n, L]
     _is_answer: Tensor  # bool [n, L]
 
@@ -303,7 +304,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # files ------------------------------------------------------------------------------------
 
     def save(self, folder: str | Path) -> None:
-        """Write the LoRA weights in PEFT's folder format, with the sha256 of their base.
+        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model.
 
         Raises ValueError if the agent has no LoRA weights.
         """
@@ -313,7 +314,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
             self.network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
             for file in draft.iterdir():
                 if file.name not in (CONFIG, PEFT_WEIGHTS):
-                    file.unlink()  # PEFT's README template
+                    file.unlink()  # this is PEFT's template of a README
             base = {"model": self.model, "sha256": self._base()}
             write_text(draft / BASE, json.dumps(base, indent=1) + "\n")
 
@@ -381,7 +382,8 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
         mask: bool [n, L], False for padding.
     """
     prompt = network(**inputs, use_cache=True, logits_to_keep=1)
-    name = "cache" if "cache" in prompt else "past_key_values"  # transformers 5.24 renamed it
+    # transformers 5.24 renamed this argument
+    name = "cache" if "cache" in prompt else "past_key_values"
     prompt[name].batch_repeat_interleave(len(ids))
     logits = prompt.logits[:, -1:].expand(len(ids), -1, -1)
     if ids.shape[1] > 1:
@@ -395,7 +397,7 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
 
 
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
-    """Add LoRA to the linear modules of ``network`` whose names ``lora`` contains.
+    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``.
 
     Raises ValueError if a name matches no module.
     """

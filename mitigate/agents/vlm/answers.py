@@ -18,7 +18,9 @@ LONGEST = 200
 
 
 class Answer(NamedTuple):
-    """An answer of the model: its ``text``, and the low-level ``action`` that is repeated."""
+    """An answer of the model: its ``text``, and the low-level ``action`` that it stands for,
+    repeated.
+    """
 
     text: str
     action: int

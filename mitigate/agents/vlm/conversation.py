@@ -99,11 +99,11 @@ class AnsweringAgent(Agent):
         self.system_prompt = system_prompt
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
-        """Return the answer of each episode to its last frame."""
+        """Return, for each episode, the model's answer to its last frame."""
         raise NotImplementedError(f"{type(self).__name__} defines no ask(memories)")
 
     def messages(self, instruction: str, system: str | None, images: Sequence[Any]) -> list[dict]:
-        """Return the conversation. The entries of ``images``, one per frame, precede the text."""
+        """Return the conversation, in which ``images`` (one entry per frame) precede the text."""
         text = question(self.task, self.answers, instruction)
         user = {"role": "user", "content": [*images, {"type": "text", "text": text}]}
         if system is None:

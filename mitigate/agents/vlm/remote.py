@@ -1,4 +1,4 @@
-"""The remote agent asks a served vision-language model over HTTP (OpenAI-compatible chat).
+"""The remote agent asks a vision-language model over HTTP (OpenAI-compatible chat).
 
 The model runs on a different machine, for example in vLLM. Several episodes run at once, each with
 its own request, deadline and retries.
@@ -100,7 +100,7 @@ class RemoteAgent(AnsweringAgent):
         self.unreadable = 0
 
     def settings(self) -> dict[str, Any]:
-        """Return the arguments that determine the actions, so without deadlines and retries."""
+        """Return the arguments that determine the actions; deadlines and retries are left out."""
         return dict(self._settings)
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:

@@ -4,8 +4,9 @@ process.
 ``mitigate run -- COMMAND`` puts this folder first on PYTHONPATH, so every Python process of the
 command loads this file through ``sitecustomize.py``. When a process imports habitat-lab (0.1.5 to
 0.3), habitat-sim alone or WMNav, this file wraps a few methods of these packages. It sends frames
-to the server through shared memory, and instructions through a socket. The server sends both back
-corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and ``finish``:
+to the server through shared memory, and instructions through a socket. The server sends back
+corrupted frames and instructions. A loop that does not use Habitat calls ``connect``, ``corrupt``
+and ``finish``:
 
     import mitigate_hook
     episode = mitigate_hook.connect("17", scene="x.glb", instruction="Go to the door.")
@@ -50,7 +51,7 @@ REPORT_TIMEOUT = 3.0  # maximum seconds for a stopping process to report the rea
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
 # how an episode ended: it was over, its Env was reset or closed early, or an exception ended it
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
-# exceptions that end a loop without a fault
+# exceptions that end a loop normally
 ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)
 
 
@@ -458,8 +459,8 @@ class Session:
         """Report the result of the episode exactly once.
 
         An episode without a step is not reported, and a forked process does not end the episode of
-        its parent. If an exception raised during the episode makes the program leave it early, the
-        episode counts as unfinished and not as a failure of the agent.
+        its parent. If an exception makes the program leave a running episode, the episode counts as
+        unfinished and not as a failure of the agent.
         """
         if not self.active or self.episode_pid != os.getpid():
             return
@@ -499,7 +500,7 @@ class Session:
 
 
 def _is_corrupted(frame):
-    """Return whether an array is a corrupted frame, or a view of one."""
+    """Return whether an array is a corrupted frame or a view of a corrupted frame."""
     while isinstance(frame, np.ndarray) and isinstance(frame.base, np.ndarray):
         frame = frame.base
     return _corrupted_frames.get(id(frame)) is frame
@@ -673,9 +674,7 @@ def _is_float_image(value):
 
 
 def _task_reset(original, task, episode, *args, **kwargs):
-    """Wrap ``EmbodiedTask.reset`` to end the last episode and replace the instruction of the
-    next.
-    """
+    """Wrap ``EmbodiedTask.reset`` to end the last episode and replace the next instruction."""
     sim = task._sim
     if _get(_get(sim, "config"), "enable_batch_renderer"):
         stop(
@@ -779,8 +778,8 @@ def _select(episodes, key, least):
 
     Args:
         episodes: All episodes.
-        key: Function that returns the name of an episode. Names are sent only if the server chooses
-            episodes, in several messages.
+        key: Function that returns the name of an episode. Names are sent, in several messages, only
+            if the server chooses episodes.
         least: The minimum number of episodes to keep, 0 or 1.
     """
     channel, count = Channel(), len(episodes)
@@ -860,7 +859,8 @@ def _async_observations(original, sim, *args, **kwargs):
 
 
 def _is_called_by_lab(sim):
-    """Return whether habitat-lab is the caller; its frames are corrupted at its own sensors.
+    """Return whether habitat-lab is the caller, because its frames are corrupted at its own
+    sensors.
 
     The caller counts as habitat-lab if its code is in a module of habitat-lab, or is a method of a
     habitat-lab simulator or of a subclass. If any other code takes frames from a habitat-lab
@@ -945,8 +945,8 @@ def _describe_simulator(sim):
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """Wrap WMNav's ``Env._run_episode``, which opens a new simulator, without habitat-lab, per
-    episode.
+    """Wrap WMNav's ``Env._run_episode``, which opens a simulator per episode and does not use
+    habitat-lab.
     """
     _thread.session = session = _thread.session or Session()
     episode = env.all_episodes[number]
@@ -981,7 +981,7 @@ def _make_adapter_wrapper(folder, file, path):
     """Return a wrapper for the method ``forward`` of an encoder's class.
 
     At the first call of each instance, the wrapper attaches adapters to the module ``path``. The
-    weights have been loaded by then.
+    weights have been loaded before this call.
     """
 
     def forward(original, encoder, *args, **kwargs):

@@ -1,8 +1,8 @@
 """Load ``mitigate_hook`` in every Python process that is started under ``mitigate run``.
 
 At start-up, Python imports the first module ``sitecustomize`` on its path. This folder is first on
-PYTHONPATH, so this file may hide a different ``sitecustomize``. It therefore runs that module at
-the end.
+PYTHONPATH, so this file may hide a different ``sitecustomize``. Therefore, this file runs the
+hidden module at the end.
 """
 
 import sys
