@@ -1,7 +1,7 @@
 """The command ``mitigate``: ``mitigate train recipe=da_per_episode``.
 
-``python -m mitigate.train`` does the same; ``commands/`` contains such modules for the older
-commands.
+``python -m mitigate.train`` runs the same command; ``commands/`` contains such modules for the
+older commands.
 """
 
 from __future__ import annotations
@@ -26,8 +26,8 @@ class Command(NamedTuple):
 
     Attributes:
         module: module whose ``main()`` reads ``sys.argv`` and returns an exit status.
-        about: description of the command for the help.
-        example: example options for the help.
+        about: description of the command, shown in the help text.
+        example: example options, shown in the help text.
         extra: the extra of the package that the command needs.
     """
 
@@ -137,8 +137,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     _prepare_streams()
     warnings.formatwarning = _format_warning
     if threading.current_thread() is threading.main_thread():
-        signal.signal(signal.SIGTERM, raise_ended)  # deletes temporary files on the way out
-    # as with python -m, so that modules of the user can be imported
+        signal.signal(signal.SIGTERM, raise_ended)  # so that temporary files are deleted
+    # add the current folder, as python -m does, so that the user's modules can be imported
     if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
     name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
@@ -146,7 +146,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         status = _run(name, options)
         sys.stdout.flush()
-    except BrokenPipeError:  # the program that reads the output, such as head, has closed it
+    except BrokenPipeError:  # the program that reads the output, such as head, has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE
     sys.exit(status)
@@ -175,11 +175,11 @@ def _run(name: str, options: Sequence[str]) -> int | None:
 
 
 def _prepare_streams() -> None:
-    """Make the standard streams usable: open closed ones, and print every character.
+    """Make the standard streams usable: replace closed streams, and print every character.
 
-    A closed stream is replaced by the null device. Otherwise the next file that is opened, such as
-    a file of rows, would get its number, and child processes would print into this file. Characters
-    that the encoding of stdout lacks are printed as escapes.
+    A closed stream is replaced by the null device. Otherwise, the next opened file, such as a file
+    of rows, would get the stream's descriptor number, and child processes would print into that
+    file. Characters that the encoding of stdout lacks are printed as escapes.
     """
     while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(descriptor, True)
@@ -203,7 +203,7 @@ def _format_warning(
     lineno: int,
     line: str | None = None,
 ) -> str:
-    """Format a warning, which may quote names from files, without control characters."""
+    """Format a warning without control characters, because it may quote names from files."""
     return _default_format(printable(str(message)), category, filename, lineno, line)
 
 

@@ -26,7 +26,7 @@ class Site:
         batch: the axis of the frames.
         shape: the shape for two frames.
         order: position of the module's first call among all modules.
-        calls: number of calls in one forward pass.
+        calls: number of calls of the module in one forward pass.
     """
 
     kind: str
@@ -38,18 +38,19 @@ class Site:
 
 
 def first(output: Any) -> Any:
-    """Return ``output``; if it is a tuple or list, as from Hugging Face blocks, return the first
-    item.
+    """Return ``output``, or its first item if it is a tuple or list (as Hugging Face blocks
+    return).
     """
     return output[0] if isinstance(output, (tuple, list)) and len(output) else output
 
 
 @torch.no_grad()
 def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
-    """Return the output of every module that ``run`` calls, by name.
+    """Return a dict from the name of every module that ``run`` calls to a description of its
+    output.
 
-    Each output is described by a :class:`Site`, or by a text that explains why no adapter fits.
-    ``run(2)`` and ``run(3)`` are called; the axis that grows from 2 to 3 is the axis of the frames.
+    The description is a :class:`Site`, or a text that explains why no adapter fits. To find the
+    axis of the frames, the encoder runs on two frames and on three: this axis grows from 2 to 3.
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
@@ -60,7 +61,9 @@ def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
 
 
 def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]]:
-    """Return each output's shape (or type name) and the module's number of calls, in call order."""
+    """Return the output shape (or type name) and the number of calls of each module, in call
+    order.
+    """
     seen: dict[str, tuple[Any, int]] = {}
 
     def watch(name: str) -> Callable:
@@ -107,11 +110,11 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     """Return the names of up to ``count`` blocks, spread evenly from the first to the last.
 
     A block is a numbered item of a list (``layers.3``) that contains modules and returns a map or
-    tokens once per forward pass. In nested lists, the outermost level with at least four blocks is
-    used, because a ResNet has few stages and many blocks.
+    tokens once per forward pass. If lists are nested, the outermost list with at least four blocks
+    is used. A ResNet, for example, has four stages in one list, and each stage is a list of blocks.
 
     Raises:
-        ValueError: No list has at least four blocks.
+        ValueError: The encoder has no list of at least four blocks.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
@@ -172,7 +175,9 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
 
 
 def channels_of(name: str, module: nn.Module) -> int:
-    """Return the output channels of a module, read from its last convolution or normalisation."""
+    """Return the number of output channels of a module, from its last convolution or
+    normalisation.
+    """
     channels = 0
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
@@ -190,7 +195,7 @@ def channels_of(name: str, module: nn.Module) -> int:
 
 
 def inputs_of(name: str, module: nn.Module) -> int:
-    """Return the input channels of a module, read from its first convolution."""
+    """Return the number of input channels of a module, from its first convolution."""
     for part in module.modules():
         if isinstance(part, nn.Conv2d):
             return part.in_channels

@@ -1,4 +1,4 @@
-"""The user's code: which classes and functions it defines, its source files, what it names."""
+"""Inspect the user's code: its classes and functions, its source files, and the names it uses."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mitigate.core.contracts import read
 def is_users(code: Any) -> bool:
     """Return whether a class or function belongs to the user.
 
-    This project, torch, Python and installed packages are identified by their versions instead.
+    The code of this project, torch, Python and installed packages is identified by version numbers.
     """
     function = isinstance(code, types.FunctionType)
     name = code.__module__ or ""
@@ -36,9 +36,9 @@ def _is_users(module: str, file: str) -> bool:
 
 
 def named_values(function: types.FunctionType) -> dict[str, Any]:
-    """Return the global variables that ``function`` names, and its closure.
+    """Return the values of the global variables and closure variables that ``function`` uses.
 
-    Attributes of the user's modules that it names are included.
+    If ``function`` uses attributes of the user's modules, their values are included.
     """
     codes = [function.__code__]
     for code in codes:
@@ -58,9 +58,10 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
 
 
 def source_files(modules: list[str]) -> dict[str, str | None]:
-    """Return the source of the user's ``modules``, and of the user's modules that they import.
+    """Return the source of ``modules`` and of the modules that they import, if the user wrote them.
 
-    Comments and layout are left out. A module without Python source, such as a notebook, has None.
+    Comments and layout are left out. The source is None for a module without Python source, such as
+    a notebook.
     """
     sources: dict[str, str | None] = {}
     waiting = [*modules]
@@ -69,17 +70,17 @@ def source_files(modules: list[str]) -> dict[str, str | None]:
         if name not in sources and _is_users(name, file):
             sources[name], imports = _read(file, name, sys.modules.get(name))
             for imported in imports:
-                package = imported.partition(".")[0]  # only packages of the user are searched
+                package = imported.partition(".")[0]  # search only the user's packages
                 if _is_users(package, _file(package)) and _file(imported):
                     waiting.append(imported)
     return sources
 
 
 def _file(module: str) -> str:
-    """Return the path of a module's file; "" if it has none or does not exist."""
+    """Return the path of a module's file, or "" if there is no such module or file."""
     if module in sys.modules:
         return read(sys.modules[module], "__file__") or ""
-    with suppress(Exception):  # it imports the package, and the user's code may raise any error
+    with suppress(Exception):  # find_spec runs the user's code, which may raise any error
         spec = importlib.util.find_spec(module)
         return (spec.origin or "") if spec else ""
     return ""
@@ -89,11 +90,11 @@ def _file(module: str) -> str:
 def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
     """Return the source of a module without comments and layout, and the names that it imports.
 
-    It is read once, because a later edit of the file does not change a loaded ``module``.
+    The file is read only once, because a later edit does not change a loaded ``module``.
     """
     try:
         tree = ast.parse(Path(file).read_bytes(), file)
-    except (OSError, SyntaxError, ValueError):  # no file, or not Python
+    except (OSError, SyntaxError, ValueError):  # there is no file, or it is not Python
         return None, []
     package = name if Path(file).stem == "__init__" else name.rpartition(".")[0]
     imports: list[str] = []
@@ -107,7 +108,9 @@ def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
 
 
 def methods(kind: type) -> dict[str, types.FunctionType]:
-    """Return the functions that ``kind`` defines, by name, with their decorators removed."""
+    """Return the functions that the class ``kind`` defines, by name and without their
+    decorators.
+    """
     output = {}
     for name, member in vars(kind).items():
         function = read(member, "__func__", "fget", "__wrapped__", default=member)

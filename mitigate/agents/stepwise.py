@@ -21,7 +21,7 @@ from mitigate.worlds.world import World, expert_of
 
 
 class Frames(dict[str, Tensor]):
-    """The inputs of ``forward`` by name."""
+    """The input tensors of ``forward`` by name."""
 
     def __missing__(self, name: str) -> Tensor:
         raise ValueError(
@@ -73,13 +73,13 @@ class StepwiseAgent(Agent, nn.Module):
     actions = 4
     limit = 100
 
-    plain_walks = False  # the steps hold numpy arrays
+    plain_walks = False  # the steps contain numpy arrays
 
     def forward(self, frames: Frames, texts: Sequence[str]) -> tuple[Tensor, dict[str, Tensor]]:
         """Return logits [B, actions] and features by name.
 
         Args:
-            frames: the entries in ``needs`` of B observations, in the format of the world's
+            frames: the entries of B observations that ``needs`` names, in the format of the world's
                 sensors.
             texts: the B instructions.
         """
@@ -109,7 +109,7 @@ class StepwiseAgent(Agent, nn.Module):
         return int(check_logits(self._logits(frames, self.instruction), self).argmax())
 
     def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor:
-        """Return the entropy of the decision on an observation, with gradients."""
+        """Return the entropy of the action distribution for an observation, with gradients."""
         frames = {name: observation[name] for name in self.needs}
         return entropy_of(self._logits(frames, self.instruction))
 
@@ -125,7 +125,7 @@ class StepwiseAgent(Agent, nn.Module):
     ) -> list[dict[str, Any]]:
         """Run episodes and return one dict per step, with the expert's answer.
 
-        The agent's STOP is never taken, so that it also learns from the steps after a wrong STOP.
+        The agent's STOP is never executed, so that the agent also learns from later steps.
 
         Raises:
             ValueError: One of the worlds has no expert, or the logits are invalid.
@@ -149,7 +149,7 @@ class StepwiseAgent(Agent, nn.Module):
         return steps
 
     def join(self, pieces: Sequence[list[dict[str, Any]]]) -> StepDecisions:
-        """Join all steps of several pieces into one batch."""
+        """Join the steps of several calls of :meth:`collect` into one batch."""
         steps = [step for piece in pieces for step in piece]
         answers = torch.tensor([step["answer"] for step in steps])
         frames, clean = (_stacked([step[kind] for step in steps]) for kind in ("frames", "clean"))

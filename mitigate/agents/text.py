@@ -1,13 +1,13 @@
 """Define the words that agents know: concepts of views, and the vocabulary of instructions.
 
 The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner multiplies
-their probabilities with the text embeddings of their words, so that views and instructions share
-one embedding space.
+the probability of each concept with the text embedding of its word, so that views and instructions
+share one embedding space.
 
 A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint. With the same number of different words, the weights would load but be assigned to
-wrong words.
+fingerprint. Weights that are loaded with a different vocabulary of the same size would raise no
+error, but assign each embedding to a wrong word.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ THING_NAMES = (
 )
 COLOUR_NAMES = ("red", "orange", "yellow", "green", "blue", "purple", "brown", "white")
 ROOM_NAMES = ("bedroom", "bathroom", "kitchen", "living room", "office", "dining room")
-# concepts: visible objects, objects nearer than 2 m, colours of objects, kinds of visible rooms
+# concepts are visible objects, objects nearer than 2 m, colours of objects, and kinds of rooms
 CONCEPTS = (*THING_NAMES, *(f"near {name}" for name in THING_NAMES), *COLOUR_NAMES, *ROOM_NAMES)
 THINGS = slice(0, len(THING_NAMES))
 NEAR = slice(len(THING_NAMES), 2 * len(THING_NAMES))
@@ -44,7 +44,7 @@ _WORDS = """
     straight swing table take that the then there through to toilet towards turn tv up wait
     walk wardrobe washing way when white with yellow you your
 """
-WORDS = tuple(_WORDS.split())  # all words of the apartments' training templates
+WORDS = tuple(_WORDS.split())  # all words that occur in the training instructions for apartments
 _WORD = re.compile(r"\[MASK\]|[a-z]+")
 
 
@@ -55,8 +55,8 @@ class Vocabulary:
         words: lower-case words without the special tokens. None means ``WORDS``.
 
     Raises:
-        ValueError: A word is repeated, has characters other than a to z, or the word of a concept
-            is missing.
+        ValueError: A word is repeated or has characters other than a to z, or the word for a
+            concept is missing.
     """
 
     def __init__(self, words: Sequence[str] | None = None) -> None:
@@ -82,13 +82,17 @@ class Vocabulary:
         return iter(self.ids)
 
     def encode(self, text: str) -> list[int]:
-        """Return the ids of an instruction's words, at most ``MAX_WORDS`` and never empty."""
+        """Return the ids of the first ``MAX_WORDS`` words of an instruction, or the id of
+        ``[UNK]``.
+        """
         lowered = re.sub(r"\[mask\]", "[MASK]", text.lower())
         ids = [self.ids.get(word, UNKNOWN) for word in _WORD.findall(lowered)]
         return ids[:MAX_WORDS] or [UNKNOWN]
 
     def concept_words(self) -> torch.Tensor:
-        """Return float32 [concepts, vocabulary]; row c averages the words of concept c."""
+        """Return a matrix float32 [concepts, vocabulary] whose row c averages the words of concept
+        c.
+        """
         out = torch.zeros(len(CONCEPTS), len(self))
         for row, concept in enumerate(CONCEPTS):
             ids = [self.ids[word] for word in _words_of(concept)]

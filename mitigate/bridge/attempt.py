@@ -25,8 +25,8 @@ from mitigate.core.names import counted
 from mitigate.core.output import open_output
 from mitigate.core.signals import uninterrupted
 
-DISCONNECT_TIME = 5.0  # seconds to wait until the connections of an ended command close (heuristic)
-# after this many times ``patience``, a command that lost an episode is hanging (heuristic)
+DISCONNECT_TIME = 5.0  # maximum seconds until the connections of an ended command close (heuristic)
+# if a command that lost an episode is silent for this many times ``patience``, it hangs (heuristic)
 MAX_SILENCE = 10
 MAX_NAMED = 3  # maximum number of processes that a message lists
 CRASH = (
@@ -41,12 +41,12 @@ NOT_LOADED = (
 
 
 class Attempt:
-    """Runs the command of a cell (one condition and its folder). Call :meth:`poll` until it ends,
-    and :meth:`kill` in any case.
+    """Runs the user's command under one condition. Call :meth:`poll` until the command ends, and
+    :meth:`kill` in any case.
 
     Attributes:
-        cell: The condition.
-        files: Size and hash of the command's files when it was started.
+        cell: The condition, with its folder and its command.
+        files: Size and hash of the files that the command names, at the start of the command.
         loaded: Whether a Python process of the command loaded the hook.
         left: Descriptions of processes that were still running after the command ended.
     """
@@ -65,12 +65,13 @@ class Attempt:
     def start(self) -> None:
         """Start the server and the command in an empty folder.
 
-        Files of an earlier attempt are moved away first.
+        Files of an earlier attempt are moved to another folder first.
 
         Raises:
             ValueError: Another run uses the folder, or the command cannot be started.
         """
-        with uninterrupted():  # otherwise an interrupt could hide a started process from ``kill``
+        # otherwise an interrupt could leave a started process that ``kill`` does not know
+        with uninterrupted():
             self._start()
 
     def _start(self) -> None:
@@ -82,7 +83,7 @@ class Attempt:
         except BlockingIOError as error:
             self.lock.close()
             raise ValueError(
-                f"Another run is at work in {folder}. Wait for it, or choose another folder "
+                f"Another run is using {folder}. Wait until it ends, or choose another folder "
                 "(out=...)."
             ) from error
         self.root = output.register(folder, self.lock)
@@ -92,7 +93,7 @@ class Attempt:
         self.events = open_output(folder / EVENTS, "x", encoding="utf-8")
         chosen = cell.chosen if cell.clean is None else None
         if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
-            chosen.delete()  # no condition of an earlier run finished
+            chosen.delete()  # no condition has finished, so episodes are chosen again
         self.files = hash_files(cell.command)
         self.listener = Listener(cell.condition, folder, cell.patience).__enter__()
         words = self._words()
@@ -119,12 +120,10 @@ class Attempt:
         return words
 
     def poll(self) -> str | None:
-        """Return None while the command runs, and then a description of the problem or an empty
-        text.
-        """
+        """Return None while the command runs; then return a description of the problem, or ""."""
         try:
             return self._poll()
-        except ValueError as error:  # the events are damaged
+        except ValueError as error:  # the file of events is damaged
             self.kill()
             return str(error)
 
@@ -146,7 +145,7 @@ class Attempt:
         self._check_events()
         self.kill()
         problem = self._describe_problem(status)
-        # the clean condition must be measured again
+        # delete its mark, so that the clean condition is measured again
         if cell.clean is not None and cell.extra_episodes():
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:
@@ -158,7 +157,9 @@ class Attempt:
         return problem
 
     def _created_files(self) -> list[str]:
-        """Return the files in the command that did not exist when it was started: its outputs."""
+        """Return the files that the command names and that did not exist at its start: its
+        outputs.
+        """
         return [str(file) for file in files_in(self.cell.command) if str(file) not in self.files]
 
     def _crash_hint(self) -> str:
@@ -166,7 +167,7 @@ class Attempt:
         return CRASH if self.cell.corruption.severity else ""
 
     def _check_events(self) -> None:
-        """Raise FolderLostError if the events or their folder were removed or replaced."""
+        """Raise FolderLostError if the file of events or its folder was removed or replaced."""
         assert self.events is not None
         path = self.cell.folder / EVENTS
         output.check(path)
@@ -192,14 +193,14 @@ class Attempt:
             self.events = self.lock = None
 
     def _end_command(self) -> None:
-        """End all processes of the command; connected ones have ``GRACE`` seconds to end."""
+        """End all processes of the command; connected processes get ``GRACE`` seconds to end."""
         if self.process is not None:
             self.process.end(self._is_connected)
 
     def _is_connected(self) -> bool:
         try:
             return self.cell.reports().connected > 0
-        except ValueError:  # damaged events are reported elsewhere
+        except ValueError:  # other code reports damaged events
             return False
 
     def _settle(self) -> None:
@@ -214,7 +215,7 @@ class Attempt:
             self._wait_for_disconnects(GRACE)
 
     def _wait_for_disconnects(self, seconds: float) -> bool:
-        """Return whether the last connection closes within this time."""
+        """Wait at most ``seconds``, and return whether all connections have closed."""
         until = time.monotonic() + seconds
         while self.cell.reports().connected > 0:
             if time.monotonic() > until:
@@ -223,7 +224,7 @@ class Attempt:
         return True
 
     def _describe_hang(self) -> str | None:
-        """Return the reason why a running command will never end, or None."""
+        """Return the reason why the running command will never end, or None."""
         assert self.listener is not None
         if not self.listener.is_alive():
             return "the server of frames ended, and the command was stopped. Run again."
@@ -245,7 +246,7 @@ class Attempt:
         return None
 
     def _describe_problem(self, status: int) -> str:
-        """Describe the problem of a command that ended with ``status``, or return an empty text."""
+        """Describe the problem of a command that ended with ``status``, or return ""."""
         reports = self.cell.reports()
         if reports.problems:
             return reports.problems[0]
@@ -264,7 +265,7 @@ class Attempt:
         )
 
     def _describe_left(self) -> str:
-        """Describe the problem that processes were still running after the command ended."""
+        """Describe the processes that were still running after the command ended."""
         names = ", ".join(self.left[:MAX_NAMED]) + ", ..." * (len(self.left) > MAX_NAMED)
         count = "1 process" if len(self.left) == 1 else f"{len(self.left)} processes"
         return (
@@ -275,9 +276,7 @@ class Attempt:
         )
 
     def _check_count(self, reports: Reports) -> str:
-        """Describe the problem if fewer episodes ended than were announced or chosen, else return
-        "".
-        """
+        """Describe the problem if too few episodes ended, else return ""."""
         cell = self.cell
         chosen = cell.chosen.least() if cell.chosen is not None and cell.clean is None else 0
         least = max(reports.announced, chosen)
@@ -291,7 +290,7 @@ class Attempt:
         )
 
     def _check_interception(self, reports: Reports) -> str:
-        """Describe the problem if the bridge received nothing from the agent, else return ""."""
+        """Describe the problem if the agent sent nothing, else return ""."""
         if not reports.hellos and not self.loaded:
             return f"the command ended, but {NOT_LOADED}{self.cell.output_excerpt()}"
         if not reports.hellos:

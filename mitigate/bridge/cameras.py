@@ -1,7 +1,7 @@
 """Describe an agent's cameras, lay out their frames in shared memory, and corrupt them.
 
-Cameras in one call form a panorama if they have the same size, field of view and position, are
-level, and face directions that differ by multiples of 30 degrees. Each camera outside a panorama
+Cameras in one call form a panorama if they are level, have the same frame size, field of view and
+position, and face directions that differ by multiples of 30 degrees. Each camera outside a panorama
 forms a separate group with separate random numbers.
 """
 
@@ -19,19 +19,19 @@ from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_
 from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key
 from mitigate.guards.guard import Guards
 
-# maximum bytes of all frames in a call (heuristic): 24 cameras of 1080 x 1920 have 5e8
+# maximum bytes of all frames in a call (heuristic); 24 cameras of 1080 x 1920 pixels need 5e8
 MAX_BYTES = 1 << 30
 MAX_CAMERAS = 256  # maximum number of cameras per call (heuristic)
-MAX_MEDIAN = 100.0  # if the median depth in metres is larger, a range must be declared (heuristic)
+MAX_MEDIAN = 100.0  # if the median depth is larger (metres), a range must be declared (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")
-_LEVEL = 1e-3  # a camera with pitch and roll below this (radians) is level
+_LEVEL = 1e-3  # a camera is level if its pitch and roll are smaller than this (radians)
 _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 
 @dataclass(frozen=True)
 class Camera:
-    """Description of one camera by the agent's process.
+    """One camera, as the agent's process describes it.
 
     Attributes:
         name: Name of the camera in the observations.
@@ -40,10 +40,10 @@ class Camera:
         dtype: Dtype of a frame.
         hfov: Horizontal field of view in degrees; None if unknown.
         place: Position relative to the agent in metres; None if unknown.
-        yaw: Degrees to the left of the agent.
+        yaw: Direction, in degrees to the left of the agent's heading.
         level: Whether pitch and roll are 0.
         sensor: Range of depth in metres.
-        normalised: Whether depth values are divided by that range, so that they lie in [0, 1].
+        normalised: Whether depth values are scaled from this range to [0, 1].
     """
 
     name: str
@@ -71,7 +71,7 @@ class Camera:
         return self.sensor.to_metres(depth) if self.normalised else depth
 
     def check_depth(self, median: float) -> None:
-        """Raise ValueError if the median of a depth frame contradicts the description."""
+        """Raise ValueError if the median depth of a frame contradicts the description."""
         if self.normalised and median > 1.01:
             raise ValueError(
                 f"Depth of the camera {self.name!r} must be from 0 to 1, because it is described "
@@ -87,7 +87,7 @@ class Camera:
             )
 
     def panorama_key(self) -> tuple:
-        """Return the properties that are equal for all cameras of a panorama."""
+        """Return the properties that all cameras of a panorama have in common."""
         depth = (self.sensor, self.normalised)
         return (self.kind, self.shape, self.dtype, self.hfov, self.place, *depth)
 
@@ -96,8 +96,8 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
     """Return the camera that is described in a message.
 
     Args:
-        description: Description from the agent's process.
-        sensor: Default depth range for a description without a range.
+        description: The description that the agent's process sent.
+        sensor: Depth range to use if the description has none.
 
     Raises:
         ValueError: Frames of the camera cannot be corrupted.
@@ -164,7 +164,7 @@ class Group:
     Attributes:
         cameras: The cameras.
         views: The view number of each camera (``core/observation.py``).
-        suffix: Suffix in the random keys; empty for the largest panorama.
+        suffix: Suffix of the key for random numbers; empty for the largest panorama.
     """
 
     cameras: tuple[Camera, ...]
@@ -173,11 +173,11 @@ class Group:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the array of all views, in which views without a camera are zero."""
+        """Shape of the array of all views; views without a camera are filled with zeros."""
         return (1 + max(self.views), *self.cameras[0].shape)
 
     def stream(self) -> FrameStream:
-        """Return a stream of these cameras' frames."""
+        """Return a new stream for the frames of these cameras."""
         first = self.cameras[0]
         hfov = {first.kind: first.hfov}
         return FrameStream(first.sensor, normalised=first.normalised, hfov=hfov)
@@ -187,14 +187,14 @@ class Rig:
     """All cameras of a call.
 
     Args:
-        descriptions: Descriptions from the agent's process.
+        descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Recent frames by group, which an earlier rig of this environment filled; None:
-            this is the first rig.
+        streams: Streams of recent frames by group, from the previous rig of this environment. None
+            for the first rig.
 
     Raises:
-        ValueError: A camera cannot be corrupted, or there are too many.
+        ValueError: A camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(
@@ -217,7 +217,9 @@ class Rig:
         self.streams = {} if streams is None else streams
 
     def describe(self) -> dict[str, dict[str, Any]]:
-        """Return the kind, field of view, yaw (degrees to the right) and level of each camera."""
+        """Describe each camera: kind, field of view, yaw (degrees to the right), and whether it is
+        level.
+        """
         sign = 1 if self.turn == "right" else -1
         return {
             camera.name: {
@@ -230,7 +232,7 @@ class Rig:
         }
 
     def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
-        """Return the memory offset of each camera of these kinds, and the total size.
+        """Return the memory offset of each camera of the given ``kinds``, and the total size.
 
         Raises:
             ValueError: The size is above ``MAX_BYTES``.
@@ -257,13 +259,13 @@ class Rig:
         key: Key,
         heading: float | None,
     ) -> list[str]:
-        """Corrupt the frames in ``memory`` in place; return the names of the changed cameras.
+        """Corrupt the frames in ``memory`` in place; return the names of the cameras that changed.
 
         Args:
             memory: Shared memory.
             offsets: Offset of each camera in ``memory``.
             corruption: Corruption to apply; parts for other modalities are ignored.
-            key: Determines the draws.
+            key: Determines the random numbers.
             heading: The agent's heading in radians; None if unknown.
         """
         changed: list[str] = []
@@ -284,15 +286,15 @@ class Rig:
     ) -> list[str]:
         """Apply ``guards`` to the frames in ``memory``; return the names of the changed cameras.
 
-        A panorama of 12 cameras is one frame; each camera outside a panorama is a separate frame.
-        One RGB and one depth frame of the same position, direction and size form one observation.
+        A panorama of 12 cameras is one frame; each camera outside a panorama has its own frame. An
+        RGB frame and a depth frame with the same position, direction and size form one observation.
 
         Args:
-            memory: frames of the current call.
-            offsets: position of each camera's frame in ``memory``.
-            guards: guards of the condition.
-            started: guards of the current episode by the names of the cameras of an observation.
-                New observations are added.
+            memory: Frames of the current call.
+            offsets: Position of each camera's frame in ``memory``.
+            guards: Guards of the condition.
+            started: Guards of the current episode, by the names of the cameras of an observation.
+                Guards for new observations are added.
         """
         frames = [
             frame
@@ -315,7 +317,7 @@ class Rig:
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame for a guard, which is the views of a panorama or of one camera in memory."""
+    """One frame for a guard: the views in memory of a complete panorama, or of one camera."""
 
     cameras: tuple[Camera, ...]
     views: np.ndarray
@@ -334,21 +336,23 @@ class Frame:
         return first.sensor.to_metres(frames) if first.normalised else frames
 
     def write(self, frame: np.ndarray) -> None:
-        """Write a frame in the format of :meth:`read` to memory."""
+        """Write a frame to memory; its format is that of :meth:`read`."""
         first = self.cameras[0]
         if first.kind == DEPTH and first.normalised:
             frame = first.sensor.from_metres(frame)
         self.views[...] = frame.reshape(self.views.shape).astype(self.views.dtype, copy=False)
 
     def geometry(self) -> tuple:
-        """Return the properties that an RGB and a depth frame of the same view have in common."""
+        """Return the properties that are equal for an RGB frame and a depth frame of the same
+        view.
+        """
         first = self.cameras[0]
         poses = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
         return (*poses, first.hfov, first.shape[:2])
 
 
 def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
-    """Return a complete panorama as one frame, otherwise one frame per camera of the group."""
+    """Return one frame for a complete panorama, otherwise one frame per camera of the group."""
     cameras = group.cameras
     if len(cameras) == len(views) == VIEWS and cameras[0].hfov == HFOV_DEGREES:
         return [Frame(cameras, views)]
@@ -359,8 +363,8 @@ def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
 def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
     """Group frames into observations.
 
-    An RGB and a depth frame form one observation if both are level and no other frame has their
-    geometry. Every other frame is a separate observation.
+    An RGB frame and a depth frame form one observation if they have the same geometry, both are
+    level, and no other frame has this geometry. Every other frame forms its own observation.
     """
     by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:
@@ -381,7 +385,9 @@ def corrupt_group(
     heading: float | None,
     stream: FrameStream,
 ) -> np.ndarray:
-    """Return the corrupted views of a group; parts of other modalities are ignored."""
+    """Return the corrupted views of a group; parts of the corruption for other modalities are
+    ignored.
+    """
     first = group.cameras[0]
     frames: dict[str, Any] = {first.kind: views}
     if first.kind == DEPTH:
@@ -404,7 +410,7 @@ def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
 def _make_groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
     """Return the groups of a kind of camera, sorted by decreasing size and then by name.
 
-    So random numbers do not depend on the order in which cameras are described.
+    This order makes random numbers independent of the order in which cameras are described.
     """
     rings: dict[tuple, dict[int, Camera]] = {}
     single = []

@@ -1,7 +1,7 @@
 """Represent one condition of a run, with its settings and the content of its folder.
 
-``done.json`` marks a condition as finished. It records how many episodes ended, and the size and
-sha256 of the events at that moment. Every reader of a finished condition compares these values
+``done.json`` marks a condition as finished. This file records how many episodes ended, and the size
+and sha256 of the events at that moment. Every reader of a finished condition compares these values
 first, so that a damaged file is never used as a result.
 """
 
@@ -37,8 +37,8 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
-TAIL = 12  # lines of the command's output that an error repeats
-MAX_HASHED = 1 << 30  # maximum bytes; larger files in the command are compared only by size
+TAIL = 12  # number of lines of the command's output that an error message repeats
+MAX_HASHED = 1 << 30  # for larger files (bytes) that the command names, only the size is compared
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -66,7 +66,7 @@ SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "episodes_told": (_is_count, "a whole number >= 0"),
     "events": (_is_seal, "the size (bytes) and the sha256 of the events"),
 }
-OLDER = ("events", "created")  # entries that older versions did not write
+OLDER = ("events", "created")  # entries that older versions of this project did not write
 
 
 def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
@@ -76,8 +76,8 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Write ``entries`` and a checksum of the events to ``done.json``. After this, the condition is
-    finished.
+    """Mark a condition as finished: write ``entries`` and a checksum of the events to
+    ``done.json``.
     """
     seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
@@ -113,12 +113,12 @@ def read_done(folder: Path) -> dict[str, Any] | None:
 
 
 def missing_entries(entries: Mapping[str, Any]) -> list[str]:
-    """Return the names of missing entries, among those that every version of this file has."""
+    """Return the names of the missing entries that every version of ``done.json`` has."""
     return [name for name in SCHEMA if name not in entries and name not in OLDER]
 
 
 def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if the name of ``folder`` does not match the condition in the entries."""
+    """Raise ValueError if the name of ``folder`` differs from the condition in ``done.json``."""
     name = folder_name(entries["condition"], entries["severity"], entries["repeat"])
     if name != folder.name:
         raise ValueError(
@@ -135,7 +135,7 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     count = entries["episodes_told"]
     if not output.is_regular(events):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
-    # the error message of the reader states the damaged line
+    # read raises an error that names the damaged line
     reports = results.read(folder, count_closed=True)
     seal = entries.get("events")
     if seal is not None:
@@ -149,7 +149,7 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
 
 
 def check_finished(folder: Path) -> None:
-    """Raise ValueError if a finished condition in the run's ``folder`` is damaged."""
+    """Raise ValueError if a finished condition in ``folder``, the folder of a run, is damaged."""
     for file in sorted((folder / "conditions").glob(f"*/{DONE}")):
         read_done(file.parent)
 
@@ -164,16 +164,16 @@ class Cell:
         repeat: Number of the repetition for a repeated clean run, else 0.
         command: The words of the user's command.
         folder: Folder for the events and the output of the command.
-        condition: How frames and instructions are corrupted.
+        condition: Applies the corruption to frames and instructions.
         label: Entries that are added to all rows.
         rule: Success rule that replaces the agent's rule, or None to keep it.
-        settings: The settings on which the result depends. A finished condition is reused only if
-            these settings are equal.
+        settings: The settings that the result depends on. A finished condition is reused only if
+            its settings are the same.
         patience: Seconds that a process waits for an answer before it stops.
-        environment: Additional environment variables of the command.
-        clean: Folder of the clean condition, whose episodes must also end under this condition;
-            None for the clean condition itself.
-        recording: The folder for ``record=``.
+        environment: Environment variables that are set for the command.
+        clean: Folder of the clean condition, or None for the clean condition itself. Each episode
+            that ended there must also end under this condition.
+        recording: The folder that the option ``record=`` names.
         chosen: Object that chooses the episodes, or None to run all.
         count_closed: See ``results.read``.
     """
@@ -232,29 +232,31 @@ class Cell:
         return not self.reason_to_repeat()
 
     def reason_to_repeat(self) -> str:
-        """Return the reason why a finished condition must be measured again, or an empty text."""
+        """Return the reason why a finished condition must be measured again, or ""."""
         if self.entries() is None:
             return ""
         if missing := self.missing_episodes():
             return self.describe_missing(missing)
         reports = self.reports()
-        if reports.lost:  # measured with a different count_closed, or by an older version
+        if reports.lost:  # it was measured with another count_closed or by an older version
             return describe_lost(reports)
         if self.recording is not None and not is_whole(self.recording, reports.ends.values()):
             return f"it was not recorded in {self.recording}, or only in part"
         return ""
 
     def changed_files(self, files: dict[str, Any]) -> list[str]:
-        """Return the files in the command that changed after the condition finished."""
+        """Return the files named in the command that changed after the condition finished."""
         before = (self.entries() or {}).get("files", {})
         return [name for name, recorded in before.items() if files.get(name) != recorded]
 
     def missing_episodes(self) -> list[str]:
-        """Return the episodes of the clean condition that did not end under this one."""
+        """Return the episodes that ended under the clean condition, but not under this
+        condition.
+        """
         return sorted(self.clean_episodes() - self.reports().ends.keys())
 
     def clean_episodes(self) -> set[str]:
-        """Return the episodes that ended under the clean condition, or none for the clean condition
+        """Return the episodes that ended under the clean condition; none for the clean condition
         itself.
         """
         if self.clean is None:
@@ -262,7 +264,9 @@ class Cell:
         return set(results.read(self.clean, self.count_closed).ends)
 
     def extra_episodes(self) -> list[str]:
-        """Return the episodes that ended under this condition but not under the clean one."""
+        """Return the episodes that ended under this condition, but not under the clean
+        condition.
+        """
         clean = self.clean_episodes()
         return sorted(self.reports().ends.keys() - clean) if clean else []
 
@@ -284,7 +288,7 @@ class Cell:
         return results.rows(self.reports(), self.corruption, self.label, self.rule, clean)
 
     def rule_problem(self) -> str:
-        """Return the reason why ``rule=`` cannot judge every episode, or an empty text.
+        """Return the reason why ``rule=`` cannot judge every episode, or "".
 
         A success rate over only some of the episodes would be misleading.
         """
@@ -306,7 +310,9 @@ class Cell:
         return f"rule={self.rule} needs to know {what}, which {who}. {advice}"
 
     def describe_missing(self, missing: list[str]) -> str:
-        """Return a text such as "3 of clean's 6 episodes are missing"."""
+        """Return a text such as "3 of clean's 6 episodes are missing" ("clean" is the clean
+        condition).
+        """
         verb = "is" if len(missing) == 1 else "are"
         return (
             f"{len(missing)} of clean's {counted(len(self.clean_episodes()), 'episode')} {verb} "
@@ -314,7 +320,7 @@ class Cell:
         )
 
     def depth_warning(self) -> str:
-        """Return a warning if depth may be normalised, otherwise an empty text."""
+        """Return a warning if depth may be normalised to [0, 1], else ""."""
         names = maybe_normalised(self.reports())
         if not names:
             return ""
@@ -324,9 +330,7 @@ class Cell:
         )
 
     def summary(self) -> str:
-        """Return a summary such as "41 episodes, success 58.5 (own: ...), 2
-        without a path ...".
-        """
+        """Return a summary, such as "41 episodes, success 58.5 (own: ...), 2 left unfinished"."""
         reports, rows = self.reports(), self.rows()
         rule_text = "" if self.rule is None else str(RULES[self.rule])
         first_rule = rule_text or (rows[0]["rule"] if rows else "")
@@ -354,7 +358,7 @@ class Cell:
         return ", ".join(parts)
 
     def _describe_surplus(self, reports: Reports) -> str:
-        """Return the reason why many more episodes ran than requested, or an empty text."""
+        """Return the reason why far more episodes ran than requested, or ""."""
         count = len(reports.ends) if self.chosen is None else self.chosen.count
         if len(reports.ends) <= 1.5 * count:
             return ""
@@ -367,7 +371,7 @@ class Cell:
 def describe_lost(reports: Reports) -> str:
     """Return a text such as "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    If possible, the example is an episode whose reason is known. The text ends with advice.
+    If possible, the example is an episode for which the reason is known. The text ends with advice.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
     reason = reports.dropped[name] or (
@@ -386,7 +390,7 @@ def describe_lost(reports: Reports) -> str:
 
 
 def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
-    """Return size and sha256 of the files in a command."""
+    """Return the size and sha256 of each file that a command names."""
     hashes = {}
     for path in dict.fromkeys(files_in(command)):
         size = path.stat().st_size
@@ -395,9 +399,11 @@ def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def files_in(command: Sequence[str]) -> Iterator[Path]:
-    """Yield the existing files that a command names in an argument, whole or after its ``=``."""
+    """Yield the existing files that a command names, as an argument or after the ``=`` in an
+    argument.
+    """
     for word in command:
         for text in (word, word.partition("=")[2]):
-            # a word may also be code instead of a file name
+            # a word of the command may be code instead of a file name
             if os.path.isfile(text) and os.access(text, os.R_OK):
                 yield Path(text)

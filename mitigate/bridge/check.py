@@ -1,6 +1,7 @@
 """``mitigate run --check -- COMMAND``: run a program up to its first frames, and stop it.
 
-It prints the cameras, the instruction and the applicable conditions, and draws corrupted frames.
+The check prints the cameras, the instruction and the applicable conditions, and draws corrupted
+frames.
 """
 
 from __future__ import annotations
@@ -34,13 +35,13 @@ from mitigate.corruptions.registry import record
 from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
-# maximum seconds until the first frame (heuristic): models must load before
+# maximum seconds until the first frame (heuristic); programs load their models before it
 FIRST_FRAME_LIMIT = 900.0
-MAX_DRAWN = 4  # number of panorama cameras in one row of the picture
-SIDE = 1.64  # side in inches of one picture in the sheet
-LINE_WIDTH = 22  # maximum characters per line of a name
-HEADING = "heading"  # name of an entry in the file of the first frames
-TRIED_CALLS = 40  # maximum calls until an intermittent corruption acts (heuristic)
+MAX_DRAWN = 4  # maximum number of cameras of a panorama that the picture shows per row
+SIDE = 1.64  # side of one frame in the picture, in inches
+LINE_WIDTH = 22  # maximum number of characters per line of a camera's name
+HEADING = "heading"  # entry of the file of first frames that holds the heading
+TRIED_CALLS = 40  # maximum number of calls to try until an intermittent corruption acts (heuristic)
 
 
 @dataclass
@@ -53,7 +54,7 @@ class FirstFrames(Observer):
     def frame(
         self, message: Mapping[str, Any], rig: Rig, memory: Any, offsets: Mapping[str, int]
     ) -> None:
-        """Write the frames, once."""
+        """Write the frames of the first call; ignore later calls."""
         if not self.file.is_file():
             frames = {entry_name(c.name): c.read(memory, offsets) for c in rig.cameras}
             heading = message.get("heading")
@@ -83,7 +84,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     file = out / "first.npz"
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
-    # this class does not record unfinished episodes
+    # FirstFrames replaces the recording, which ``mitigate run --check`` does not need
     cell.condition.observers[:] = [FirstFrames(file)]
     print(f"check: started, its output is in {cell.log}", flush=True)
     attempt = Attempt(cell)
@@ -127,7 +128,9 @@ def _sensors(part: Corruption) -> list[str]:
 
 
 def _shows_past(part: Corruption) -> bool:
-    """Return whether a fault shows earlier frames or only limits another corruption."""
+    """Return whether a fault shows earlier frames, or only determines when another corruption
+    acts.
+    """
     return record(part.name).family == TEMPORAL and record(part.name).draw is not None
 
 
@@ -138,7 +141,7 @@ def _wait(attempt: Attempt, file: Path) -> None:
     while not file.is_file():
         time.sleep(0.1)
         problem = attempt.poll()
-        if problem is not None and not file.is_file():  # a short program may already have ended
+        if problem is not None and not file.is_file():  # a short program can end before this check
             raise ValueError(problem or "the command ended before its first frame.")
         if time.monotonic() - start > FIRST_FRAME_LIMIT:
             raise ValueError(
@@ -183,7 +186,7 @@ def describe(
 
 
 def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
-    """Return the declared range of depth, the range of the frames, and a warning if they differ."""
+    """Describe the declared range of depth and the range in the frames; warn if they differ."""
     first = group.cameras[0]
     if first.kind != DEPTH:
         return ""
@@ -201,7 +204,9 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
 
 
 def entry_name(camera: str) -> str:
-    """Return the entry name of a camera's frame; it must not equal an argument of `numpy.savez`."""
+    """Return the name of the entry for a camera's frame; it must differ from `numpy.savez`
+    arguments.
+    """
     return f"camera {camera}"
 
 
@@ -212,16 +217,16 @@ def draw_sheet(
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Draw a row for the clean frames and one per corruption, with the largest group of cameras.
+    """Draw a row of clean frames and one row per corruption, for the largest group of cameras.
 
     An intermittent corruption is drawn at the first call in which it acts. The pictures omit
     faults that repeat earlier frames.
 
     Args:
         rig: The cameras.
-        frames: The frames of the first call, by :func:`entry_name`, and the heading.
-        corruptions: Corruptions whose modality ``rig`` has.
-        first: The event of the first episode, which is part of the random keys.
+        frames: The frames of the first call, named by :func:`entry_name`, and the heading.
+        corruptions: Corruptions that change frames of a kind that ``rig`` has.
+        first: The event that began the first episode; random numbers depend on it.
         seed: The corruption seed.
     """
     scene = str(first.get("scene", "")).rpartition("/")[2]
@@ -251,7 +256,7 @@ def draw_sheet(
 
 
 def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return the frames of a group, [views, ...]; views without a camera are zero."""
+    """Return the frames of a group, [views, ...]; views without a camera are filled with zeros."""
     views = np.zeros(group.shape, group.cameras[0].dtype)
     for camera, view in zip(group.cameras, group.views, strict=True):
         views[view] = frames[entry_name(camera.name)]

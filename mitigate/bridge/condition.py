@@ -1,9 +1,9 @@
-"""Apply one condition to the user's command: corruption, instructions and choice of episodes.
+"""Apply one condition to the user's command: corrupt frames and instructions, and choose episodes.
 
 An episode is chosen by a hash of its name, so the choice depends neither on the order nor on the
 number of processes. The first environments of a run report the names of their episodes. From these
-names, a bound on the hash is computed so that about the requested number of episodes is below it.
-All later environments use the same bound.
+names, an upper bound for the hash is computed, so that the hashes of about the requested number of
+episodes are below it. All later environments use the same bound.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-# after this many seconds without a new environment, all are assumed to be known (heuristic)
+# after this many seconds without a new environment, all environments count as known (heuristic)
 SETTLE_TIME = 4.0
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
@@ -44,9 +44,9 @@ NO_TOKENIZER = (
 
 
 class Observer:
-    """Base class of observers, which receive messages and frames before they are corrupted."""
+    """Base class of observers: objects that receive messages and frames before the corruption."""
 
-    kinds: ClassVar[tuple[str, ...]] = ()  # kinds of the cameras whose frames this observer needs
+    kinds: ClassVar[tuple[str, ...]] = ()  # kinds of cameras ("rgb", "depth") whose frames it needs
 
     def episode(self, message: Mapping[str, Any]) -> None:
         """Receive the message that begins an episode."""
@@ -60,19 +60,19 @@ class Observer:
         """Receive the result of an episode."""
 
     def leave(self) -> None:
-        """Called if an episode was left unfinished."""
+        """Receive the notice that an episode was left unfinished."""
 
 
 @dataclass
 class Condition:
-    """A corruption, its seed, and how it is applied.
+    """A corruption, its seed, and the settings with which it is applied.
 
     Attributes:
         corruption: The corruption.
         seed: The corruption seed.
         words: Corrupts instructions.
-        repeat: Number of the repetition of the same condition; part of the random keys if it is not
-            0.
+        repeat: Number of this repetition of the same condition; if it is not 0, random numbers
+            depend on it.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" or "right".
         keep: Function that chooses episodes (:meth:`Subset.keep`), or None to keep all.
@@ -92,13 +92,15 @@ class Condition:
     observers: list[Observer] = field(default_factory=list)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Return the random key: seed, scene file with episode id, and number of the call."""
+        """Return the key for random numbers: the seed, the scene file with the episode id, and the
+        number of the call.
+        """
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
 
 def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
-    """Return the reason why a corruption cannot reach this agent, or an empty string if it can."""
+    """Return the reason why a corruption cannot reach this agent, or "" if it can."""
     kinds = {camera["type"] for camera in clean.cameras}
     for part in corruption.parts:
         sensors = {*record(part.name).modalities} & {"rgb", "depth"}
@@ -120,7 +122,9 @@ def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
 
 
 def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> bool:
-    """Return whether the agent needs tokens of corrupted words and ``tokenizer=`` is not set."""
+    """Return whether the agent needs tokens of corrupted words although ``tokenizer=`` is not
+    set.
+    """
     changes_words = any(part.modality == "instruction" for part in corruption.parts)
     reads_tokens = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
     return changes_words and reads_tokens and words.tokenizer is None
@@ -153,11 +157,11 @@ class Words:
             message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
                 ``category``.
             corruption: The corruption of the condition.
-            key: Determines the draws.
-            guards: Guards that change the instruction after the corruption.
+            key: Determines the random numbers.
+            guards: Guards that change the corrupted instruction.
 
         Raises:
-            ValueError: The changed instruction cannot reach the agent.
+            ValueError: The corrupted instruction cannot be passed to the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
@@ -207,7 +211,7 @@ def load_tokenizer(name: str) -> Tokenizer:
 
     Raises:
         ValueError: The file or folder contains no tokenizer.
-        FileNotFoundError: It does not exist.
+        FileNotFoundError: There is no such file or folder.
     """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))
@@ -217,14 +221,14 @@ def load_tokenizer(name: str) -> Tokenizer:
 def padded_length(tokens: list[Any]) -> int | None:
     """Return the length to which a dataset pads its tokens, or None if it does not pad.
 
-    Padding consists of tokens 0 or 1 that are repeated at the end.
+    Padding means that the token 0 or 1 is repeated at the end.
     """
     repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
     return len(tokens) if repeated else None
 
 
 def hash_episode(name: str) -> float:
-    """Return a hash of an episode's name in [0, 1)."""
+    """Hash an episode's name to a number in [0, 1)."""
     return uniform(digest(Key(0, name), "episodes"))
 
 
@@ -233,7 +237,7 @@ class Subset:
     """Chooses about ``count`` episodes by a hash of their names.
 
     Attributes:
-        count: How many episodes.
+        count: The requested number of episodes.
         folder: The run's folder; the choice is stored there.
         settled: Seconds without a new environment after which all environments are assumed to be
             known.
@@ -248,8 +252,8 @@ class Subset:
 
         Args:
             names: Names of the episodes of one environment, such as "scene.glb/17".
-            least: The minimum number to keep, 0 or 1. This is 1 because Habitat rejects an empty
-                dataset.
+            least: The minimum number of episodes to keep, 0 or 1. The default is 1, because Habitat
+                rejects an empty dataset.
         """
         bound = self._bound()
         if bound is None:
@@ -264,7 +268,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _bound(self) -> float | None:
-        """Return the stored bound, or None if no bound is stored yet."""
+        """Return the stored bound for the hashes, or None if no bound is stored yet."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -273,7 +277,8 @@ class Subset:
         bound = choice.get("bound")
         if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(choice.get("of")):
             raise ValueError(
-                f"{file} is damaged: bound must be from 0 to 1, and of a whole number >= 0. {again}"
+                f'{file} is damaged: "bound" must be from 0 to 1, and "of" must be a whole number '
+                f">= 0. {again}"
             )
         if choice.get("episodes") != self.count:
             raise ValueError(
@@ -283,14 +288,16 @@ class Subset:
         return bound
 
     def least(self) -> int:
-        """Return how many episodes the program must run, or 0 if no episodes are chosen yet."""
+        """Return the number of episodes that the program must run, or 0 before episodes are
+        chosen.
+        """
         if self._bound() is None:
             return 0
         total = int(read_object(self.folder / "episodes.json", "")["of"])
         return min(self.count, total)
 
     def _set_bound(self, names: list[str]) -> float:
-        """Add ``names`` to the known names, wait for other environments, and set the bound."""
+        """Add ``names`` to the known names, wait for other environments, and store the bound."""
         known = self.folder / "episodes.txt"
         with open_output(known, "a", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
@@ -313,7 +320,9 @@ def _is_count(value: object) -> bool:
 
 
 def _read_name(line: str, file: Path) -> str:
-    """Return the episode name in a line of ``file``. Raises ValueError if it is damaged."""
+    """Return the episode name in a ``line`` of ``file``. Raises ValueError if the line is
+    damaged.
+    """
     try:
         name: object = json.loads(line)
     except (ValueError, RecursionError):

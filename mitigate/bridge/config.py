@@ -14,7 +14,7 @@ from typing import Any
 from omegaconf import MISSING
 
 from mitigate.bridge.condition import SETTLE_TIME
-from mitigate.cluster import launcher  # noqa: F401 - registers the kinds of conf/launcher
+from mitigate.cluster import launcher  # noqa: F401 - registers the options of conf/launcher
 from mitigate.core import conf
 from mitigate.core.addresses import check_choice
 from mitigate.core.files import make_folder
@@ -28,7 +28,7 @@ from mitigate.worlds.measures import RULES
 
 @dataclass
 class RunConfig:
-    """Typed options of ``conf/run.yaml``, which documents each of them."""
+    """Typed options of ``mitigate run``; ``conf/run.yaml`` documents each option."""
 
     name: str | None = None
     out: str | None = None
@@ -44,7 +44,7 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    # Any, because a type error of Hydra would print the value; check_choice checks it instead
+    # the type is Any, and check_choice checks the value, because Hydra's type error would print it
     safeguard: Any = "none"
     restore: str | None = None
     tokenizer: str | None = None
@@ -108,7 +108,7 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
     if config.token_length is not None and config.token_length < 1:
         raise ValueError(f"token_length must be >= 1 or null, got {config.token_length}.")
     for option, text in (("split", config.split), ("name", config.name or command_name(command))):
-        if constraint := allowed(option, text):  # checked now rather than after hours of measuring
+        if constraint := allowed(option, text):  # check it now, not after hours of measuring
             raise ValueError(f"{option}={short(text)} cannot be written to rows: {constraint}.")
     for watched in config.watch or ():
         _check_watched(str(watched))

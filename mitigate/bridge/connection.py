@@ -35,17 +35,21 @@ def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, An
 
 
 def _use_one_thread() -> None:
-    """Let torch use one thread, because environments run in parallel and this process is a fork."""
+    """Limit torch to one thread, because environments run in parallel and this process is a
+    fork.
+    """
     import torch
 
     torch.set_num_threads(1)
 
 
 def _describe_error(kind: str, error: Exception) -> str:
-    """Return the text for the agent's process about an error in a message of this kind."""
+    """Return the text that the agent's process gets if answering a message of this ``kind``
+    failed.
+    """
     if type(error) is ValueError:
         return str(error)
-    if isinstance(error, OSError):  # the error is on the server side, not in the agent's process
+    if isinstance(error, OSError):  # the server, not the agent's process, caused the error
         if error.strerror is None:
             return str(error)
         return f"the run cannot write {error.filename}: {error.strerror}."
@@ -58,8 +62,8 @@ def _describe_error(kind: str, error: Exception) -> str:
 class SharedMemory:
     """Memory for frames that the server and an environment's process share.
 
-    It is a file in ``folder``, mapped as ``map``. The file is deleted as soon as both sides have
-    mapped it.
+    The memory is a mapped file in ``folder``. The file is deleted as soon as both sides have mapped
+    it.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -96,12 +100,12 @@ class SharedMemory:
 
 
 class Connection:
-    """Serves one environment; for each kind of message, a method computes the answer.
+    """Serves one environment. Each kind of message has a method that computes the answer.
 
     Args:
         channel: The socket.
-        condition: How frames and instructions are corrupted.
-        folder: The folder of the events.
+        condition: Corrupts frames and instructions.
+        folder: The folder in which events are written.
         token: The secret token that the other side must send.
         memory: The folder for shared-memory files.
     """
@@ -114,7 +118,7 @@ class Connection:
         self.folder = folder
         self.token = token
         self.shared = SharedMemory(memory)
-        self.answers = {  # maps a kind of message (all after "hello") to its method
+        self.answers = {  # maps each kind of message after "hello" to its method
             "spec": self.on_spec,
             "episode": self.on_episode,
             "frame": self.on_frame,
@@ -124,18 +128,18 @@ class Connection:
             "stopped": self.on_stopped,
         }
         self.rig: Rig | None = None
-        # both are kept when the cameras are described again
+        # both are kept if the agent describes its cameras again
         self.streams: dict[Group, FrameStream] = {}
-        self.guards: dict[tuple[str, ...], Guards] = {}  # of the episode
+        self.guards: dict[tuple[str, ...], Guards] = {}  # guards of the current episode
         self.offsets: dict[str, int] = {}
         self.scene = ""
         self.episode = ""
         self.open = False  # whether an episode is running
-        self.loop = False  # whether the episode belongs to a loop without Habitat
-        self.chosen = False  # whether the program supports the choice of episodes
+        self.loop = False  # whether the program runs its own loop without Habitat
+        self.chosen = False  # whether the program asked which episodes to run
         self.names: list[str] = []  # episode names of a dataset that were received so far
         self.described: list[Any] = []  # camera descriptions that were received so far
-        self.kinds: set[str] = set()  # kinds of cameras in the calls of this episode
+        self.kinds: set[str] = set()  # kinds of cameras in this episode ("rgb", "depth")
         self.calls = 0  # number of calls in this episode
         self.seconds = 0.0  # seconds spent on corruptions in this episode
 
@@ -145,7 +149,7 @@ class Connection:
         if not self._greet():
             return
         self.channel.settimeout(None)
-        if "torch" in sys.modules:  # a guard has loaded torch before the fork
+        if "torch" in sys.modules:  # a guard loaded torch before the fork
             _use_one_thread()
         try:
             while (message := self._next()) is not None:
@@ -165,7 +169,7 @@ class Connection:
             if kind not in self.answers:
                 raise ValueError(unknown("kind of message", kind[:40], self.answers))
             answer = self.answers[kind](message)
-            os.utime(self.folder / EVENTS)  # shows that this process is alive
+            os.utime(self.folder / EVENTS)  # the new time shows that this process is alive
         except Exception as error:  # after any error, the agent's process must stop
             problem = _describe_error(kind, error)
             trace = traceback.format_exc()
@@ -181,9 +185,9 @@ class Connection:
             return None
 
     def _leave(self, fault: str | None = None) -> None:
-        """Record that the current episode was left unfinished, with the reason ``fault`` if known.
+        """Record that the current episode was left unfinished; ``fault`` is the reason, if known.
 
-        Habitat's first call belongs to the reset, so an episode with one call was never stepped. In
+        Habitat's first call belongs to the reset, so an episode with only one call had no step. In
         a loop without Habitat, each call is a step.
         """
         if self.open and self.calls > (0 if self.loop else 1):
@@ -206,12 +210,12 @@ class Connection:
         left_out = ("token", "kind", "pid", "number")
         versions = {k: str(v)[:80] for k, v in hello.items() if k not in left_out}
         write_event(self.folder, event="hello", agent_pid=hello.get("pid"), **versions)
-        with suppress(OSError):  # the other process is gone, which the next read will notice
+        with suppress(OSError):  # the other process has ended; the next read will notice it
             send(self.channel, numbered(hello, {}))
         return True
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer a description of cameras by providing shared memory for their frames."""
+        """Answer the description of the cameras with shared memory for their frames."""
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = (
@@ -229,7 +233,7 @@ class Connection:
         return {**self.shared.make(size), "offsets": self.offsets}
 
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer the beginning of an episode with the instruction for the agent."""
+        """Answer the message that begins an episode with the instruction for the agent."""
         self._leave()
         self._check_chosen()
         self.scene, self.episode = read_start(message)
@@ -253,7 +257,9 @@ class Connection:
         return words
 
     def _check_chosen(self) -> None:
-        """Raise ValueError if ``episodes=`` is set and the program did not ask for a choice."""
+        """Raise ValueError if ``episodes=`` is set but the program did not ask which episodes to
+        run.
+        """
         if self.condition.keep is None or self.chosen:
             return
         self.chosen = any(e["event"] == "dataset" for _, e in read_events(self.folder))
@@ -299,7 +305,8 @@ class Connection:
             self._leave(_one_line(message.get("fault")))
             return {}
         end = read_end(message, self.episode)
-        # a loop may report a failure without a frame: the agent crashed before its first step
+        # a program may report a failure without any frame if the agent crashed before its first
+        # step
         failed = self.loop and not end.get("metrics", {}).get("success")
         if self.calls == 0 and not failed:
             raise ValueError(
@@ -337,10 +344,12 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer the names of an environment's episodes with the indices to keep, or None for all.
+        """Receive the names of an environment's episodes; answer with the indices to keep, or None
+        for all.
 
         The names arrive in several messages. The final answer is sent when all ``count`` names are
-        known. ``least`` is the minimum number to keep, because Habitat rejects an empty dataset.
+        known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
+        dataset.
         """
         keep = self.condition.keep
         self.names += [str(key) for key in message["keys"]]
@@ -351,7 +360,7 @@ class Connection:
         least = 0 if message.get("least") == 0 else 1
         write_event(self.folder, event="dataset", episodes=count)
         indices = None if keep is None else keep(names, least)
-        if least == 0:  # names from ``wanted``: the program runs exactly these episodes
+        if least == 0:  # the names come from ``wanted``, so the program runs exactly these episodes
             number = count if indices is None else len(indices)
             write_event(self.folder, event="dataset", episodes=count, wanted=number)
         return {"keep": indices}
@@ -362,7 +371,7 @@ class Connection:
         return {}
 
     def on_stopped(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record the reason why a process of the command ended itself."""
+        """Record the reason why a process of the command stopped itself."""
         write_event(self.folder, event="stopped", problem=_one_line(message["problem"]))
         return {}
 

@@ -1,4 +1,4 @@
-"""Write and read the events of a condition: JSON lines in its folder, which the command line reads.
+"""Write and read the events of a condition, which are JSON lines in its folder.
 
 Reports of an agent's process about an episode are checked before they are written.
 """
@@ -23,17 +23,18 @@ from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 from mitigate.worlds.measures import path_length
 
 EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
-LONGEST_LINE = 1 << 26  # maximum bytes of an event (heuristic; a message has at most 1 << 24)
+# maximum bytes of one event (heuristic); a message has at most 1 << 24 bytes
+LONGEST_LINE = 1 << 26
 COUNTS = ("steps", "calls")
-METRES = ("start_distance", "distance")  # may be infinite if a goal cannot be reached
+METRES = ("start_distance", "distance")  # these may be infinite, if no goal can be reached
 FIELDS = ("metrics", *COUNTS, "path", *METRES, "stopped", "how", "farthest")
-HOW = (OVER, RESET, CLOSE)  # ends of an episode that count as a result
-# metrics that rows hold in addition to success and SPL
+HOW = (OVER, RESET, CLOSE)  # ways in which an episode can end with a result
+# metrics that rows contain in addition to success and SPL
 MEASURES = ("path_length", "geodesic_distance", "distance_to_goal", "ndtw", "collisions")
 
 
 def write_event(folder: Path, **event: Any) -> None:
-    """Append a line to the events in ``folder``; several processes may do so in parallel."""
+    """Append an event to the file in ``folder``; several processes may append in parallel."""
     line = json.dumps({"time": round(time.time(), 3), "pid": os.getpid(), **event}) + "\n"
     with open_output(folder / EVENTS, "a", encoding="utf-8") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -41,7 +42,7 @@ def write_event(folder: Path, **event: Any) -> None:
 
 
 def damaged(folder: Path, what: str) -> ValueError:
-    """Return the error for damaged events of a condition; ``what`` describes the damage."""
+    """Return the error for a damaged file of events; ``what`` describes the damage."""
     return ValueError(
         f"{folder / EVENTS}: {what}, so the episodes of this condition cannot be trusted. No file "
         f"was changed. Copy the file back if you have it elsewhere. Or move {folder} "
@@ -52,8 +53,8 @@ def damaged(folder: Path, what: str) -> ValueError:
 def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the number and the content of each line of the events in ``folder``.
 
-    A last line without a line break is skipped, because it is still being written or its writer was
-    killed.
+    If the last line has no line break, it is skipped: it is still being written, or the process
+    that wrote it was killed.
 
     Raises:
         ValueError: Any other line is not a JSON object with a text ``event``.
@@ -77,8 +78,8 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 def put_aside(folder: Path, kind: str) -> None:
     """Move the files of an earlier attempt to ``<folder>.<kind>``, replacing that folder.
 
-    The lock stays. Results that the program wrote to ``folder`` are also moved. ``done.json`` is
-    deleted first, so that the condition counts as unfinished from then on.
+    The lock file stays. Results that the program wrote to ``folder`` are also moved. ``done.json``
+    is deleted first, so that the condition immediately counts as unfinished.
 
     Raises:
         UnsafePathError: ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
@@ -93,15 +94,15 @@ def put_aside(folder: Path, kind: str) -> None:
 
 
 def episode_name(scene: str, episode: str) -> str:
-    """Return the name of an episode in rows, which includes the scene because ObjectNav uses the
-    same ids in every scene.
+    """Return the name of an episode in rows. It includes the scene, because ObjectNav uses the same
+    ids in every scene.
     """
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
 
 
 def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
-    """Return scene and id from the message that begins an episode.
+    """Return the scene and the id from the message that begins an episode.
 
     Raises:
         ValueError: The name is not allowed in rows.
@@ -110,21 +111,21 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     constraint = allowed("episode_id", episode_name(scene, episode))
     if constraint:
         raise ValueError(
-            "scene file and id of an episode must make a name that rows can hold "
-            f"({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
+            "the name of an episode, which consists of its scene file and its id, must be valid in "
+            f"rows ({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
         )
     return scene, episode
 
 
 def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
-    """Return the checked ``FIELDS`` of the report about the end of ``episode``.
+    """Check the report about the end of ``episode``, and return its ``FIELDS``.
 
     A distance that is NaN, or a path that contains NaN, is treated as unknown and omitted.
 
     Raises:
-        ValueError: A metric is not a finite number (only ``distance_to_goal`` may be infinite) or
-            not allowed in rows, the SPL is outside [0, 1], a count or distance is negative or not a
-            number, or the path is not a list of points [2] or [3].
+        ValueError: A field is invalid. Metrics must be finite numbers that are allowed in rows
+            (only ``distance_to_goal`` may be infinite), the SPL must lie in [0, 1], counts and
+            distances must be >= 0, and the path must be a list of points [2] or [3].
     """
     try:
         return _check_end({name: message[name] for name in FIELDS if message.get(name) is not None})
@@ -133,7 +134,7 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of an episode's end without unknown values. Raises ValueError as
+    """Return the fields of an episode's end without unknown values. Raises the same errors as
     `read_end`.
     """
     metrics = end.get("metrics", {})
@@ -165,7 +166,7 @@ def _check_end(end: dict[str, Any]) -> dict[str, Any]:
 
 
 def _check_path(path: Any) -> list[list[float]]:
-    """Return a reported path, or an empty list if one of its points is unknown."""
+    """Return the reported path, or an empty list if a point of the path is unknown."""
     if not isinstance(path, list) or not all(map(_is_point, path)) or len({*map(len, path)}) > 1:
         raise _invalid("path", path, "a list of points [x, y] or [x, y, z] in metres")
     if any(x != x for point in path for x in point):

@@ -1,7 +1,7 @@
-"""Plan a run: its conditions, and the settings on which their results depend.
+"""Plan a run: its conditions, and the settings that their results depend on.
 
-The settings decide whether a finished condition is reused. The labels of a run distinguish its rows
-from the rows of a different agent.
+A finished condition is reused only if its settings have not changed. The labels of a run
+distinguish its rows from the rows of other agents.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ class Plan:
     Attributes:
         config: The options.
         command: The words of the user's command.
-        name: Column of the table, without the names of guards.
+        name: Name of the table's column, without the names of guards.
         out: Output folder.
     """
 
@@ -48,7 +48,7 @@ class Plan:
 
 
 def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
-    """Return the plan of a run. Raises as :func:`check_options`."""
+    """Return the plan of a run. Raises the same errors as :func:`check_options`."""
     check_options(config, command)
     name = config.name or command_name(command)
     out = Path(config.out or default_folder(config, name))
@@ -56,7 +56,9 @@ def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
 
 
 def make_cells(plan: Plan) -> list[Cell]:
-    """Return all conditions of a run: first clean, then repeated clean runs, then the others."""
+    """Return all conditions of a run: first clean, then repeated clean runs, then corrupted
+    ones.
+    """
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
     words = _open_words(config)
@@ -105,7 +107,7 @@ def make_cells(plan: Plan) -> list[Cell]:
 
 
 def _check_guards(guards: Guards) -> None:
-    """Raise ValueError for a guard that overrides ``attach``, because the agent runs in a different
+    """Raise ValueError for guards that need the agent itself, because it runs in another
     process.
     """
     if guards.adapts:
@@ -122,7 +124,7 @@ def _open_words(config: RunConfig) -> Words:
 
 
 def _adapter_environment(config: RunConfig) -> dict[str, str]:
-    """Return the environment variable that describes the adapters to the hook, if any.
+    """Return the environment variable that tells the hook which adapters to attach, if any.
 
     Raises ValueError for an invalid ``adapters=``.
     """
@@ -139,7 +141,7 @@ def _adapter_environment(config: RunConfig) -> dict[str, str]:
 
 
 def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the settings on which all results of a run depend, except the corruption.
+    """Return the settings, except the corruption, that all results of a run depend on.
 
     Returns:
         The command and options, and the hashes of everything that changes the agent.
@@ -157,9 +159,7 @@ def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any
 
 
 def watched_values(config: RunConfig) -> dict[str, str | None] | None:
-    """Return the hashes of files and the values of variables in ``watch=``, or None if it is
-    unset.
-    """
+    """Return hashes of files and values of variables in ``watch=``, or None without this option."""
     names = [str(name) for name in config.watch or ()]
     if not names:
         return None
@@ -177,7 +177,7 @@ def _as_text(values: dict[str, str | None] | None) -> str | None:
 
 
 def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
-    """Return the entries of all rows of a run.
+    """Return the entries that are the same in all rows of a run.
 
     The hash of the agent includes the restorer, safeguard, adapters and watched values.
     """
@@ -191,7 +191,7 @@ def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
 
 
 def default_folder(config: RunConfig, name: str) -> Path:
-    """Return the default folder of a run, which depends on agent, severity and episodes."""
+    """Return the default folder of a run, which depends on the agent, severity and episodes."""
     parts = [part for part in (adapters_label(config), _as_text(watched_values(config))) if part]
     folder = "-".join([_column(config, name), *(_digest(part)[:6] for part in parts)])
     folder += f"-s{config.severity:g}" + (f"-e{config.episodes}" if config.episodes else "")
@@ -199,7 +199,7 @@ def default_folder(config: RunConfig, name: str) -> Path:
 
 
 def adapters_label(config: RunConfig) -> str | None:
-    """Return the hash of the adapters and the target module's name, or None without adapters."""
+    """Return the hash of the adapters and of the target module's name, or None without adapters."""
     if config.adapters is None:
         return None
     from mitigate.encoders.plain_adapters import WEIGHTS
@@ -215,7 +215,7 @@ def adapters_label(config: RunConfig) -> str | None:
 
 
 def split_adapters(adapters: str) -> tuple[str, str, str]:
-    """Return folder, module and target (Class.attribute) of ``adapters=``.
+    """Split ``adapters=`` into its folder, module and target (Class.attribute).
 
     Raises:
         ValueError: The module or the class is missing.

@@ -5,17 +5,18 @@
     python program.py PARENT PIPE PROGRAM ...
 
 A process that detaches itself (``setsid``, a double fork, ``nohup ... &``) leaves its session. When
-its parent ends, it is no longer a descendant of the command. The supervisor is a child subreaper
-(prctl(2), Linux): such orphans become its children, so the supervisor knows every descendant. The
-supervisor runs until the last descendant has ended. When PARENT, which started it, is gone, or when
-it receives SIGTERM, it ends all descendants.
+the parent of such a process ends, the process is no longer a descendant of the command. The
+supervisor is a child subreaper (prctl(2), Linux): such orphans become its children, so the
+supervisor knows every descendant. The supervisor runs until the last descendant has ended. The
+supervisor ends all descendants when it receives SIGTERM, or when PARENT, the process that started
+it, has ended.
 
-A fork of the supervisor starts the program and waits for it. A program that kills its parent kills
-only this fork, and the supervisor stays alive.
+A fork of the supervisor starts the program and waits for it. If the program kills its parent, it
+kills only this fork, and the supervisor stays alive.
 
 The supervisor writes JSON lines to the file descriptor PIPE: first ``{"pid": N}`` or ``{"error":
-TEXT}``, and ``{"status": N}`` when the program ends. It runs in a plain Python, so this file
-imports only the standard library.
+TEXT}``, and ``{"status": N}`` when the program ends. The supervisor runs without other packages, so
+this file imports only the standard library.
 """
 
 from __future__ import annotations
@@ -42,13 +43,13 @@ MAX_LINE = 200  # maximum characters of a process's command line in a message
 class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
-    A process belongs to the command if it descends from it, or if its environment contains
-    ``marker``. The second case covers processes in a container, and those that outlive the
-    supervisor.
+    A process belongs to the command if it is a descendant of the command, or if its environment
+    contains ``marker``. The marker identifies processes in a container, and processes that outlive
+    the supervisor.
 
     Args:
         words: The command and its arguments.
-        log: Gets its output.
+        log: File that receives the output of the command.
         environment: All environment variables of the command.
         marker: A text that only this command's environment contains.
 
@@ -88,7 +89,7 @@ class Command:
         Processes that the command started may still run.
         """
         if self._status is None:
-            # checked first, so that the last line is already in the pipe
+            # check this before reading, so that the last line is already in the pipe
             supervisor_status = self.process.poll()
             line = self._next()
             if "status" in line:
@@ -103,8 +104,8 @@ class Command:
         return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 
     def left(self) -> list[str]:
-        """Wait up to ``GRACE`` for the processes of an ended command; describe the remaining
-        ones.
+        """Wait up to ``GRACE`` seconds until all processes of the command end; describe those that
+        remain.
         """
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
@@ -115,8 +116,9 @@ class Command:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
         Args:
-            connected: Returns whether any of them is connected to the bridge. If no process is
-                connected and the command has ended, SIGKILL follows at once.
+            connected: Function that returns whether any of the processes is connected to the
+                bridge. If the command has ended and no process is connected, SIGKILL follows at
+                once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)
@@ -130,16 +132,17 @@ class Command:
             time.sleep(PAUSE)
         try:
             self.process.wait(KILL_LIMIT)
-        except subprocess.TimeoutExpired:  # a process of a different user holds it
+        # a process of a different user keeps the supervisor alive
+        except subprocess.TimeoutExpired:
             self.process.kill()
             self.process.wait()
         self.status()
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the next line from the supervisor, or an empty text if there is no new line.
+        """Return the content of the supervisor's next line, or {} if there is no new line.
 
-        The supervisor writes each line at once, so a line is never read in part.
+        The supervisor writes a whole line in one call, so a part of a line is never read.
         """
         line = b"" if self._pipe.closed else self._pipe.readline()
         message: dict[str, Any] = json.loads(line) if line else {}
@@ -147,7 +150,7 @@ class Command:
 
 
 def _marked(marker: bytes) -> list[int]:
-    """Return the pids of this user's processes whose environment holds ``marker``."""
+    """Return the pids of this user's processes whose environment contains ``marker``."""
     pids = []
     for folder in Path("/proc").glob("[0-9]*"):
         with suppress(OSError):
@@ -158,7 +161,7 @@ def _marked(marker: bytes) -> list[int]:
 
 
 def _describe(pid: int) -> str:
-    """Return a process's command line, printable and short, with its pid."""
+    """Describe a process by its pid and its shortened command line."""
     words = b""
     with suppress(OSError):
         words = Path(f"/proc/{pid}/cmdline").read_bytes().strip(b"\0").replace(b"\0", b" ")
@@ -168,7 +171,9 @@ def _describe(pid: int) -> str:
 
 
 def processes() -> dict[int, tuple[int, bool]]:
-    """Return {pid: (parent, whether it runs)} of all processes; a zombie does not run."""
+    """Map the pid of each process to its parent's pid and whether it runs; a zombie does not
+    run.
+    """
     states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
@@ -178,7 +183,7 @@ def processes() -> dict[int, tuple[int, bool]]:
             ):
                 text = file.read()
                 fields = text[text.rindex(b")") + 2 :].split()  # proc_pid_stat(5), from field 3
-                # if other threads remain, the process still runs even if its main thread has ended
+                # if the main thread has ended but other threads remain, the process still runs
                 zombie = fields[0] in (b"Z", b"X") and int(fields[17]) <= 1
                 states[int(name)] = (int(fields[1]), not zombie)
     return states
@@ -200,20 +205,23 @@ def descendants(root: int) -> list[int]:
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; ignore processes that are gone or belong to a different user."""
+    """Send a signal to processes; ignore processes that have ended or belong to a different
+    user.
+    """
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
 
 
 def main() -> None:
-    """Run the program that the command line names."""
+    """Run the program that the supervisor's command line names."""
     parent = int(sys.argv[1])
     pipe = int(sys.argv[2])
     program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        # ignored here, because the parent decides; the program does not inherit a handler
+        # PARENT handles these signals; a handler is set because, unlike SIG_IGN, the program does
+        # not inherit it
         signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()
@@ -223,7 +231,7 @@ def main() -> None:
         ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
     while _reap(child, pipe):
         if os.getppid() != parent:
-            # mitigate was killed: end the command at once, because the run may be started again
+            # PARENT was killed: end the command at once, because the user may start the run again
             return _end(child, pipe, 0.0)
         if ending:
             return _end(child, pipe, GRACE)
@@ -231,7 +239,7 @@ def main() -> None:
 
 
 def _start(program: Sequence[str], pipe: int) -> None:
-    """Start the program, wait for its end and report its status, even after SIGTERM."""
+    """Start the program, wait until it ends, and report its status, even after SIGTERM."""
     try:
         child = subprocess.Popen(program, start_new_session=True)
     except OSError as error:
@@ -241,14 +249,14 @@ def _start(program: Sequence[str], pipe: int) -> None:
 
 
 def _report(pipe: int, **message: object) -> None:
-    with suppress(OSError):  # the parent is gone
+    with suppress(OSError):  # the parent has ended
         os.write(pipe, (json.dumps(message) + "\n").encode())
 
 
 def _reap(child: int, pipe: int) -> bool:
-    """Reap ended processes; return whether any process is left.
+    """Reap ended processes; return whether any process still runs.
 
-    If ``child``, which waits for the program, was killed, report its status.
+    If the fork ``child``, which waits for the program, was killed, report its status.
     """
     while True:
         try:

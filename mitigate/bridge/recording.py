@@ -1,9 +1,9 @@
-"""Write recordings of an agent: files with clean frames, instructions, poses, actions and measures.
+"""Record an agent's episodes: clean frames, instructions, poses, actions and metrics.
 
-A recording has a folder ``<scene>/<episode>/`` per episode, with ``<camera>/000000.png`` per call
-(RGB, or depth as 16-bit millimetres), ``cameras.json``, ``episode.json``, ``steps.jsonl`` (a line
-per call) and ``end.json``. ``mitigate corrupt``, ``mitigate replay`` and ``recipe=encoder``
-(env=frames) read such recordings.
+A recording has one folder ``<scene>/<episode>/`` per episode. This folder contains one file
+``<camera>/000000.png`` per camera and call (RGB, or depth as 16-bit millimetres), ``cameras.json``,
+``episode.json``, ``steps.jsonl`` (one line per call) and ``end.json``. ``mitigate corrupt``,
+``mitigate replay`` and ``recipe=encoder`` (env=frames) read such recordings.
 """
 
 from __future__ import annotations
@@ -32,8 +32,8 @@ from mitigate.corruptions.frame_files import counts
 from mitigate.evaluation.rows import stem_of
 
 CAMERAS = "cameras.json"
-MAX_NAME = 150  # maximum characters of a name in a path (heuristic; a file name has <= 255 bytes)
-UNIT = 0.001  # metres per count of 16-bit depth
+MAX_NAME = 150  # maximum characters of a name in a path (heuristic); a file name may have 255 bytes
+UNIT = 0.001  # metres per unit of the 16-bit depth values
 _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9._-]+")
 
 
@@ -54,13 +54,13 @@ def unique_part(name: str) -> str:
 class Recorder(Observer):
     """Observer that writes frames, poses and results to ``folder``.
 
-    An episode is first written to a temporary folder. When it ends, this folder replaces any
-    earlier recording of the episode.
+    An episode is first written to a temporary folder. When the episode ends, this folder replaces
+    any earlier recording of the episode.
 
     Attributes:
         folder: The folder of the condition.
-        root: The folder that the user named, if it contains ``folder``.
-        output_root: Checks during an episode that the folder is not replaced.
+        root: The folder that the user named, if ``folder`` is inside it.
+        output_root: Checks during an episode that no other process replaces the folder.
         draft: The temporary folder of the current episode.
         target: The final folder of the current episode.
         cameras: The cameras of the current episode.
@@ -125,7 +125,7 @@ class Recorder(Observer):
     def leave(self) -> None:
         """Delete the files of an episode that did not end."""
         if self.draft is not None:
-            # the folder was replaced and no longer belongs to this run
+            # ignore a folder that was replaced and no longer belongs to this run
             with suppress(output.UnsafePathError, output.FolderLostError):
                 output.delete_folder(self.draft)
         self._close()
@@ -138,7 +138,8 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete unfinished recordings of ended processes in the recording ``folder`` of a condition.
+    """Delete the unfinished episodes that ended processes left in ``folder``, a condition's
+    recording.
 
     Raises:
         UnsafePathError: ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO or
@@ -161,7 +162,7 @@ def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
 
 
 def png(camera: Camera, frame: np.ndarray) -> bytes:
-    """Return a frame as a PNG file: either RGB, or depth in millimetres with holes as 0."""
+    """Encode a frame as PNG: either RGB, or depth in millimetres with 0 for missing depth."""
     if camera.kind == RGB:
         picture = frame[..., ::-1]
     else:

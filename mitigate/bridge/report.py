@@ -1,6 +1,7 @@
 """Write the rows, the table and the figures of a run's folder.
 
-They contain all finished conditions in the folder, including those from earlier calls.
+These files contain all finished conditions in the folder, including conditions that earlier calls
+of ``mitigate run`` finished.
 """
 
 from __future__ import annotations
@@ -25,14 +26,14 @@ from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
-LABELS = ("agent", "seed", "split")  # keys in rows.IDENTITY that are equal in all rows of a run
+LABELS = ("agent", "seed", "split")  # keys of rows.IDENTITY with one value in a run
 
 
 def write_report(cells: Sequence[Cell], out: Path) -> None:
     """Write ``rows.jsonl``, the table and its figures, and print the table.
 
     Args:
-        cells: The conditions of this call, with clean first.
+        cells: The conditions of this call, beginning with clean.
         out: The run's folder.
 
     Raises:
@@ -67,7 +68,7 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
 
 
 def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) -> None:
-    """Write the rows of a run, without silently losing rows of an existing file.
+    """Write the rows of a run; never drop rows of an existing file without notice.
 
     Rows of conditions that are ``left_out`` of the table, and rows of a different agent, seed or
     split, are kept in a copy of the file.
@@ -83,9 +84,9 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     if unexplained:
         raise ValueError(
             f"{file} holds {counted(len(before), 'row')}, and {lost.total()} of them belong to "
-            f"episodes that are in no finished condition any more ({', '.join(unexplained)}). The "
-            "file was not changed. Run these conditions again, or move the file to another folder "
-            "and run the same command again."
+            f"episodes of conditions that are not finished any more ({', '.join(unexplained)}). "
+            "The file was not changed. Run these conditions again, or move the file to another "
+            "folder and run the same command again."
         )
     labels = {name: {row[name] for row in new_rows} for name in LABELS}
     same_episodes = [row for row in before if _condition_and_episode(row) in now]
@@ -95,17 +96,17 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
         copy = _unused(file.with_name(f"{file.name}.before"))
         write_bytes(copy, file.read_bytes())
         print(f"The rows of {', '.join(removed)} are now only in {copy}.", flush=True)
-    # a different rule= gives different rows for the same episodes
+    # with a different rule=, the same episodes have different rows
     rows.write(file, new_rows, fewer=True)
 
 
 def _condition_and_episode(row: Row) -> tuple[str, float, str]:
-    """Return the condition and the episode of a row, which do not depend on the success rule."""
+    """Return the condition and the episode of a row, which are the same for all success rules."""
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 
 def _folder_name(row: Row) -> str:
-    """Return the name of the condition folder from which a row comes."""
+    """Return the name of the condition folder that a row belongs to."""
     return folder_name(str(row["corruption"]), float(row["severity"]))
 
 
@@ -122,8 +123,8 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
     """Return finished conditions in ``out`` that are not in ``cells``.
 
     Returns:
-        The conditions with the same agent and settings, and the names of the other conditions. The
-        reason why the other conditions are left out of the table is printed.
+        The conditions with the same agent and settings, and the names of the other conditions. For
+        the other conditions, the function prints why they are left out of the table.
     """
     known = {cell.name for cell in cells}
     earlier: list[Cell] = []
@@ -146,9 +147,9 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
 
 
 def _read_cell(clean: Cell, file: Path) -> Cell | None:
-    """Return the condition of a ``done.json``, with the options of ``clean``.
+    """Return the condition that a ``done.json`` describes, with the options of ``clean``.
 
-    The result is None if an older version wrote the file or if its corruption no longer exists.
+    The result is None if an older version wrote the file or if the corruption no longer exists.
     Raises ValueError if the file or its events are damaged.
     """
     entries = read_done(file.parent) or {}
@@ -158,7 +159,8 @@ def _read_cell(clean: Cell, file: Path) -> Cell | None:
         severity = float(entries["severity"])
         corruption = Corruption(str(entries["condition"]), severity) if severity else CLEAN
         repeat = int(entries["repeat"])
-    except (ValueError, KeyError, TypeError):  # an older version, or a corruption that was removed
+    # an older version wrote it, or the corruption was removed
+    except (ValueError, KeyError, TypeError):
         return None
     folder = file.parent
     return replace(
@@ -175,9 +177,9 @@ def _read_cell(clean: Cell, file: Path) -> Cell | None:
 def describe_randomness(runs: Sequence[Sequence[Row]]) -> str:
     """Return a Markdown paragraph on repeated clean runs.
 
-    It states their SR, the fraction of episodes whose outcome differs between runs, and the SR
-    difference between the first two runs with its interval. Only episodes that all runs contain are
-    used, with the success rule of the first row.
+    The paragraph states the SR of each run, the fraction of episodes whose outcome differs between
+    runs, and the SR difference between the first two runs with its confidence interval. Only
+    episodes that occur in all runs are used. The success rule is that of the first row.
     """
     rule = runs[0][0]["rule"]
     successes = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]

@@ -1,4 +1,4 @@
-"""Compute result rows from the reports of a command's processes about their episodes."""
+"""Compute result rows from what a command's processes report about their episodes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.measures import RULES, Rule, path_length, spl
 
 OWN = "own: the agent's Success measure"
-# depth in metres that never exceeds this value may be normalised (heuristic)
+# if depth that counts as metres never exceeds this value, it may be normalised (heuristic)
 NORMALISED_LIMIT = 1.01
 NORMALISED_HINT = (
     "is it normalised? If so, describe it, with the camera's own name and range: corrupt(..., "
@@ -30,23 +30,23 @@ CUT_OFF = (
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-# rules that need no STOP, because some programs never report it
+# these rules do not use STOP, because some programs never report it
 COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}
 
 
 @dataclass
 class Reports:
-    """The reports of a command's processes under one condition so far.
+    """What a command's processes have reported under one condition so far.
 
     Attributes:
         hellos: The first message of each connection, with the versions of Python and libraries.
-        cameras: The cameras of all calls, in their first description.
-        unread: Observations of the first call that look like frames, but whose sensors are no
-            cameras, with the type of the sensor.
-        ends: The end of each episode by name: the first end at which it was over, or else the first
-            end.
+        cameras: The first description of each camera.
+        unread: Observations of the first call that look like frames, although their sensors are no
+            cameras, and the types of these sensors.
+        ends: The end of each episode, by name. If an episode ended several times, this is the first
+            complete end, or else the first end.
         repeated: Number of episodes that ended more than once.
-        dropped: Episodes that were left unfinished, with the reason if it is known.
+        dropped: Episodes that were left unfinished, with the reason if known.
         parallel: Whether an episode ended while another one was running.
         problems: Failures of the server, and reasons why processes stopped themselves.
         first: The event that began the first episode.
@@ -54,7 +54,7 @@ class Reports:
         adapted: Encoders to which adapters were attached.
         connected: Number of environments that are connected now.
         announced: Number of episodes that the program must run.
-        ended: How many episodes ended.
+        ended: Number of episodes that ended.
     """
 
     hellos: list[dict[str, Any]] = field(default_factory=list)
@@ -78,14 +78,12 @@ class Reports:
         return sorted(self.dropped.keys() - self.ends.keys())
 
     def announce(self, event: dict[str, Any]) -> None:
-        """Record the number of episodes that ``wanted`` returned to the program."""
+        """Record how many episodes ``mitigate_hook.wanted`` returned to the program."""
         if event.get("wanted") is not None:
             self.announced = max(self.announced, int(event["wanted"]))
 
     def end(self, name: str, event: dict[str, Any]) -> None:
-        """Record the end of an episode; a completed episode replaces an earlier incomplete
-        attempt.
-        """
+        """Record the end of an episode; a complete end replaces an earlier incomplete end."""
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
             self.ends[name] = event
@@ -103,11 +101,10 @@ class Reports:
             )
 
     def without_closed(self) -> Reports:
-        """Discard episodes whose Env was closed before they were over, if several Envs ran in
-        parallel.
+        """Discard the episodes that closing an Env ended, if several Envs ran in parallel.
 
-        An evaluator with parallel environments cuts episodes off in this way. A single Env,
-        however, may end its episode by being closed.
+        An evaluator with parallel environments cuts off running episodes when it closes the Envs. A
+        single Env, however, may be closed to end its episode.
         """
         if self.parallel:
             closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
@@ -117,7 +114,7 @@ class Reports:
 
 
 def read(folder: Path, count_closed: bool = False) -> Reports:
-    """Return the reports in the events of ``folder``; an incomplete last line is left out.
+    """Read the reports from the events in ``folder``; ignore an incomplete last line.
 
     Args:
         folder: The folder of a condition.
@@ -142,7 +139,8 @@ def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None
     Args:
         reports: The reports from all earlier events.
         event: One line of the events.
-        began: Number of episodes that had ended when a connection's episode began, by connection.
+        began: For each connection, the number of episodes that had ended when its current episode
+            began.
     """
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
@@ -185,14 +183,14 @@ def rows(
     rule: str | None,
     clean: Reports | None = None,
 ) -> list[Row]:
-    """Return the rows of one condition, by the agent's success rule and by a common rule.
+    """Return the rows of one condition, judged by the agent's success rule and by a common rule.
 
     Args:
         reports: The reports of the condition.
         corruption: The corruption of the condition.
         label: Entries of all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES`` that replaces the agent's Success measure. An agent with neither
-            gets rows only by the common rule.
+        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. Without
+            ``rule`` and Success measure, an agent gets rows only by the common rule.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     result = []
@@ -215,7 +213,9 @@ def rows(
 
 
 def _common_rules(reports: Reports) -> list[Rule]:
-    """Return the common rule of the task; a task without words or objects (PointNav) has none."""
+    """Return the common rule of the task; PointNav, without words or objects, has no common
+    rule.
+    """
     if reports.first.get("category"):
         return [COMMON["objects"]]
     return [COMMON["words"]] if reports.first.get("text") else []
@@ -224,9 +224,9 @@ def _common_rules(reports: Reports) -> list[Rule]:
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
     """Return the requested success rule and the common success rule.
 
-    The common rule is omitted if the task has none, or if it could judge only some episodes: if it
-    cannot judge an episode that the agent's own rule can judge, or if neither this condition nor
-    the clean one reports a distance.
+    The common rule is omitted if the task has none. The common rule is also omitted if it cannot
+    judge every episode that the agent's own rule can judge, or if neither this condition nor the
+    clean condition reports a distance.
     """
     common = _common_rules(reports)
     ends = [*reports.ends.values()]
@@ -261,10 +261,10 @@ def _goal_distance(end: dict[str, Any]) -> Any:
 
 
 def _missing(end: dict[str, Any], rule: Rule) -> str:
-    """Return the name of an argument of ``finish`` that a rule needs but the episode lacks, or "".
+    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or "".
 
-    A reported failure without a distance is a failure by every rule. So is an episode that ends too
-    far from the goal, with or without STOP.
+    A reported failure without a distance is a failure by every rule. An episode that ends too far
+    from the goal is also a failure, with or without STOP.
     """
     metres = _goal_distance(end)
     if metres is None:
@@ -279,10 +279,10 @@ def count_missing(reports: Reports, rule: str) -> dict[str, int]:
 
 
 def _spl(end: dict[str, Any], success: bool) -> float:
-    """Return SPL from the reported path, or the agent's own SPL.
+    """Return the SPL of the reported path, or else the SPL that the agent reported.
 
-    A success with neither has SPL 1, as if the agent had taken the shortest path
-    (:func:`count_without_path` counts these).
+    A success without path and SPL has SPL 1, as if the agent had taken the shortest path
+    (:func:`count_without_path` counts such episodes).
     """
     start, length = _shortest_path(end), _path_length(end)
     if not success:
@@ -299,7 +299,7 @@ def _has_spl(end: dict[str, Any]) -> bool:
 
 
 def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
-    """Return, by rule, how many successes have no SPL and no path from which to compute it."""
+    """For each rule, count the successes that have neither an SPL nor a path to compute it from."""
     counts: Counter[str] = Counter()
     rules = _choose_rules(reports, rule)
     for end in reports.ends.values():
@@ -310,7 +310,7 @@ def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
 
 
 def maybe_normalised(reports: Reports) -> list[str]:
-    """Return the cameras whose depth is read as metres and never exceeds ``NORMALISED_LIMIT``."""
+    """Return the cameras whose depth counts as metres but never exceeds ``NORMALISED_LIMIT``."""
     maximum: dict[str, float] = {}
     for end in reports.ends.values():
         for name, metres in end.get("farthest", {}).items():
@@ -320,7 +320,9 @@ def maybe_normalised(reports: Reports) -> list[str]:
 
 
 def _shortest_path(end: dict[str, Any]) -> float | None:
-    """Return the length of the shortest path in metres; None if unknown or if there is no path."""
+    """Return the length of the shortest path in metres, or None if it is unknown or does not
+    exist.
+    """
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 

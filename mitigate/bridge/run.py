@@ -37,7 +37,7 @@ from mitigate.corruptions.language.text import is_english, passed_through
 
 PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
-# maximum characters of a problem in a progress line; the end prints all of it (heuristic)
+# maximum characters of a problem in a progress line (heuristic); the full text is printed later
 MAX_REASON = 100
 
 
@@ -57,8 +57,8 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
         command: The words of the user's command.
 
     Raises:
-        ValueError: An option is invalid, or the command failed under some conditions. The error is
-            raised after all other conditions were measured.
+        ValueError: An option is invalid, or the command failed under some conditions. In that case,
+            the error is raised after all other conditions have been measured.
     """
     plan = make_plan(config, command)
     cells = make_cells(plan)
@@ -68,7 +68,7 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
 
 
 def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
-    """Run the cells and write the report. Raises as :func:`run`."""
+    """Run all conditions and write the report. Raises the same errors as :func:`run`."""
     from mitigate.bridge.report import write_report
 
     out = plan.out
@@ -87,12 +87,12 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     _check_rule([clean])
     depth_warning = clean.depth_warning()
     if depth_warning:
-        # checked now, before hours of measuring, and again at the end
+        # check it now, before hours of measuring, and again at the end
         print(depth_warning, flush=True)
     applicable, untokenized = _select_applicable(cells)
     if untokenized:
         problems = [f"{', '.join(untokenized)}: {NO_TOKENIZER}"]
-        print(*problems, flush=True)  # checked now, before hours of measuring
+        print(*problems, flush=True)  # print them now, before hours of measuring
     _check_rule(applicable)
     all_done = was_done and all(cell.is_done() for cell in applicable)
     if all_done:
@@ -104,11 +104,11 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     problems += run_all(plan, applicable)
     _warn_changed_files([clean, *applicable], out, known if all_done else ())
     problems += _describe_removed(applicable, problems)
-    if not clean.is_done():  # a corrupted condition had episodes that the clean one lacks
+    if not clean.is_done():  # a corrupted condition had episodes that clean lacks
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
         write_report([clean, *applicable], out)
-    except ValueError as error:  # failed conditions are listed first
+    except ValueError as error:  # list the failed conditions before this error
         raise ValueError("\n".join([*problems, str(error)])) from error
     if depth_warning:
         print(depth_warning, flush=True)
@@ -121,7 +121,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
 
 
 def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[str]:
-    """Return a problem for each condition that did not fail but has no result."""
+    """Return a description for each condition that did not fail but has no result."""
     failed = {problem.partition(":")[0] for problem in problems}
     return [
         f"{cell.name}: its result in {cell.folder} was removed or replaced by another program."
@@ -131,7 +131,7 @@ def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[st
 
 
 def _check_rule(cells: Sequence[Cell]) -> None:
-    """Raise ValueError if ``rule=`` cannot judge a condition that was measured earlier."""
+    """Raise ValueError if ``rule=`` cannot judge a condition that an earlier run measured."""
     for cell in cells:
         if cell.is_done() and (problem := cell.rule_problem()):
             raise ValueError(
@@ -141,9 +141,9 @@ def _check_rule(cells: Sequence[Cell]) -> None:
 
 
 def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """Return the corrupted conditions whose corruption can reach the agent.
+    """Return the conditions whose corruption can reach the agent.
 
-    The other conditions, and the number of instructions in other languages, are printed.
+    The function prints the other conditions, and the number of instructions in other languages.
 
     Returns:
         The conditions, and the names of conditions that need a tokenizer but have none.
@@ -166,7 +166,7 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Print and return the files in the command that changed after conditions finished.
+    """Print and return the files named in the command that changed after a condition finished.
 
     Files in ``known``, and files that the command created, are not printed.
     """
@@ -193,7 +193,9 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
 
 
 def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run unfinished cells with the launcher, ``plan.config.jobs`` at a time; return problems."""
+    """Run unfinished conditions with the launcher, ``plan.config.jobs`` at a time; return
+    problems.
+    """
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
@@ -204,7 +206,7 @@ def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
 
 
 def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
-    """Run cells on this machine, ``jobs`` at a time; return the problems."""
+    """Run conditions on this machine, ``jobs`` at a time; return the problems."""
     waiting = list(cells)
     problems: list[str] = []
     running: list[Attempt] = []
@@ -213,8 +215,9 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
         while waiting or running:
             while waiting and len(running) < jobs:
                 attempt = Attempt(waiting.pop(0))
-                running.append(attempt)  # added first, so that an interrupted start is cleaned up
-                if start_problem := _start(attempt):  # the others continue
+                # append the attempt before its start, so that an interrupted start is cleaned up
+                running.append(attempt)
+                if start_problem := _start(attempt):  # the other conditions continue
                     running.remove(attempt)
                     problems.append(f"{attempt.cell.name}: {start_problem}")
             time.sleep(PAUSE)
@@ -238,7 +241,7 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
 
 
 def _start(attempt: Attempt) -> str:
-    """Start an attempt; return the reason why it cannot be started, or an empty text."""
+    """Start an attempt; return the reason why it cannot be started, or ""."""
     cell = attempt.cell
     again = f", measured again: {reason}" if (reason := cell.reason_to_repeat()) else ""
     try:
@@ -252,9 +255,10 @@ def _start(attempt: Attempt) -> str:
 
 
 def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
-    """Return one line about a condition that ended, with its summary or failure.
+    """Return one line with the summary or the failure of a condition that ended.
 
-    The full problem is printed at the end of the run, which is now for a ``single`` condition.
+    At the end of the run, the full text of each problem is printed. If the run has a ``single``
+    condition, that end is now.
     """
     if not problem:
         return cell.summary()
@@ -263,12 +267,13 @@ def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
 
 
 class ConditionTask:
-    """Task that runs conditions by name as jobs on other machines (``core/workers.py``).
+    """Task for running conditions on other machines (``core/workers.py``). A job is the name of a
+    condition.
 
-    The result of a job is a description of its problem, or an empty text. The folder of the run
+    The result of a job is a description of its problem, or "". The folder of the run
     must be on a file system that all machines can access. Finished conditions are kept. If a
-    machine dies, its condition is measured again on a different machine, because the user's
-    program, which runs unmodified, cannot resume.
+    machine dies, its condition is measured again from the start on a different machine, because the
+    user's program cannot resume.
 
     Args:
         plan: The run; the path of its output folder must be absolute.
@@ -300,7 +305,8 @@ class ConditionTask:
                 attempt.start()
                 while (problem := attempt.poll()) is None:
                     time.sleep(PAUSE)
-            except ValueError as error:  # if one command cannot be started, the others continue
+            # if one command cannot be started, other conditions continue
+            except ValueError as error:
                 problem = str(error)
             finally:
                 attempt.kill()
@@ -311,7 +317,7 @@ class ConditionTask:
 
 
 def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run cells on the launcher's machines, ``jobs`` at a time; return the problems.
+    """Run conditions on the launcher's machines, ``jobs`` at a time; return the problems.
 
     Raises:
         WorkersDied: Several workers died while running the same condition.
@@ -335,7 +341,7 @@ def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
 def hydra_main(cfg: DictConfig) -> None:
-    """Run the command with the composed config."""
+    """Run the user's command with the composed config."""
     config = conf.typed(cfg, "run")
     assert isinstance(config, RunConfig)
     if config.check:
@@ -346,7 +352,7 @@ def hydra_main(cfg: DictConfig) -> None:
         run(config, _command)
 
 
-_command: list[str] = []  # the words after --
+_command: list[str] = []  # the words after "--"
 
 
 def main() -> None:

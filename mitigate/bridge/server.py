@@ -1,8 +1,8 @@
 """The server of the bridge, with one process per connection, so that connections are independent.
 
-A ``Listener`` runs in parallel to one command of the user. A process that connects must send the
-listener's token. Each connection is served by a fork, so that corruptions use all cores, and an
-error ends only one environment, with a message.
+A ``Listener`` serves one command of the user while it runs. A process that connects must send the
+listener's token. A fork of the listener serves each connection, so that corruptions use all cores
+and an error ends only one environment, with a message.
 """
 
 from __future__ import annotations
@@ -27,14 +27,15 @@ from mitigate.core.signals import raise_ended
 from mitigate.corruptions import Corruption, FrameStream
 
 HOOK = Path(mitigate_hook.__file__).parent
-MEMORY = Path("/dev/shm")  # used on Linux; other systems use the folder for temporary files
+# exists on Linux; on other systems, the folder for temporary files is used
+MEMORY = Path("/dev/shm")
 
 
 class Listener:
-    """Serves the processes of a command, in a separate process, until it is closed.
+    """Server for the processes of a command; it runs in a separate process until it is closed.
 
     Args:
-        condition: How frames and instructions are corrupted.
+        condition: Corrupts frames and instructions.
         folder: Folder to which the events are written as JSON lines.
         patience: Seconds that a process of the command waits for an answer before it stops.
     """
@@ -51,7 +52,7 @@ class Listener:
         self.pid = 0
 
     def __enter__(self) -> Listener:
-        warm_up(self.condition.corruption)  # before the command starts to wait for answers
+        warm_up(self.condition.corruption)  # warm up before the command waits for answers
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         listening.bind(self.address)  # the socket is in a folder that only this user can access
         os.chmod(self.address, 0o600)
@@ -71,9 +72,9 @@ class Listener:
             finally:
                 os._exit(1)
         listening.close()
-        # the child has already done this, or is gone
+        # the child has already done this, or it has ended
         with suppress(PermissionError, ProcessLookupError):
-            os.setpgid(self.pid, self.pid)  # a process group, so that its forks end with it
+            os.setpgid(self.pid, self.pid)  # its forks are in the same group and end with it
         return self
 
     def __exit__(self, *_: object) -> None:
@@ -90,7 +91,7 @@ class Listener:
         shutil.rmtree(self.memory, ignore_errors=True)
 
     def close_connections(self) -> None:
-        """End all connections, which then record their unfinished episodes."""
+        """End all connections; each connection then records its unfinished episode."""
         with suppress(ProcessLookupError):
             os.killpg(self.pid, signal.SIGTERM)
 

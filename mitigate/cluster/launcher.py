@@ -34,15 +34,15 @@ def chosen(launcher: LauncherConfig) -> LauncherConfig:
 
 
 def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int) -> int:
-    """Return how many workers (for SLURM: jobs) to start.
+    """Return the number of workers to start (for SLURM, the number of SLURM jobs).
 
     Args:
         launcher: place where the workers run.
-        requested: the requested number, or None for as many as are worth starting or fit into the
-            Ray cluster.
+        requested: the requested number. None means as many workers as are worth starting, or as
+            many as fit into the Ray cluster.
         jobs: number of jobs.
-        worth: minimum number of jobs per process; with fewer, starting the process takes longer
-            than it saves.
+        worth: minimum number of jobs per process; with fewer jobs, starting a process costs more
+            time than it saves.
 
     Raises:
         ValueError: ``requested`` is less than 1.
@@ -68,11 +68,11 @@ def results(
 ) -> Iterator[tuple[int, Any] | None]:
     """Yield (job number, result) pairs from ``started`` workers of the launcher.
 
-    Works as ``core.workers.results``: each result is yielded once, even if workers die.
+    As with ``core.workers.results``, each result is yielded exactly once, even if workers die.
 
     Raises:
         WorkersDied: The worker of a group of jobs died too often.
-        Exception: A job raised this error.
+        Exception: The error that a job raised.
     """
     if isinstance(launcher, RayConfig):
         return ray_actors.results(task, groups, started, progress, launcher)

@@ -25,18 +25,19 @@ from mitigate.core.output import open_output
 from mitigate.core.progress import Progress
 
 PAUSE = 0.1  # seconds between two checks of running programs
-GRACE = 30.0  # seconds that a program has to save its state after SIGTERM (heuristic)
-REASON_WIDTH = 400  # maximum characters of a program's last line in an error text (heuristic)
+GRACE = 30.0  # seconds between SIGTERM and SIGKILL, for saving the state (heuristic)
+# maximum characters that an error message quotes of a program's last line (heuristic)
+REASON_WIDTH = 400
 
 
 @dataclass(frozen=True)
 class Chain:
-    """Programs that run one after the other, as long as each exits with 0.
+    """Programs that run one after the other. The chain ends when a program exits with an error.
 
     Attributes:
         name: name for messages.
-        programs: (kind of program, words of its command line) of each program.
-        log: file for their output.
+        programs: for each program, its kind and the words of its command line.
+        log: file for the output of the programs.
         folder: working directory.
         environment: additional environment variables.
     """
@@ -65,7 +66,7 @@ class Running:
                 tied.words(list(words)),
                 cwd=chain.folder,
                 env={**os.environ, **chain.environment},
-                # in a new session, so that Ctrl-C reaches it only through this process
+                # a new session, so that Ctrl-C reaches the program only through this process
                 start_new_session=True,
                 stdin=subprocess.DEVNULL,
                 stdout=log,
@@ -73,7 +74,7 @@ class Running:
             )
 
     def poll(self) -> str | None:
-        """Return the problem, or "" after success, or None while a program runs."""
+        """Return None while a program runs; then return the problem, or "" after success."""
         code = self.process.poll()
         if code:
             return f"{self.what} ended with {code} ({_last_line(self.chain.log)})"
@@ -103,7 +104,9 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``); a result is the problem, or ""."""
+    """Task that runs chains in workers (``core/workers.py``). The result of a chain is a problem,
+    or "".
+    """
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 
@@ -134,12 +137,12 @@ def run(
 ) -> None:
     """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``.
 
-    Calls ``ended`` with the number and the problem ("": none) of each chain that ended. If this
-    call is interrupted, the chains of programs are stopped too; programs on this machine can save
-    first.
+    When a chain has ended, ``ended`` is called with the chain's number and its problem, or "" after
+    success. If this function is interrupted, all chains are stopped. Programs on this machine can
+    save their state first.
 
     Raises:
-        WorkersDied: The process that runs a chain of programs died too often.
+        WorkersDied: The worker process that ran a chain died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)
@@ -169,7 +172,7 @@ def _run_here(
             progress.advance(0)
             time.sleep(PAUSE)
     finally:
-        # all programs are signalled first, so that they save in parallel
+        # signal all programs before waiting, so that they save their states in parallel
         for one in running.values():
             with suppress(ProcessLookupError):
                 one.process.send_signal(signal.SIGTERM)
@@ -178,5 +181,5 @@ def _run_here(
 
 
 def python(*arguments: str) -> tuple[str, ...]:
-    """Return the words of a ``python -m ...`` command for this Python."""
+    """Return the words of a ``python -m ...`` command that uses this Python."""
     return (sys.executable, "-m", *arguments)

@@ -1,8 +1,8 @@
 """Run workers as actors of a Ray cluster.
 
-The task, with the agent's weights, is in Ray's object store, so it is sent to each node only once.
-Results stream back one by one. When an actor or its node dies, a new actor takes over its
-unfinished jobs.
+The task, which contains the agent's weights, is in Ray's object store, so each node receives it
+only once. Each result is returned as soon as it is available. When an actor or its node dies, a new
+actor takes over the unfinished jobs.
 """
 
 from __future__ import annotations
@@ -33,8 +33,8 @@ class Worker:
     def started(self) -> None:
         """Return once the actor runs and its task is ready.
 
-        The actor receives jobs only after this, because it may have to wait for room in the
-        cluster. Errors of the setup are raised unchanged.
+        An actor may have to wait for room in the cluster, so it receives jobs only after this
+        method has returned. Errors of the setup are raised unchanged.
         """
         self.contexts.enter_context(self.task.ready())
 
@@ -44,7 +44,7 @@ class Worker:
 
 
 def check(launcher: RayConfig) -> None:
-    """Raise ValueError if ray is not installed or the address is not valid."""
+    """Raise ValueError if ray is not installed or the address is invalid."""
     if find_spec("ray") is None:
         raise ValueError("launcher=ray needs ray: pip install -e '.[cluster]'.")
     address = launcher.address
@@ -58,7 +58,7 @@ def check(launcher: RayConfig) -> None:
 def connect(launcher: RayConfig) -> Any:
     """Connect Ray to the cluster of ``launcher``, and return the module ray.
 
-    Without an address, a cluster is started on this machine, which stops when the process ends.
+    Without an address, a cluster is started on this machine; it stops when this process ends.
     Raises ValueError in the same cases as :func:`check`, and if there is no cluster.
     """
     check(launcher)
@@ -101,9 +101,7 @@ def results(
 
 
 class _Crew:
-    """State of the run: actors, their unfinished jobs, and groups that no actor has received
-    yet.
-    """
+    """The actors, their unfinished jobs, and the groups of jobs that no actor has received yet."""
 
     def __init__(
         self,
@@ -130,8 +128,8 @@ class _Crew:
         self.make = ray.remote(Worker).options(**reserved).remote
         self.name = task.name
         self.idle: list[Any] = []
-        self.starting: dict[Any, Any] = {}  # maps the pending answer of ``started`` to its actor
-        # maps a stream of results to (actor, remaining jobs, attempt number)
+        self.starting: dict[Any, Any] = {}  # maps a pending result of ``started`` to its actor
+        # maps a stream of results to a tuple: actor, remaining jobs, number of the attempt
         self.busy: dict[Any, tuple[Any, deque, int]] = {}
 
     def results(self) -> Iterator[tuple[int, Any] | None]:
@@ -181,7 +179,9 @@ class _Crew:
         self.busy[stream] = (actor, deque(group), attempt)
 
     def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
-        """Yield the next result of a stream, or handle the end of its group or its actor."""
+        """Yield the next result of a stream, or handle the end of the group or the death of the
+        actor.
+        """
         actor, left, attempt = self.busy[stream]
         try:
             result = self.ray.get(next(stream))
@@ -198,7 +198,7 @@ class _Crew:
             yield left.popleft()[0], result
 
     def _replace(self, left: deque, attempt: int, error: Exception) -> None:
-        """Start a new actor to replace a lost one; it may run anywhere in the cluster."""
+        """Start a new actor, anywhere in the cluster, to replace an actor that died."""
         self._start()
         if not left:
             return

@@ -1,11 +1,11 @@
 """Run workers as jobs of a SLURM cluster, submitted by submitit.
 
-For tests, ``launcher.cluster=local`` runs the jobs as processes on this machine.
+For tests, ``launcher.cluster=local`` runs SLURM jobs as processes on this machine.
 
-Each SLURM job receives a part of the groups and runs them in its own worker processes. The job
-appends one line per result to a file in a folder that all nodes can access. The submitting process
-reads the lines as they arrive. When a job ends before all its groups are done, the remaining ones
-are submitted again.
+Each SLURM job receives some of the groups of jobs and runs them in its own worker processes. The
+job appends one line per result to a file in a folder that all nodes can access. The submitting
+process reads the lines as they arrive. When a SLURM job ends before all its groups are done, the
+remaining groups are submitted again.
 """
 
 from __future__ import annotations
@@ -32,19 +32,19 @@ from mitigate.core.workers import SECOND, Task, lost, numbered
 from mitigate.core.workers import results as run_here
 
 CLUSTERS = ("slurm", "local")
-LATE = 30.0  # maximum seconds until finished jobs end (heuristic)
-TASK = "task.pickle"  # the submitting process wrote this file; no file from elsewhere is unpickled
+LATE = 30.0  # maximum seconds that SLURM jobs may take to end after their last result (heuristic)
+TASK = "task.pickle"  # only this file, which the submitting process wrote, is unpickled
 
 
 @dataclass
 class _Share:
-    """A submitted job and its part of the work.
+    """A submitted SLURM job and its part of the work.
 
     Attributes:
-        job: submitit's job.
+        job: the job object of submitit.
         groups: groups of (number, job).
-        lines: file of its results.
-        left: jobs without a result, by number.
+        lines: the file to which the SLURM job writes results.
+        left: the jobs that have no result yet, by number.
         attempt: number of the attempt.
         read: number of bytes of ``lines`` that were read.
     """
@@ -66,8 +66,8 @@ def results(
 ) -> Iterator[tuple[int, Any] | None]:
     """Yield results in the same form as ``launcher.results``, from ``workers`` SLURM jobs.
 
-    The folder of the jobs is removed when all are done. After a failure, the logs stay in this
-    folder, but not the task, which holds the agent's weights.
+    The folder of the jobs is deleted when all jobs are done. After a failure, the folder keeps the
+    logs. The task, which contains the agent's weights, is deleted.
     """
     check(launcher)
     folder = Path(launcher.folder).resolve() / f"{int(time.time())}-{os.getpid()}"
@@ -84,7 +84,7 @@ def results(
         submitted = len(running)
         while done < total:
             for current in list(running):
-                # read the state before the lines, so that no line is missed
+                # ask for the state before reading lines, so that no line is missed
                 over = current.job.done()
                 for number, result in _fresh(current):
                     done += 1
@@ -110,7 +110,7 @@ def results(
         for current in running:
             current.job.cancel()
         (folder / TASK).unlink(missing_ok=True)
-        with suppress(OSError):  # the folder then holds logs
+        with suppress(OSError):  # the folder still contains logs
             folder.rmdir()
 
 
@@ -170,8 +170,8 @@ def serve(
 ) -> None:
     """Run ``groups`` in a SLURM job and write one JSON line per result.
 
-    A line is ``{"job": number, "result": ...}``, or ``{"error": text}`` for a ValueError, which
-    would occur again on any node.
+    A line is ``{"job": number, "result": ...}``. For a ValueError, which would occur again on any
+    node, the line is ``{"error": text}``.
     """
     with open(task, "rb") as file:
         loaded: Task = pickle.load(file)
@@ -191,9 +191,9 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield each new result of a share; an incomplete last line is read later.
+    """Yield each new result of a SLURM job; an incomplete last line is read later.
 
-    Raises the ValueError that the job has written.
+    Raises a ValueError if the job wrote one.
     """
     if not share.lines.is_file():
         return
@@ -211,7 +211,7 @@ def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
 
 
 def _parse(line: bytes, file: Path) -> dict[str, Any]:
-    """Return the record in one line; if it is damaged, raise a ValueError that names the file."""
+    """Parse one line; if it is damaged, raise a ValueError that names the file."""
     try:
         record: Any = json.loads(line)
     except (ValueError, RecursionError):
@@ -234,7 +234,7 @@ def _again(
     """
     try:
         problem: Any = share.job.exception()
-    except Exception as error:  # submitit raises its own errors for jobs without a result
+    except Exception as error:  # submitit has its own errors for jobs without a result
         problem = error
     errors = re.findall(r"^\w*(?:Error|Died|Exception): .*$", str(problem), re.MULTILINE)
     cause = errors[-1] if errors else "it was killed, or ran out of time"

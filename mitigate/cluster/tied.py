@@ -1,8 +1,9 @@
 """Run a program that ends when its parent ends: ``python tied.py PARENT PROGRAM ARGUMENTS``.
 
-Otherwise, if a worker of a cluster is killed, its programs keep running and write to the same files
-as the next worker. On Linux, the programs end together with the worker (prctl(2)); on other systems
-they do not. This file runs in a plain Python, which then replaces itself by the program.
+When a worker of a cluster is killed, its programs would otherwise keep running and write to the
+same files as the next worker. On Linux, the programs end together with the worker (prctl(2)); on
+other systems they do not. This file imports only the standard library. The process that runs it
+then replaces itself by the program.
 """
 
 import ctypes
@@ -16,7 +17,8 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def words(program):
-    """Return a command line that runs ``program`` (a list of words) and ends it with this process.
+    """Return a command line that runs ``program`` (a list of words) and ends it when this process
+    ends.
 
     Raises OSError if there is no such program.
     """
@@ -29,11 +31,11 @@ def main() -> None:
     """Replace this process by the program that the command line names."""
     parent = int(sys.argv[1])
     program = sys.argv[2:]
-    # Workers ignore SIGINT, and their programs would inherit this.
+    # Workers ignore SIGINT, and without this line, their programs would ignore it too.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-    if os.getppid() != parent:  # the parent ended before the call of prctl
+    if os.getppid() != parent:  # the parent ended before prctl was called
         sys.exit(f"process {parent}, which started {program[0]}, is gone")
     os.execvp(program[0], program)
 

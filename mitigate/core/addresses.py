@@ -1,7 +1,7 @@
 """Reject passwords and keys in the addresses of chat endpoints before any output can contain them.
 
-An address becomes part of messages, file names and result rows. No error message in this module
-contains such a value.
+Messages, file names and result rows contain the address of an endpoint. No error message of this
+module contains the value that it rejects.
 """
 
 from __future__ import annotations
@@ -17,15 +17,15 @@ _EXAMPLE = (
 )
 _MODEL = re.compile(r"[\w.:/+-]+")
 _PLAIN = re.compile(r"(?!(?:https?|ftp)/)[\w./~+ -]*", re.IGNORECASE)
-# the parts of a reference to a variable or an option, such as ${oc.env:URL}
+# a part of a reference to a variable or an option, such as ${oc.env:URL}
 _REFERENCE = re.compile(r"\$|oc\.env:\w+")
-# Characters that can surround a value in a Hydra list, mapping, sweep or quotation.
+# characters that can surround a value in a Hydra list, mapping, sweep or quotation
 _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
-# an option that is safeguard= or a misspelling of it, at the start of a word or in a list
+# the option safeguard=, or a misspelling of it, at the start of a word or in a list
 _SAFEGUARD = re.compile(r"(?:^|[^a-z])saf\w*g\w*[\"']?\s*[=:]", re.IGNORECASE)
 _NAME = re.compile(r"[-+~]*saf\w*g\w*=?", re.IGNORECASE)
 _NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")  # the next option in a list of options
-# Other options may contain an @ or a //, but not a URL with an @.
+# the values of other options may contain "@" or "//", but not a URL with "@"
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
 _SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
 _EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes that earlier versions accepted
@@ -35,8 +35,8 @@ def check_url(url: str) -> None:
     """Raise ValueError if ``url`` is not a URL, or if it contains a user, a password or a key."""
     if any(mark in url for mark in "@?#"):
         raise ValueError(
-            "The endpoint's URL holds a user, a password or a key (an @, ? or # in it), which "
-            "would get into the names of results. Give the key in the environment variable "
+            "The endpoint's URL contains a user, a password or a key (an @, ? or #), which would "
+            "become part of names in the results. Give the key in the environment variable "
             f"OPENAI_API_KEY. {_EXAMPLE}"
         )
     try:
@@ -49,10 +49,10 @@ def check_url(url: str) -> None:
 
 
 def check_choice(choice: object) -> None:
-    """Raise ValueError if a value of ``safeguard=`` is not text or is an invalid address.
+    """Raise ValueError if a value of ``safeguard=`` is not a string or is an invalid address.
 
-    Names, paths without special characters and existing folders are accepted. Any other value must
-    be ``URL@model``, because it may contain a password in any form.
+    Names, paths without special characters and existing folders are accepted. Any other value may
+    contain a password in any form, so it must have the form ``URL@model``.
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
@@ -62,14 +62,14 @@ def check_choice(choice: object) -> None:
     url, at, model = choice.rpartition("@")
     if not at and "//" not in choice:
         raise ValueError(
-            "This value names no safeguard that exists, and it is not the address of an endpoint. "
+            "This value names no safeguard that exists and is not the address of an endpoint. "
             f"A name or a path consists of letters, digits and . / ~ + - _. {_EXAMPLE}"
         )
     check_url(url if at else choice)
     if not _MODEL.fullmatch(model) or not urlsplit(url).path:
         raise ValueError(  # without a path, the part before the @ may be a password
             "The endpoint needs the name of a model after the last @, and a path before it. "
-            f"{_EXAMPLE} Where there is no path, end the URL in a slash."
+            f"{_EXAMPLE} If there is no path, end the URL with a slash."
         )
 
 
@@ -83,16 +83,16 @@ def is_plain(choice: object) -> bool:
 def check_arguments(arguments: Iterable[str]) -> None:
     """Check the addresses in the words of a command line before Hydra parses and prints them.
 
-    The words are not parsed, because an error of the parser would show an invalid word. Every part
-    of a value of ``safeguard=`` is checked as :func:`check_choice` does. If any other word contains
-    a URL with a secret, its parts that look like addresses are checked.
+    The words are not parsed, because a parser's error message would print an invalid word. Instead,
+    :func:`check_choice` checks every part of a value of ``safeguard=``. If another word contains a
+    URL with a secret, the parts of this word that look like addresses are checked too.
     """
-    is_value = False  # whether the words before are ``safeguard`` or ``safeguard =``
+    is_value = False  # whether the previous words are ``safeguard`` or ``safeguard =``
     for word in arguments:
         values = [(word[match.end() :], match.start()) for match in _SAFEGUARD.finditer(word)]
         for value, start in [*values, *([(word, 0)] if is_value else [])]:
             if not _is_folder(value):
-                # a word that begins with the name of another option is a list of options
+                # if a word begins with the name of another option, it is a list of options
                 parts = _SEPARATORS.split(_NEXT.split(value)[0] if "=" in word[:start] else value)
                 for part in parts:
                     if not _REFERENCE.fullmatch(part):

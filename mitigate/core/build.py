@@ -1,7 +1,7 @@
 """Build the objects that configs describe; only this module instantiates ``_target_`` nodes.
 
 Only configs of this checkout and of the user (``--config-dir``) are ever built. A config that came
-with downloaded weights is read as data, because a ``_target_`` in it could run anything.
+with downloaded weights is only read as data, because a ``_target_`` in it could run any code.
 """
 
 from __future__ import annotations
@@ -18,22 +18,22 @@ from omegaconf import OmegaConf
 from mitigate.core.names import unknown
 
 NOT_LOADED = "Error loading"  # start of Hydra's message for a _target_ that cannot be imported
-PARTIAL = "_partial_"  # Hydra's key for "return a function that constructs the object"
+PARTIAL = "_partial_"  # with this key, Hydra returns a function that constructs the object
 COLLECT = "builtins.dict"  # a _target_ that only returns the built arguments
 
 
 def build(node: Mapping[str, Any], **arguments: Any) -> Any:
     """Return the object that ``node`` describes.
 
-    The constructor receives nested lists and mappings as plain lists and dicts, and an entry with
-    ``_partial_: true`` as a :class:`Maker`.
+    The constructor receives nested lists and mappings as plain lists and dicts. The constructor
+    receives an entry with ``_partial_: true`` as a :class:`Maker`.
 
     Args:
         node: a mapping with ``_target_`` and the arguments of the target.
         arguments: additional keyword arguments.
 
     Raises:
-        ValueError, FileNotFoundError: errors of the constructor are passed on unchanged.
+        ValueError, FileNotFoundError: The constructor raised this error.
     """
     config = plain(node)
     makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}
@@ -62,7 +62,7 @@ def argument_names(kind: Any) -> list[str]:
     """Return the names of the arguments that a config may set for ``kind``.
 
     A class with ``sources`` (``mitigate.training.objective``) also accepts the arguments of its
-    sources, but not the sources themselves.
+    source classes, but no source objects.
     """
     # other classes and functions have no ``sources``
     sources: Mapping[str, Any] = getattr(kind, "sources", {})
@@ -77,7 +77,7 @@ def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
     target = str(node["_target_"])
     try:
         parameters = signature(get_object(target)).parameters
-    except (ValueError, TypeError):  # a callable written in C has no signature
+    except (ValueError, TypeError):  # callables written in C may have no signature
         return
     if any(parameter.kind is parameter.VAR_KEYWORD for parameter in parameters.values()):
         return
@@ -100,7 +100,7 @@ class Maker:
 
 
 def plain(node: Any) -> dict[str, Any]:
-    """Return a node of a config as plain data, with references resolved."""
+    """Convert a node of a config to plain data, with references resolved."""
     if OmegaConf.is_config(node):
         data = OmegaConf.to_container(node, resolve=True)
         assert isinstance(data, dict)
@@ -113,7 +113,7 @@ def locate(target: str) -> Any:
     """Import and return the object that ``target`` names (``module.Name``).
 
     Raises:
-        ValueError: if there is no such object.
+        ValueError: There is no such object.
     """
     try:
         return get_object(target)
@@ -122,10 +122,10 @@ def locate(target: str) -> Any:
 
 
 def imported(name: str | None, option: str) -> Callable[..., Any]:
-    """Return the callable ``module:callable`` that an option names.
+    """Import and return the callable that an option names as ``module:callable``.
 
     Raises:
-        ValueError: The module cannot be imported, or lacks the callable.
+        ValueError: The module cannot be imported, or has no such callable.
     """
     module_name, _, attribute = (name or "").partition(":")
     if not (module_name and attribute):

@@ -1,7 +1,7 @@
 """Ask a chat model behind an OpenAI-compatible endpoint, with deadlines and retries.
 
-``POST <url>/chat/completions`` with ``model`` and ``messages``; the first choice in the answer is
-used. The API key is read from an environment variable and is never written anywhere.
+A request is ``POST <url>/chat/completions`` with ``model`` and ``messages``; the first choice in
+the answer is used. The API key is read from an environment variable and is never written anywhere.
 """
 
 from __future__ import annotations
@@ -24,13 +24,14 @@ from mitigate.core.names import short
 
 # HTTP status codes after which a retry may succeed
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})
-ENVELOPE = 1 << 15  # bytes of an answer that do not belong to its text: names and token counts
-# fraction of a deadline for connecting to one of a host's addresses (heuristic)
+# maximum bytes of an answer in addition to its text, such as names and token counts
+ENVELOPE = 1 << 15
+# fraction of the deadline that connecting to one address of a host may take (heuristic)
 CONNECT_SHARE = 0.25
 
 
 class NoAnswer(Exception):
-    """Raised if an endpoint gave no usable answer in time; the message holds the last reason."""
+    """Raised if an endpoint gave no usable answer in time; the message states the last reason."""
 
 
 class _Refused(Exception):
@@ -50,7 +51,7 @@ class ChatClient:
         key: environment variable with the API key; if it is not set, no key is sent.
         timeout: seconds for one request.
         retries: number of retries after a temporary failure.
-        pause: seconds before the first retry, doubled before each later one.
+        pause: seconds before the first retry; the pause doubles before each later retry.
         options: additional fields of the request, such as ``{"temperature": 0}``.
 
     Raises:
@@ -81,7 +82,7 @@ class ChatClient:
         Args:
             messages: the conversation in OpenAI's format.
             longest: maximum characters of the answer.
-            ends: time of ``time.monotonic()`` after which no request runs; None sets no limit.
+            ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
 
         Raises:
             NoAnswer: All attempts failed, a failure was not temporary, or the time is over.
@@ -113,7 +114,7 @@ class ChatClient:
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
-        most = ENVELOPE + 6 * longest  # JSON may use six bytes per character
+        most = ENVELOPE + 6 * longest  # JSON may need six bytes per character
         url = f"{self.url}/chat/completions"
         return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
 
@@ -122,9 +123,9 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     """Send ``body`` to ``url`` and return the answer.
 
     ``seconds`` limits the total time, including name resolution, connecting and reading. The
-    request runs in a thread, because neither name resolution nor a list of dead addresses respects
-    a deadline. A thread that is late is abandoned, and ends with its socket's timeout. Redirects
-    are not followed, because they would send the text and the key to a different host.
+    request runs in a thread, because name resolution, or several unreachable addresses, may take
+    longer than any deadline. A late thread is abandoned; it ends when its socket times out.
+    Redirects are not followed, because they would send the text and the key to a different host.
 
     Raises:
         TimeoutError: no complete answer arrived in time.
@@ -143,7 +144,7 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     try:
         answer = answers.get(timeout=seconds)
     except Empty:
-        raise TimeoutError(f"no whole answer within {seconds:g} s") from None
+        raise TimeoutError(f"no complete answer within {seconds:g} s") from None
     if isinstance(answer, Exception):
         raise answer
     return answer
@@ -174,7 +175,7 @@ def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, mo
         pool.clear()
     if len(answer) > most:
         raise ValueError(f"the answer has more than {most} bytes")
-    raise TimeoutError(f"no whole answer within {seconds:g} s")
+    raise TimeoutError(f"no complete answer within {seconds:g} s")
 
 
 def _content(reply: Any) -> str:
@@ -185,5 +186,5 @@ def _content(reply: Any) -> str:
         raise ValueError(f"no choices[0].message.content in {json.dumps(reply)[:120]}") from error
     if not isinstance(content, str):
         raise ValueError(f"the answer is not text: {content!r:.120}")
-    content.encode("utf-8")  # half a surrogate pair is not valid text
+    content.encode("utf-8")  # a single surrogate is not valid text
     return content.strip()

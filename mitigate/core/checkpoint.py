@@ -2,9 +2,9 @@
 safetensors file.
 
 A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256
-(``checksums.py``). Both are checked before the weights are read. Weights without a checksum, from
-an older version or another project, are also accepted. ``training/states.py`` handles the states
-from which training resumes.
+(``checksums.py``). Manifests and sidecars are checked before the weights are read. Weights without
+a checksum, from an older version or another project, are also accepted. ``training/states.py``
+handles the states from which training resumes.
 """
 
 from __future__ import annotations
@@ -25,12 +25,12 @@ from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
 CONFIG = "config.yaml"
-# text that is part of every adapter tensor's name (mitigate/agents/adapters.py)
+# the name of every adapter tensor contains this text (mitigate/agents/adapters.py)
 ADAPTER = ".adapter."
 
 
 def weights_file(path: str | Path) -> Path:
-    """Return the safetensors file at ``path``, which is the file or its folder.
+    """Return the safetensors file that ``path`` names directly or by its folder.
 
     Raises:
         FileNotFoundError: There is no safetensors file at ``path``.
@@ -65,7 +65,7 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
         module: the module.
         path: a folder, into which ``model.safetensors`` and a manifest are written; or a
             ``.safetensors`` file, which gets a sidecar file with its sha256.
-        half: round floats to float16, as in the shipped weights.
+        half: whether to round floats to float16, as in the shipped weights.
 
     Returns:
         The safetensors file.
@@ -79,7 +79,7 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
 
 def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
-    """Write the tensors of ``module`` to the unfinished ``file``; see :func:`save_weights`."""
+    """Write the tensors of ``module`` to a temporary ``file`` of :func:`save_weights`."""
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()
@@ -92,7 +92,7 @@ def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
 
 
 def unwritten(file: Path, error: Exception) -> OSError:
-    """Return the error for a checkpoint that could not be written, with its cause and a fix."""
+    """Return the error for a checkpoint that could not be written; it names the cause and a fix."""
     cause = str(error).splitlines()[0][:200]
     return OSError(
         f"A checkpoint could not be written to {file.parent} ({cause}). Is the disk full "
@@ -102,11 +102,11 @@ def unwritten(file: Path, error: Exception) -> OSError:
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Load into ``module`` the weights in a file that :func:`save_weights` wrote.
+    """Load the weights at ``path``, which :func:`save_weights` wrote, into ``module``.
 
     Names and shapes must match exactly. Float tensors may have a different precision; integers,
-    booleans and complex numbers must keep their type. If the weights contain no adapters (for
-    example weights of a base agent), the adapters of ``module`` keep their values.
+    booleans and complex numbers must keep their type. If the weights contain no adapters (like
+    those of a base agent), the adapters of ``module`` keep their values.
 
     Raises:
         FileNotFoundError: There is no safetensors file at ``path``.
@@ -118,7 +118,7 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
 
 
 def not_finite(module: nn.Module) -> list[str]:
-    """Return the names of parameters with NaN or infinity and of buffers with NaN.
+    """Return the names of parameters that contain NaN or infinity, and of buffers that contain NaN.
 
     Infinity is valid in a buffer, because attention masks contain it.
     """
@@ -138,11 +138,12 @@ def check_finite(module: nn.Module, what: str) -> None:
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """Load the part ``name`` of the weights at ``path`` into ``module``, as in
-    :func:`load_weights`.
+    """Load only the part ``name`` of the weights at ``path`` into ``module``.
 
-    Tensors that ``module`` lacks are skipped, such as a layer for a sensor that the module does not
-    read.
+    See :func:`load_weights` for the checks.
+
+    Tensors that ``module`` does not have are skipped. An example is a layer for a sensor that the
+    module does not read.
     """
     file = weights_file(path)
     prefix = f"{name}."
@@ -150,7 +151,7 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
         k.removeprefix(prefix): v for k, v in load_tensors(file).items() if k.startswith(prefix)
     }
     if not tensors:
-        raise ValueError(f"The weights {file} hold no part {name!r}.")
+        raise ValueError(f"The weights {file} contain no part {name!r}.")
     used = {*module.state_dict(), *_borrowed(module)}
     tensors = {name: value for name, value in tensors.items() if name in used}
     _fill(module, tensors, file)
@@ -173,7 +174,7 @@ def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> No
         raise ValueError(
             f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} tensors are "
             f"missing, unknown, or of another shape or type ({', '.join(wrong[:4])} ...). "
-            "Build the agent with the config that made them (config.yaml in their folder) or "
+            "Build the agent with the config of these weights (config.yaml in their folder), or "
             "choose other weights."
         )
     module.load_state_dict(tensors, strict=False)
@@ -185,7 +186,7 @@ def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
 
 
 def _kind(value: torch.Tensor) -> str:
-    """Return the type of numbers that a tensor holds, without their precision."""
+    """Return the kind of numbers in a tensor, without their precision."""
     if value.dtype == torch.bool:
         return "bool"
     if value.is_complex():
@@ -194,7 +195,7 @@ def _kind(value: torch.Tensor) -> str:
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """Return the public tensors, which state dicts do not contain (:func:`borrow`)."""
+    """Return the public tensors, which are not part of state dicts (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
@@ -203,13 +204,14 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
-    """Return the tensors of a safetensors file, after checking its sha256 if one is recorded.
+    """Return the tensors of a safetensors file; if its sha256 is recorded, check it first.
 
     Raises:
         ValueError: The file is damaged.
         PermissionError: The user has no permission to read the file.
     """
-    # may raise PermissionError, which does not mean that the file is damaged
+    # a missing permission raises PermissionError here, because it does not mean that the file is
+    # damaged
     file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
@@ -230,9 +232,9 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
 
 
 def _header_problem(file: Path) -> str:
-    """Describe a header that does not fit the size of the file; the tensors are not read.
+    """Describe the problem if the header does not fit the size of the file; do not read tensors.
 
-    A sparse file of terabytes would otherwise be read for hours to compute its sha256.
+    Without this check, computing the sha256 of a sparse file of several terabytes would take hours.
     """
     try:
         with safe_open(file, "pt"):
@@ -244,7 +246,7 @@ def _header_problem(file: Path) -> str:
 def _again(file: Path) -> str:
     """Return advice for damaged weights."""
     folder = file.resolve().parent
-    # the layout of a training run
+    # this is the layout of a training run
     if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):
         return (
             "They belong to a run: the same `make train` command writes them again from its "
@@ -269,8 +271,8 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
     """Write the weights of ``agent`` and its settings into ``folder``.
 
     Args:
-        agent: the agent; its ``save`` method is used if it has one (:class:`OwnFormat`), otherwise
-            :func:`save_weights`.
+        agent: the agent. If the agent has a method ``save`` (:class:`OwnFormat`), this method
+            writes the weights; otherwise :func:`save_weights` does.
         folder: the folder.
         config: text of ``config.yaml``, or None to write no such file.
     """
@@ -286,8 +288,9 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Load weights from :func:`save_agent` into ``agent``; errors are as in
-    :func:`load_weights`.
+    """Load weights that :func:`save_agent` wrote into ``agent``.
+
+    Raises the same errors as :func:`load_weights`.
     """
     if isinstance(agent, OwnFormat):
         agent.load(path)
@@ -296,11 +299,11 @@ def load_agent(agent: nn.Module, path: str | Path) -> None:
 
 
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
-    """Return the first 12 hex digits of the sha256 over names, dtypes, shapes and bytes.
+    """Return 12 hex digits of the sha256 over the names, dtypes, shapes and bytes of all tensors.
 
     Args:
         module: the module.
-        leave_out: tensors whose name contains this text are excluded.
+        leave_out: tensors are excluded if their name contains this text.
     """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
@@ -312,21 +315,21 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
 
 
 # Public weights inside a module of this project are never copied into its checkpoints.
-# Such a checkpoint holds the tensors that differ from the public ones, such as adapters,
-# and the sha256 of the public file.
+# Such a checkpoint contains only the other tensors, such as adapters, and the sha256 of the public
+# file.
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
     """Exclude public tensors of ``module`` from its state dicts as long as they are unchanged.
 
-    When such a state dict is loaded, the missing tensors get their public values. Loading a state
-    dict from a different public file raises ValueError.
+    When such a state dict is loaded, the excluded tensors get their public values. Loading a state
+    dict that was made with a different public file raises ValueError.
 
     Args:
         module: the module.
         prefixes: prefixes of the names of the public tensors.
         source: sha256 of the public file, in hex.
-        name: name of the public weights in errors.
+        name: name of the public weights in error messages.
     """
     module.public_tensors = {  # type: ignore[assignment]
         key: value.clone() for key, value in module.state_dict().items() if key.startswith(prefixes)
@@ -350,8 +353,8 @@ def _fill_in(module: Any, state: dict[str, Any], prefix: str, *_: Any) -> None:
         raise ValueError(
             f"These weights need {module.public_name} with sha256 "
             f"{bytes(source.tolist()).hex()[:12]}, but the installed one has "
-            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that they were made "
-            "with."
+            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that was used in "
+            "training."
         )
     for name, value in module.public_tensors.items():
         state.setdefault(prefix + name, value)

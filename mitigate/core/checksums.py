@@ -2,8 +2,8 @@
 
 The states of training runs have sidecars. Folders have a manifest instead (``core/folders.py``).
 
-While a file is replaced, its sidecar lists the checksums of the old and the new file. Therefore,
-even if a program is killed at any moment, the file matches its sidecar.
+While a file is being replaced, its sidecar lists the checksums of the old and of the new file.
+The file therefore matches its sidecar even if the program is killed during the replacement.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ from typing import Any
 from mitigate.core.files import atomic_text, read_bounded, sha256, write_atomically
 
 SUFFIX = ".sha256"
-LARGEST = 4096  # maximum bytes of a sidecar (heuristic; it has one or two lines)
-DIGITS = 12  # number of hex digits of a fingerprint: 48 bits
+LARGEST = 4096  # maximum bytes of a sidecar (heuristic); a sidecar has one or two lines
+DIGITS = 12  # number of hex digits of a fingerprint (48 bits)
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
 
@@ -27,7 +27,7 @@ def sidecar(path: Path) -> Path:
 
 
 def write(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Write ``path`` as :func:`mitigate.core.files.write_atomically` does, with a sidecar."""
+    """Write ``path`` like :func:`mitigate.core.files.write_atomically`, and write its sidecar."""
     digest = ""
 
     def write_and_announce(temporary: Path) -> None:
@@ -43,9 +43,7 @@ def write(path: Path, write: Callable[[Path], Any]) -> Path:
 
 
 def _sums_before(path: Path) -> list[str]:
-    """Return the checksums of the file that is being replaced, or an empty list if there is no
-    file.
-    """
+    """Return the checksums of the file that is being replaced, or [] if there is no such file."""
     try:
         if sidecar(path).is_file() and path.is_file():
             return _sums(path)
@@ -58,11 +56,11 @@ def problem(path: Path) -> str:
     """Compare ``path`` with its sidecar and describe the problem.
 
     Returns:
-        A predicate such as "does not have the sha256 ...", or an empty text if the file is intact
-        or has no sidecar.
+        A predicate such as "does not have the sha256 ...", or "" if the file is intact or has no
+        sidecar.
 
     Raises:
-        PermissionError: There is no permission to read the file, which does not mean damage.
+        PermissionError: The user has no permission to read the file; it may be intact.
     """
     note = sidecar(path)
     if not note.is_file():
@@ -76,16 +74,18 @@ def problem(path: Path) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete ``path`` and its sidecar. The sidecar is deleted first, because a file without a
-    sidecar is valid.
+    """Delete ``path`` and its sidecar.
+
+    The sidecar is deleted first, because a file without a sidecar counts as valid.
     """
     sidecar(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
-    """Delete sidecars in ``folder`` whose file no longer exists; the glob ``pattern`` matches the
-    files.
+    """Delete sidecars in ``folder`` whose file no longer exists.
+
+    The glob ``pattern`` matches the files that may have sidecars.
     """
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():

@@ -40,11 +40,11 @@ from mitigate.core.signals import Ended, raise_ended
 
 CONF = PACKAGE / "conf"  # in a checkout, this is a link to its conf/
 TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
-# files of a group that a command rejects, by conf/<name>.yaml and group
+# maps conf/<name>.yaml and a group to the files of the group that the command rejects
 REJECTED: dict[str, Mapping[str, Sequence[str]]] = {}
-FULL = "HYDRA_FULL_ERROR"  # environment variable with which Hydra shows whole tracebacks
-# Variable that main sets together with FULL, so that child programs know that the user did not set
-# FULL.
+FULL = "HYDRA_FULL_ERROR"  # environment variable that makes Hydra show whole tracebacks
+# main sets this variable together with FULL, so that child programs know that the user did not set
+# FULL
 OURS = "MITIGATE_FULL_ERROR"
 # line that Hydra prints (hydra.core.utils, JobReturn.return_value)
 HYDRA_LINE = "Error executing job with overrides"
@@ -68,8 +68,9 @@ def register(
     Args:
         primary: name of the config.
         kind: the dataclass.
-        schema: the defaults list of the file must contain ``<schema>_schema``; None: ``primary``.
-        rejected: files of a group that the command rejects, which the help leaves out.
+        schema: the defaults list of the file must contain ``<schema>_schema``; None means
+            ``primary``.
+        rejected: files of groups that the command rejects; the help does not list them.
     """
     TYPES[primary] = kind
     REJECTED[primary] = rejected or {}
@@ -77,10 +78,10 @@ def register(
 
 
 def typed(cfg: DictConfig, primary: str) -> Any:
-    """Return composed options as an object of the dataclass of ``conf/<primary>.yaml``.
+    """Convert composed options to the dataclass of ``conf/<primary>.yaml``.
 
-    Entries that the dataclass does not declare become attributes, and nodes without types become
-    dicts.
+    Entries that the dataclass does not declare become attributes of the object. Nodes without a
+    type become dicts.
 
     Raises:
         ValueError: an entry refers to a missing entry, or a mandatory entry is not set.
@@ -108,17 +109,17 @@ def main(
     With ``--help``, it only prints every option and the first lines of ``program``'s module
     docstring.
 
-    Exits with status 1 and one paragraph for ValueError, OSError, errors in configs and requests
-    for too much memory. Exits with 130 for Ctrl-C and 143 for SIGTERM, and prints the command that
-    resumes the work.
+    For ValueError, OSError, errors in configs and requests for too much memory, it prints one
+    paragraph and exits with status 1. For Ctrl-C (status 130) and SIGTERM (status 143), it prints
+    the command that resumes the work.
 
     Args:
         program: a ``hydra.main`` function over ``conf/<primary>.yaml`` (:func:`hydra_program`).
         primary: name of the config.
         check: called before ``program``, after the check of addresses (``core/addresses.py``).
-        behind: words of the command line that are not for Hydra; they are appended to the printed
-            command.
-        again: purpose of the printed command, if it does not resume the work.
+        behind: words of the command line that Hydra must not parse; they are appended to the
+            printed command.
+        again: what the printed command does, if it does not resume the work.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
@@ -126,7 +127,7 @@ def main(
     if os.environ.get(FULL) and OURS not in os.environ:
         _prepare(primary, check)
         return program()
-    os.environ.update({FULL: "1", OURS: "1"})  # this makes Hydra raise errors instead of exiting
+    os.environ.update({FULL: "1", OURS: "1"})  # makes Hydra raise errors instead of exiting
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGTERM, raise_ended)
     try:
@@ -135,7 +136,7 @@ def main(
             program()
     except (HydraException, OmegaConfBaseException) as error:
         sys.exit(f"error: {explain(error, primary, sys.argv[1:])}")
-    except BrokenPipeError:  # the reader of the output has closed it; see mitigate/cli.py
+    except BrokenPipeError:  # the program that reads the output has ended (mitigate/cli.py)
         raise
     except (ValueError, OSError) as error:
         sys.exit(f"error: {error_message(error)}")
@@ -153,7 +154,9 @@ def main(
 
 
 def _prepare(primary: str, check: Callable[[], None] | None) -> None:
-    """Check the command line before Hydra parses or prints it, and order its words for Hydra."""
+    """Check the command line before Hydra parses or prints it; put its words in the order Hydra
+    needs.
+    """
     check_arguments(sys.argv[1:])
     if check is not None:
         check()
@@ -167,8 +170,8 @@ def _prepare(primary: str, check: Callable[[], None] | None) -> None:
 def _check_files(primary: str, words: Sequence[str]) -> None:
     """Check addresses that config files set, before Hydra prints them or stores a sweep.
 
-    This takes a tenth of a second, so it is done only for words that name the user's own configs,
-    sweep, or print a config. Raises ValueError as
+    This takes a tenth of a second, so it is done only if the words name a folder of the user's
+    configs, start a sweep, or print a config. Raises the same errors as
     :func:`mitigate.core.addresses.check_arguments`.
     """
     if not any(word.startswith("-") or "hydra." in word for word in words):
@@ -188,9 +191,9 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
 
 
 class _WithoutHydraLine:
-    """Output stream that omits the line with which Hydra announces an error.
+    """Output stream that drops the line that Hydra prints before an error.
 
-    The line is redundant, because users' errors are explained and other errors have a traceback.
+    The line is redundant: a user's mistake is explained, and other errors have a traceback.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -200,13 +203,11 @@ class _WithoutHydraLine:
         return len(text) if text.startswith(HYDRA_LINE) else self._stream.write(text)
 
     def __getattr__(self, name: str) -> Any:
-        return getattr(self._stream, name)  # all other attributes come from the stream
+        return getattr(self._stream, name)  # take all other attributes from the stream
 
 
 def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
-    """Return a paragraph that explains an error in composing ``conf/<primary>.yaml`` with
-    ``options``.
-    """
+    """Return a paragraph that explains why ``options`` do not fit ``conf/<primary>.yaml``."""
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
@@ -219,7 +220,7 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     key = _first(r"Could not (?:override|delete from config\.) '([^']+)'", text)
     if key is not None:
         cfg = _chosen_by(options, primary)
-        if isinstance(OmegaConf.select(cfg, key), DictConfig):  # Hydra took it for a group
+        if isinstance(OmegaConf.select(cfg, key), DictConfig):  # Hydra treated the key as a group
             return _misfit(key, _first(rf"{re.escape(key)}=(.*)", "\n".join(options)) or "", cfg)
         return _unknown_key(key, cfg, primary)
     missing = _first(r"Interpolation key '([^']+)' not found", text)
@@ -241,19 +242,20 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
 
 
 def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with ``words`` of a command line, outside a Hydra program.
+    """Compose ``conf/<primary>.yaml`` with the ``words`` of a command line, outside a Hydra
+    program.
 
     The words are overrides, and optionally a folder with more configs (``--config-dir=mine``).
 
     Raises:
-        ValueError: no imported module has registered the types of this file, or an address in the
+        ValueError: No imported module has registered the types of this file, or an address in the
             words contains a password.
     """
     return _compose(primary, words)
 
 
 def _compose(primary: str, words: Sequence[str], with_hydra: bool = False) -> DictConfig:
-    """Compose as :func:`load_config`; ``with_hydra`` adds the settings of Hydra as ``hydra``."""
+    """Compose like :func:`load_config`; ``with_hydra`` adds Hydra's own settings as ``hydra``."""
     check_arguments(words)
     if primary not in TYPES:
         raise ValueError(
@@ -271,7 +273,7 @@ def _compose(primary: str, words: Sequence[str], with_hydra: bool = False) -> Di
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:
-    """Return warnings about entries that ``options`` add, such as ``+columns.mine=[...]``.
+    """Return warnings about the entries that ``options`` add, such as ``+columns.mine=[...]``.
 
     Hydra itself does not warn when it replaces an existing list or mapping, or adds an entry that
     no program reads.
@@ -302,7 +304,7 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
 
 
 def _notice(key: str, whole: bool, exists: bool, names: list[str]) -> str:
-    """Return the warning for ``+key=``; with ``whole``, its value is a list or a mapping."""
+    """Return the warning for ``+key=``; ``whole`` is true if the value is a list or a mapping."""
     if exists and not whole:
         return ""  # Hydra rejects it
     if exists:
@@ -321,7 +323,7 @@ def help_text(about: str, primary: str) -> str:
 
 
 def _recipes() -> str:
-    """Return one line per recipe, with the first sentence in its file."""
+    """Return one line per recipe, with the first sentence of its file."""
     lines = ["Recipes (recipes/README.md):", ""]
     for file in sorted((CONF / "recipe").glob("*.yaml")):
         text = file.read_text(encoding="utf-8").removeprefix(WHOLE).strip()
@@ -332,10 +334,10 @@ def _recipes() -> str:
 
 
 def options_text(primary: str) -> str:
-    """Return every option of ``conf/<primary>.yaml`` with its comment.
+    """Describe every option of ``conf/<primary>.yaml`` by its comment.
 
-    Options that choose a file of ``conf/`` come first, with their allowed values. Options that
-    recipes set are also listed; in the file they are commented out.
+    Options that choose a file in ``conf/`` come first, with their allowed values. Options that
+    recipes set are also listed; the file contains them as comments.
     """
     text, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
     lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in text.splitlines()]
@@ -351,7 +353,7 @@ def _choices(group: str, primary: str) -> str:
     """Return the names of the config files in a group.
 
     The group ``agent`` lists agents that can run episodes. For training, the other agents are
-    listed separately, because recipes exist for them.
+    listed separately, because they have their own recipes.
     """
     rejected = REJECTED[primary].get(group, ())
     files = [path for path in sorted((CONF / group).glob("*.yaml")) if path.stem not in rejected]
@@ -364,15 +366,16 @@ def _choices(group: str, primary: str) -> str:
 
 
 def walks(file: Path) -> bool:
-    """Return whether the agent that a ``file`` in ``conf/agent`` defines can run episodes.
+    """Return whether the agent that ``file`` (in ``conf/agent``) defines can run episodes.
 
-    Such a file also sets entries outside its group: the shipped weights and options of the world.
+    The file of such an agent also sets entries outside its group: the shipped weights and options
+    of the world.
     """
     return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:
-    """Return the groups of ``conf/<primary>.yaml`` and the default file of each group."""
+    """Return the default file of each group in ``conf/<primary>.yaml``, by group."""
     entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
     pairs = [pair for entry in entries if isinstance(entry, DictConfig) for pair in entry.items()]
     return {str(name): chosen for name, chosen in pairs if "/" not in str(name)}
@@ -387,14 +390,16 @@ def composed(primary: str, words: Sequence[str] = ()) -> DictConfig:
 
 
 def _chosen_by(options: Sequence[str], primary: str) -> DictConfig:
-    """Return the config composed only with ``options`` that choose a file (``agent=recurrent``)."""
+    """Compose the config with only those ``options`` that choose a file, such as
+    ``agent=recurrent``.
+    """
     folder_words, overrides = without_config_folder(options)
     groups = [o for o in overrides if o.partition("=")[0] in _chosen(primary)]
     return load_config(primary, [*folder_words, *groups])
 
 
 def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
-    """Return the error paragraph for an option that the config does not have."""
+    """Return the error paragraph for an option that is not in the config."""
     parent = key.rpartition(".")[0]
     while parent and not isinstance(OmegaConf.select(cfg, parent), DictConfig):
         parent = parent.rpartition(".")[0]
@@ -410,7 +415,7 @@ def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
 
 
 def _arguments(node: DictConfig) -> list[str]:
-    """Return arguments of the ``_target_`` of ``node`` that ``node`` does not set.
+    """Return the arguments of the ``_target_`` of ``node`` that ``node`` does not set.
 
     Only targets of this project are imported; for other targets the result is empty.
     """

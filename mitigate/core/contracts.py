@@ -1,4 +1,4 @@
-"""Read optional members from objects of users' classes."""
+"""Read optional attributes and methods of objects whose classes users wrote."""
 
 from __future__ import annotations
 
@@ -7,20 +7,20 @@ from typing import Any
 
 
 def read(thing: Any, *names: str, default: Any = None) -> Any:
-    """Return the first attribute of ``names`` that ``thing`` has, else ``default``."""
+    """Return the first of the attributes ``names`` that ``thing`` has, or else ``default``."""
     for name in names:
-        if hasattr(thing, name):  # the class is unknown
+        if hasattr(thing, name):  # the user wrote the class
             return getattr(thing, name)
     return default
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """Copy those members ``names`` that ``thing`` has to ``view``, replacing its defaults."""
+    """For each of ``names`` that ``thing`` has, replace the attribute of ``view`` by its value."""
     for name in names:
-        if hasattr(thing, name):  # only this function reads these members from a user's object
+        if hasattr(thing, name):  # no other function reads these attributes of a user's object
             setattr(view, name, getattr(thing, name))
 
 
 def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return the ``names`` that ``thing`` lacks or that are empty (the default)."""
+    """Return those ``names`` that ``thing`` lacks, or whose value is empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

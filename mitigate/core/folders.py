@@ -10,9 +10,9 @@ Every folder that this project ships or trains has the same layout::
 A folder in the format of another library keeps the names of that library, such as
 ``adapter_config.json`` of PEFT. ``core/older_folders.py`` reads folders of earlier versions.
 
-When a folder is updated, files are replaced one by one. Meanwhile, the manifest lists both the new
-files and the files that they replace. So a folder is either the complete old one, the complete new
-one, or rejected.
+When a folder is updated, files are replaced one by one. During the update, the manifest lists both
+the new files and the files that they replace. A reader therefore gets either all old files or all
+new files, or rejects the folder.
 """
 
 from __future__ import annotations
@@ -46,28 +46,30 @@ from mitigate.core.signals import uninterrupted
 
 MANIFEST = "manifest.json"
 FORMAT = 1
-MOST_FILES = 1000  # maximum entries of a manifest (heuristic; a hardened folder has 8)
+# maximum entries of a manifest (heuristic); the manifest of a hardened folder has 8
+MOST_FILES = 1000
 LONGEST = 255  # maximum bytes of a file name (Linux, NAME_MAX)
 AGAIN = "Fetch the folder again, or write it again with the command that made it."
-_OLD = "old"  # name of the folder that is being replaced, in the temporary folder
+_OLD = "old"  # name, inside the temporary folder, of the folder that is being replaced
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 class Entry(NamedTuple):
-    """Entry of a manifest; ``size`` is in bytes, or None if an older layout does not record it."""
+    """Entry of a manifest; ``size`` is in bytes, or None in an older layout without sizes."""
 
     sha256: str
     size: int | None = None
 
 
 class Manifest(NamedTuple):
-    """What a folder holds.
+    """The kind and the files of a folder.
 
     Attributes:
         kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
         files: files by name.
         replaced: the previous files, while a folder is being replaced.
-        source: name of the file that lists the files: the manifest, or the card of an older folder.
+        source: name of the file from which the list was read: the manifest, or the card of an older
+            folder.
     """
 
     kind: str
@@ -78,8 +80,8 @@ class Manifest(NamedTuple):
 
 @contextmanager
 def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
-    """Yield an empty temporary folder, whose files replace those in ``folder`` if the block
-    succeeds.
+    """Yield an empty temporary folder; if the block succeeds, its files replace those in
+    ``folder``.
 
     Files of the earlier manifest that are not in the temporary folder are deleted. Files that no
     manifest lists are kept.
@@ -102,7 +104,7 @@ def replace_folder(target: Path) -> Iterator[Path]:
     """Yield an empty temporary folder that is renamed to ``target`` if the block succeeds.
 
     An existing ``target`` is replaced as a whole. If the process is killed at any moment, the next
-    call repairs the folder (:func:`repair_folder`).
+    call repairs ``target`` (:func:`repair_folder`).
     """
     repair_folder(target)
     aside = draft_path(target)
@@ -128,12 +130,12 @@ def repair_folder(target: Path) -> None:
 def _check_kind(folder: Path, kind: str) -> None:
     try:
         manifest = read_manifest(folder)
-    except ValueError:  # if the manifest is damaged, it is written again
+    except ValueError:  # a damaged manifest is written again
         return
     loose = {"weights", "agent"}
     if manifest is not None and manifest.kind != kind and not {manifest.kind, kind} <= loose:
         raise ValueError(
-            f"{folder} holds files of another kind ({manifest.kind}, not {kind}), which are not "
+            f"{folder} holds files of another kind ({manifest.kind}, not {kind}). They are not "
             "replaced. Name another folder, or delete this one."
         )
 
@@ -142,7 +144,7 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
     new = _entries(draft)
     old = _sound_files(folder, new)
     _write_manifest(folder, Manifest(kind, new, old if old != new else {}))
-    # safetensors writes files that only their owner can read
+    # safetensors writes files that only the owner can read, so copy the mode of the manifest
     mode = (folder / MANIFEST).stat().st_mode
     for name in new:
         (draft / name).chmod(mode)
@@ -156,14 +158,15 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
             (folder / name).unlink(missing_ok=True)
         _write_manifest(folder, Manifest(kind, new, {}))
     for name in new:
-        # the older layout had a sidecar file
+        # in the older layout, each file had a sidecar
         checksums.sidecar(folder / name).unlink(missing_ok=True)
 
 
 def seal(folder: str | Path, kind: str) -> None:
     """Write the manifest of the files in ``folder``.
 
-    Use this for a complete folder that will be renamed into place and that nothing else changes.
+    Use this only for a complete temporary folder that no other process changes before it is
+    renamed.
     """
     _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
 
@@ -189,7 +192,9 @@ def _entries(folder: Path) -> dict[str, Entry]:
 
 
 def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
-    """Return the files that are being replaced, or none if any is damaged."""
+    """Return the entries of the files that are being replaced, or {} if any of these files is
+    damaged.
+    """
     try:
         manifest = check(folder)
         if manifest is not None:
@@ -213,11 +218,11 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
-    """Return the manifest of ``folder``, or the file list in an older folder's card, or None.
+    """Return the manifest of ``folder``, or the list of files in the card of an older folder, or
+    None.
 
     Raises:
-        ValueError: It is damaged. The manifest is invalid; the message ends with the advice
-            ``again``.
+        ValueError: The manifest or the card is invalid. The message ends with the advice ``again``.
     """
     folder = Path(folder)
     file = folder / MANIFEST
@@ -275,7 +280,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: advice for a damaged folder, which is the end of each message.
+        again: advice for a damaged folder; each message ends with it.
 
     Raises:
         FileNotFoundError: A file is missing.
@@ -314,7 +319,7 @@ def _compare(
 
 
 def _matches(file: Path, entry: Entry) -> bool:
-    """Return whether a file matches its entry; a file with a different size is not read."""
+    """Return whether a file matches its entry; the file is read only if its size is right."""
     return entry.size in (None, file.stat().st_size) and sha256(file) == entry.sha256
 
 
@@ -322,11 +327,11 @@ def problem(file: Path) -> str:
     """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
 
     Returns:
-        A predicate such as "does not have the sha256 ...", or an empty text if the file is intact
-        or not listed anywhere.
+        A predicate such as "does not have the sha256 ...", or "" if the file is intact or no
+        manifest or sidecar lists it.
 
     Raises:
-        PermissionError: There is no permission to read the file, which does not mean damage.
+        PermissionError: The user has no permission to read the file; it may be intact.
     """
     try:
         manifest = read_manifest(file.parent)

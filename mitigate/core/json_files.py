@@ -15,16 +15,16 @@ from mitigate.core.names import short
 from mitigate.core.output import UnsafePathError
 
 CHUNK = 1 << 16  # number of characters that are read at a time (heuristic)
-# maximum characters of one JSON value; more means a broken file (heuristic)
+# maximum characters of one JSON value; a longer value means a broken file (heuristic)
 LARGEST_VALUE = 1 << 25
-# maximum bytes of a JSON file that is read at once (heuristic; a card has 1e4)
+# maximum bytes of a JSON file that is read at once (heuristic); a card has 1e4 bytes
 LARGEST_JSON = 1 << 24
-# maximum bytes of a JSON file with an entry per file of a folder (heuristic; 100 bytes per entry)
+# maximum bytes of a JSON file that lists the files of a folder (heuristic); a file needs 100 bytes
 LARGEST_LIST = 1 << 28
 
 
 class JsonListError(ValueError):
-    """A file holds a JSON list instead of an object."""
+    """Raised if a file holds a JSON list instead of an object."""
 
 
 def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
@@ -46,7 +46,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
 
 
 def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, Any]:
-    """Return the JSON object in ``path``, read by :func:`read_json`.
+    """Return the JSON object in ``path``; it is read with :func:`read_json`.
 
     Raises:
         ValueError: The file is damaged or holds a different kind of value, such as null or a list.
@@ -75,11 +75,11 @@ def _finite(digits: str) -> float:
 
 
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
-    """Yield the (key, value) pairs of the JSON object in ``path``, one value in memory at a time.
+    """Yield the pairs (key, value) of the JSON object in ``path``; keep only one value in memory.
 
     If the value of the key ``streamed`` is a list, an iterator over its items is yielded instead of
-    the list. Raises ValueError if the file is not a JSON object, is malformed, cut short or not
-    text, or if anything follows the object.
+    the list. Raises ValueError if the file is not text, is malformed or cut short, does not contain
+    a JSON object, or contains anything after the object.
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
@@ -102,7 +102,9 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
 
 
 class _JsonFile:
-    """Reads JSON values from an open text file; ``_at`` is the position in the buffer."""
+    """Reads JSON values from an open text file; ``_at`` is the current position in the buffer
+    ``_text``.
+    """
 
     _decode = json.JSONDecoder().raw_decode
     _space = re.compile(r"[ \t\r\n]*")
@@ -112,10 +114,10 @@ class _JsonFile:
         self._path = path
         self._text = ""
         self._at = 0
-        self._before = 0  # characters before the buffer
+        self._before = 0  # number of characters in the file before the buffer
 
     def until(self, bracket: str) -> Iterator[None]:
-        """Yield once before each comma-separated item, up to the closing ``bracket``."""
+        """Yield once before each comma-separated item, until the closing ``bracket``."""
         if self.accept(bracket):
             return
         while True:
@@ -125,12 +127,12 @@ class _JsonFile:
             self.expect(",", f"',' or '{bracket}'")
 
     def expect(self, character: str, name: str) -> None:
-        """Skip ``character``; raise ValueError if it does not come next."""
+        """Skip the next character; raise ValueError if it is not ``character``."""
         if not self.accept(character):
             self._fail(f"expected {name}")
 
     def accept(self, character: str) -> bool:
-        """Skip white space, and ``character`` if it comes next; return whether it did."""
+        """Skip white space, and then ``character`` if it is next; return whether it was."""
         while True:
             self._at = self._space.match(self._text, self._at).end()  # type: ignore[union-attr]
             if self._at < len(self._text) or not self._more():
@@ -140,7 +142,7 @@ class _JsonFile:
         return accepted
 
     def end(self) -> None:
-        """Raise ValueError if anything except white space is left."""
+        """Raise ValueError if the rest of the file contains anything except white space."""
         self.accept("")
         if self._at < len(self._text):
             self._fail("expected the end of the file")
@@ -157,7 +159,7 @@ class _JsonFile:
             except json.JSONDecodeError as error:
                 if len(self._text) - self._at > LARGEST_VALUE or not self._more():
                     self._fail(error.msg)
-            except ValueError as error:  # the number has more digits than Python converts
+            except ValueError as error:  # the number has more digits than Python can convert
                 self._fail(str(error))
             except RecursionError:
                 self._fail("too many levels")

@@ -23,18 +23,18 @@ from mitigate.core.output import writing
 NAME = ".lock"
 # Names of unfinished files, as mitigate/core/files.py writes them.
 _DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
-# Locks of this process. A record lock does not exclude a second lock by the same process,
-# and the process loses it when it closes any file of that path.
+# Locks of this process. A record lock does not prevent the same process from locking again, and the
+# process loses the lock when it closes any file of that path.
 _locks: dict[Path, IO[str]] = {}
 
 
 class FolderLock:
     """Context manager that creates ``folder`` and locks it while a process writes to it.
 
-    The lock is a record lock of the system (``fcntl``) on a file in the folder. The lock is
-    released when its process ends, in any way. Worker processes do not inherit the lock. The lock
-    also excludes other machines if the file system supports this. On a file system without locks,
-    nothing is locked.
+    The lock is a record lock of the system (``fcntl``) on a file in the folder. The system releases
+    the lock when the process ends, even if the process is killed. Worker processes do not inherit
+    the lock. The lock also excludes processes on other machines if the file system supports this.
+    On a file system without locks, nothing is locked.
 
     While a folder is locked, every write below the folder checks that the folder and the lock file
     are still the same (``core/output.py``). The same check is made at the end of the block.
@@ -81,7 +81,7 @@ class FolderLock:
                 return self
             if output.is_same(os.fstat(file.fileno()), self.path):
                 break
-            file.close()  # the previous process has just deleted it
+            file.close()  # the previous process has just deleted the lock file
         self._file = file
         _locks[self.path] = file
         file.truncate(0)
@@ -119,7 +119,7 @@ class FolderLock:
             self._file = None
 
     def _in_use_message(self, file: IO[str]) -> str:
-        """Return the error message for a lock that another process has."""
+        """Return the error message for a lock that another process holds."""
         file.seek(0)
         try:
             note = json.loads(file.read(4096))
@@ -134,7 +134,7 @@ class FolderLock:
 
 
 def _delete_empty(folders: Iterable[Path]) -> None:
-    """Delete ``folders``, innermost first, up to the first that is not empty."""
+    """Delete empty ``folders``, innermost first; stop at the first folder that is not empty."""
     with suppress(OSError):
         for folder in folders:
             folder.rmdir()
@@ -143,11 +143,12 @@ def _delete_empty(folders: Iterable[Path]) -> None:
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete unfinished files that ended processes left in ``folder``, and return them.
 
-    The subfolders ``within`` are also searched, except those that have their own lock. Deeper
-    folders are not.
+    The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
+    not searched.
 
-    Call this while the lock is held: then an unfinished file with this process's number must belong
-    to an earlier process, for example after a container was restarted.
+    Call this only while this process holds the lock. Then an unfinished file with the process id of
+    this process must come from an earlier process with the same id, for example after a restart of
+    a container.
     """
     inside = [folder / name for name in within if not (folder / name / NAME).exists()]
     inside = [place for place in inside if not place.is_symlink()]
@@ -156,7 +157,7 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
 
 
 def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
-    """Delete ``drafts`` whose process has ended, and return them.
+    """Delete those ``drafts`` whose process has ended, and return them.
 
     Args:
         drafts: Paths that may be unfinished files of ``mitigate/core/files.py``.
@@ -176,7 +177,7 @@ def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
 
 
 def is_alive(pid: int) -> bool:
-    """Return whether a process ``pid`` of any user runs on this machine."""
+    """Return whether a process with the id ``pid``, of any user, runs on this machine."""
     try:
         os.kill(pid, 0)
     except (ProcessLookupError, OverflowError):

@@ -1,4 +1,4 @@
-"""Limit the memory of a process with a bounded cache and by releasing freed memory."""
+"""Limit the memory of a process: cache results up to a limit, and release freed memory."""
 
 from __future__ import annotations
 
@@ -11,15 +11,15 @@ from typing import Any
 class Memory:
     """Cache of the most recently used results, with at most ``limit`` bytes.
 
-    A result is an array, a tensor, or a tuple of these (anything with ``nbytes``). Results are
-    returned without a copy: callers must not change them. The cache has no lock, so that a process
-    may fork at any time. Therefore two threads may compute the same result twice.
+    A result is an array, a tensor, or a tuple of these. Results are returned without a copy, so
+    callers must not change them. The cache has no lock, so that a process may fork at any time.
+    Two threads may therefore compute the same result.
     """
 
     def __init__(self, limit: int) -> None:
         self.limit = limit
         self.bytes = 0
-        self._results: dict[Hashable, Any] = {}  # ordered with the least recently used entry first
+        self._results: dict[Hashable, Any] = {}  # the least recently used entry is the first
 
     def __len__(self) -> int:
         return len(self._results)
@@ -29,7 +29,7 @@ class Memory:
         result = self._take(key)
         if result is None:
             result = make()
-            self._take(key)  # a different thread may have added the entry
+            self._take(key)  # another thread may have added this result
         self._results[key] = result
         self.bytes += _bytes(result)
         while self.bytes > self.limit and len(self._results) > 1:
@@ -45,11 +45,11 @@ class Memory:
 
 
 def give_back() -> None:
-    """Return freed memory to the system, which takes a few milliseconds.
+    """Return freed memory to the system; this takes a few milliseconds.
 
-    glibc keeps freed memory, and keeps more and more of it when array sizes vary.
+    glibc keeps freed memory for later use. If array sizes vary, glibc keeps more and more memory.
     """
-    with suppress(AttributeError, OSError, TypeError):  # raised if the C library is not glibc
+    with suppress(AttributeError, OSError, TypeError):  # the C library may not be glibc
         ctypes.CDLL(None).malloc_trim(0)
 
 

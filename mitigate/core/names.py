@@ -51,15 +51,15 @@ def escaped(text: str, most: int = LONGEST_NAME) -> str:
 
 
 def file_name(text: str) -> str:
-    """Return ``text`` with a dash for each part that a file name should not contain."""
+    """Return ``text`` with a dash in place of characters that a file name should not contain."""
     return re.sub(r"[^A-Za-z0-9.@+-]+", "-", text)
 
 
 def printable(message: str) -> str:
-    """Return a ``message`` for a terminal, in which only line breaks are control characters.
+    """Return ``message`` without control characters except line breaks, for output on a terminal.
 
-    A message quotes names from files, which may contain escape sequences of terminals. A message
-    that is longer than ``LONGEST_MESSAGE`` is cut.
+    A message may quote names from files, and these may contain escape sequences of terminals. A
+    message longer than ``LONGEST_MESSAGE`` characters is cut.
     """
     lines = message[:LONGEST_MESSAGE].split("\n")
     return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)
@@ -68,9 +68,9 @@ def printable(message: str) -> str:
 def name_of(weights: str) -> str:
     """Return a display name for the weights at a path.
 
-    For the ``agent`` folder of a run, it is the name of the run. For shipped weights it is the kind
-    of agent: ``checkpoints/frontier/base`` is named "frontier", and ``.../teacher`` is named
-    "frontier_teacher".
+    For the folder ``agent`` of a run, the display name is the name of the run. For shipped weights,
+    it is the kind of agent: ``checkpoints/frontier/base`` is named "frontier", and ``.../teacher``
+    is named "frontier_teacher".
     """
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):

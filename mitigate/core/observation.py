@@ -7,9 +7,10 @@ agent.
 * ``depth``  float32 ``[12, H, W, 1]``, metres along the optical axis; 0 means "no reading"
 * ``pose``   float32 ``[3]`` = (x, y, heading): metres, metres, radians, in the plan frame
 
-View ``k`` faces yaw ``-30 k`` degrees from the heading, so increasing ``k`` turns RIGHT (clockwise
-from above). ``heading`` is counter-clockwise; forward is ``(-sin h, cos h)``. Plan frame to VLN-CE
-frame: ``x = x``, ``z = -y``, height ``y`` up.
+View ``k`` faces ``30 k`` degrees to the RIGHT of the heading (clockwise, seen from above).
+``heading`` is an angle in counter-clockwise direction; the agent faces ``(-sin h, cos h)``. The
+point (x, y) in the plan frame is the point (x, height, -y) in VLN-CE's frame, whose second axis
+points up.
 """
 
 from __future__ import annotations
@@ -22,9 +23,10 @@ from typing import Any
 RGB = "rgb"
 DEPTH = "depth"
 POSE = "pose"
-CLEAN_RGB = "clean_rgb"  # entry of training batches with the frames before the corruption
+CLEAN_RGB = "clean_rgb"  # entry of training batches: frames before the corruption
 CLEAN_DEPTH = "clean_depth"
-# entries of torchrl environments: text, name of the episode's run, number of low-level steps
+# entries of torchrl environments: the instruction, the name of the episode's run, and the number of
+# low-level steps
 INSTRUCTION = "instruction"
 EPISODE = "episode"
 FRAME = "frame"
@@ -32,7 +34,7 @@ FRAME = "frame"
 VIEWS = 12
 VIEW_STEP_DEGREES = 30.0
 HFOV_DEGREES = 90.0
-Z_MAX = 10.0  # range of the R2R-CE depth sensor in metres (VLN-CE config)
+Z_MAX = 10.0  # maximum range in metres of the depth sensor in R2R-CE (VLN-CE config)
 
 STOP, FORWARD, LEFT, RIGHT = 0, 1, 2, 3
 FORWARD_METRES = 0.25  # VLN-CE
@@ -68,7 +70,7 @@ class Sensor:
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
-    """Return the sensors that this module's docstring describes.
+    """Return the standard sensors, which this module's docstring describes.
 
     Args:
         size: height and width of a view in pixels.
@@ -89,7 +91,8 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
     Args:
         sensors: the sensors of the world.
-        read: the agent's ``sensors``; if it contains none of the world's sensors, all are listed.
+        read: the agent's ``sensors``. If the world has none of these sensors, all sensors of the
+            world are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
@@ -105,7 +108,7 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
 
 
 class Observation(Mapping[str, Any]):
-    """An observation whose frames are rendered when one of them is first read.
+    """An observation that renders its frames when one of them is read for the first time.
 
     Args:
         ready: available entries, such as the pose.

@@ -1,6 +1,6 @@
 """Read folders of earlier versions; only ``core/folders.py`` uses this module.
 
-- Weights, adapters, encoders, restorers and safeguards had a sidecar ``<file>.sha256``
+- A file of weights, adapters, an encoder, a restorer or a safeguard had a sidecar ``<file>.sha256``
   (``core/checksums.py``) or no checksum.
 - The ``card.json`` of a hardened folder contained the sha256 of every file and of the card itself.
 """
@@ -20,13 +20,12 @@ FORMAT = 1
 
 
 def card_files(folder: Path, again: str) -> dict[str, Any] | None:
-    """Return the sha256 of every file from the card of a hardened folder, by name.
+    """Return the sha256 of every file, by name, from the card of a hardened folder.
 
     Returns None for any other folder.
 
     Raises:
-        ValueError: The card is damaged. The card is invalid; the message ends with the advice
-            ``again``.
+        ValueError: The card is invalid; the message ends with the advice ``again``.
     """
     file = folder / CARD
     card = read_object(file, again) if file.is_file() else {}
@@ -44,11 +43,11 @@ def card_files(folder: Path, again: str) -> dict[str, Any] | None:
 
 
 def card_sha(card: dict[str, Any]) -> str:
-    """Return the sha256 of a card's entries except "sha256" itself, as sorted JSON."""
+    """Return the sha256 of a card: of all its entries except "sha256", as sorted JSON."""
     entries = {name: value for name, value in card.items() if name != "sha256"}
     return hashlib.sha256(json.dumps(entries, sort_keys=True).encode()).hexdigest()
 
 
 def without_sums(card: dict[str, Any]) -> dict[str, Any]:
-    """Return a card without its checksums, which the manifest holds today."""
+    """Return a card without its checksums, because the manifest contains them today."""
     return {name: value for name, value in card.items() if name not in ("sha256", "files")}

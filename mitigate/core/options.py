@@ -1,8 +1,8 @@
 """Parse paths, ``key=value`` options and flags of a command line, before any config is read.
 
 Commands without Hydra use :func:`paths_and_options`. The other commands pass their options to Hydra
-(``core/conf.py``), after a check for words that Hydra would accept silently or reject with an
-unclear message.
+(``core/conf.py``). Before that, these commands reject words that Hydra would accept without a
+warning or reject with an unclear message.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ CONFIG_DIR = ("--config-dir", "-cd")
 
 
 def asks_help(arguments: Sequence[str]) -> bool:
-    """Return whether to show the help, because of a flag or because there are no arguments."""
+    """Return whether to show the help: there are no arguments, or one of them is a help flag."""
     return not arguments or any(name in arguments for name in HELP)
 
 
@@ -68,7 +68,9 @@ def paths_and_options(
 
 
 def check_paths(paths: Sequence[object], options: str) -> None:
-    """Raise ValueError for ``out=x`` among the paths of a command whose ``options`` have dashes."""
+    """Raise ValueError for a path like ``out=x``, if the command's ``options`` begin with
+    dashes.
+    """
     for path in map(str, paths):
         if path.partition("=")[0].isidentifier() and "=" in path and not Path(path).exists():
             raise ValueError(f"There is no file {path}. Write options here as {options}.")
@@ -84,8 +86,8 @@ def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]
 def values(options: Sequence[str], key: str) -> list[str]:
     """Return the values to which ``options`` set ``key``, without quotes and escapes.
 
-    The last option counts. A sweep (``key=a,b``) has several values. The list is empty if ``key``
-    is not set or Hydra cannot parse the options.
+    If ``key`` is set several times, the last value counts. A sweep (``key=a,b``) has several
+    values. The list is empty if ``key`` is not set or Hydra cannot parse the options.
     """
     from hydra.core.override_parser.overrides_parser import OverridesParser  # an optional package
     from hydra.core.override_parser.types import QuotedString
@@ -105,7 +107,7 @@ def values(options: Sequence[str], key: str) -> list[str]:
 
 
 def config_folder(options: Sequence[str]) -> Path | None:
-    """Return the user's folder of configs, if ``options`` name one."""
+    """Return the user's folder of configs if ``options`` name such a folder, else None."""
     match = re.search(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
     return Path(match[1]) if match else None
 
@@ -141,9 +143,9 @@ def check_dashes(options: Sequence[str]) -> None:
 
 
 def flags_first(words: Sequence[str]) -> list[str]:
-    """Move the multirun flag and the folder of configs to the front of ``words``.
+    """Move the multirun flag and the option for the folder of configs to the front of ``words``.
 
-    Hydra does not recognise them between options.
+    Hydra does not recognise these options between others.
     """
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])

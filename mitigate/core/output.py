@@ -2,8 +2,8 @@
 
 Every file that is written in place goes through :func:`open_output`, and every file that replaces
 an existing file goes through ``mitigate/core/files.py``. A folder that was cloned or unpacked may
-contain links, FIFOs and devices instead of our files. Such files are rejected before a byte is
-written.
+contain links, FIFOs and devices instead of our files. Links, FIFOs and devices are rejected before
+anything is written.
 """
 
 from __future__ import annotations
@@ -28,23 +28,23 @@ _KINDS = (
 
 
 class UnsafePathError(ValueError):
-    """The path of an output file is a link, a FIFO or a device, or lies behind a link."""
+    """Raised if the path of an output file is a link, a FIFO or a device, or goes through a
+    link.
+    """
 
 
 class FolderLostError(OSError):
-    """An output folder, or a command's files in it, was removed or replaced by a different
-    process.
-    """
+    """Raised if another process removed or replaced an output folder or a command's files in it."""
 
 
 @dataclass
 class Root:
-    """An output folder that is in use.
+    """An output folder that this process uses.
 
     Attributes:
         folder: The folder path as given by the user. It may be a link.
-        places: Absolute path of the folder, with and without links.
-        descriptor: Open descriptor of the folder; it keeps the inode from being reused.
+        places: The absolute paths of the folder: as given, and with links resolved.
+        descriptor: Open file descriptor of the folder; while it is open, the inode is not reused.
         lock: Path and status of the lock file, or None without a lock.
         expected: Files and folders that must exist when the command ends.
         seen: Subfolders that existed at an earlier write.
@@ -72,7 +72,7 @@ class Root:
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Check each subfolder on the path ``inner``.
+        """Check each subfolder on the relative path ``inner``.
 
         Raises:
             UnsafePathError: One of the subfolders is a link.
@@ -90,7 +90,7 @@ class Root:
             if not stat.S_ISDIR(mode):
                 raise UnsafePathError(
                     f"{place} must be a folder, got {_kind(mode)}. {self.folder} itself may be a "
-                    f"link, but nothing inside it. Delete {place} and run the command again."
+                    f"link, but must not contain links. Delete {place} and run the command again."
                 )
             self.seen.add(place)
 
@@ -106,7 +106,7 @@ _roots: list[Root] = []
 
 
 def is_same(status: os.stat_result, path: Path, follow_links: bool = False) -> bool:
-    """Return whether ``path`` is still the same file or folder that had ``status``."""
+    """Return whether ``path`` is still the file or folder that ``status`` describes."""
     try:
         return os.path.samestat(status, os.stat(path, follow_symlinks=follow_links))
     except (FileNotFoundError, NotADirectoryError):
@@ -114,7 +114,7 @@ def is_same(status: os.stat_result, path: Path, follow_links: bool = False) -> b
 
 
 def lost(*paths: Path) -> FolderLostError:
-    """Return the error for files or folders that a different process removed."""
+    """Return the error for files or folders that another process removed."""
     names = ", ".join(map(str, paths))
     verb = "was" if len(paths) == 1 else "were"
     return FolderLostError(
@@ -127,8 +127,8 @@ def lost(*paths: Path) -> FolderLostError:
 def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
     """Watch an existing ``folder`` until :func:`unregister`.
 
-    Until then, every write below the folder checks that the folder and its ``lock`` are unchanged,
-    and that no subfolder on the path is a link.
+    While the folder is watched, every write below it checks that the folder and its ``lock`` are
+    unchanged, and that no subfolder on the path is a link.
     """
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
@@ -148,14 +148,14 @@ def unregister(root: Root) -> None:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Explain system errors while the block writes the file or folder ``path``.
+    """Explain system errors that occur while the block writes the file or folder ``path``.
 
-    The error keeps its type, and its message states that the path cannot be written and what to do.
+    The error keeps its type. Its message states that the path cannot be written, and what to do.
     """
     try:
         yield
     except OSError as error:
-        if error.strerror is None:  # already explained
+        if error.strerror is None:  # the error already has an explanation
             raise
         raise type(error)(
             f"Cannot write {path}: {error.strerror}. Free some space, change the permissions, or "
@@ -172,7 +172,7 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
         expected: Names of files that must be in the folder when the block ends.
 
     Raises:
-        FolderLostError: The folder is removed or replaced while the block runs.
+        FolderLostError: The folder was removed or replaced while the block ran.
     """
     folder = Path(folder)
     with writing(folder):
@@ -197,21 +197,21 @@ def check(path: Path | str) -> None:
 
 
 def make_checked(folder: Path | str) -> None:
-    """Create ``folder`` and its parents unless it exists; errors are as in :func:`check`."""
+    """Create ``folder`` and its parents if needed. Raises the same errors as :func:`check`."""
     _check_folder(Path(os.path.abspath(folder)))
     Path(folder).mkdir(parents=True, exist_ok=True)
     _check_folder(Path(os.path.abspath(folder)))
 
 
 def forget(folder: Path | str) -> None:
-    """Call before deleting ``folder``, so that its absence is not reported."""
+    """Declare that ``folder`` will be deleted, so that its absence is not reported as an error."""
     folder = Path(os.path.abspath(folder))
     for root in _roots:
         root.seen = {path for path in root.seen if not path.is_relative_to(folder)}
 
 
 def delete_folder(folder: Path | str) -> None:
-    """Delete ``folder`` with its content, if it exists. This never deletes through a link.
+    """Delete ``folder`` with its content, if it exists. Links are never followed.
 
     Raises:
         UnsafePathError: ``folder`` is a symbolic link, a FIFO or a file, or its path goes through a
@@ -263,13 +263,13 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
     """Open a regular file for writing.
 
     Args:
-        path: The file. Path of the file, whose folder must exist.
+        path: Path of the file; its folder must exist.
         mode: A mode of ``open``: "w", "a", "x" or "r+", with "b" and "+".
         options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
         UnsafePathError: ``path`` is a link, a FIFO, a socket or a device, has a second name (a hard
-            link), or lies behind a link in an output folder.
+            link), or goes through a link inside an output folder.
         FolderLostError: The output folder was removed or replaced.
         OSError: The file cannot be opened.
     """
@@ -277,14 +277,15 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
     _check_file(path)
 
     def no_link(name: str, flags: int) -> int:
-        # without O_NONBLOCK, a FIFO that appears after the check would wait for a reader
+        # without O_NONBLOCK, opening a FIFO that was created after the check would wait for a
+        # reader
         return os.open(name, flags | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
 
     return open(path, mode, opener=no_link, **options)
 
 
 def _check_file(path: Path | str) -> None:
-    """Raise UnsafePathError unless ``path`` is a regular file with one name, or does not exist."""
+    """Raise UnsafePathError if ``path`` exists and is not a regular file with a single name."""
     with suppress(FileNotFoundError):
         status = os.lstat(path)
         if not stat.S_ISREG(status.st_mode):

@@ -18,7 +18,7 @@ def side_by_side(views: np.ndarray) -> np.ndarray:
     """Join views side by side.
 
     Args:
-        views: uint8 [V, H, W, 3], or metres [V, H, W, 1], which are drawn as grey.
+        views: uint8 [V, H, W, 3], or depth in metres [V, H, W, 1], which is drawn in grey.
 
     Returns:
         uint8 [H, V * W, 3].
@@ -38,7 +38,9 @@ def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.n
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """Return the RGB (or else depth) frame of an observation as uint8 [H, W, 3], or None."""
+    """Return a picture uint8 [H, W, 3] of an observation's RGB frame, or else of its depth, or
+    None.
+    """
     entries = observation or {}
     frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
     if frame is None:
@@ -54,7 +56,7 @@ def draw_path(
     label: str | None = None,
     style: str = "-",
 ) -> None:
-    """Draw a path (metres on the floor plan, [n, 2]) on matplotlib axes."""
+    """Draw a path on matplotlib axes; it is [n, 2], in metres on the floor plan."""
     points = np.asarray(path)
     axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
     axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
@@ -62,8 +64,9 @@ def draw_path(
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
-    """Return depth [H, W] as uint8 RGB [H, W, 3], in which near is bright, ``far`` metres is dark,
-    and missing values are white.
+    """Draw depth [H, W] as uint8 RGB [H, W, 3].
+
+    Near points are bright, points at ``far`` metres are dark, and missing values are white.
     """
     valid = np.isfinite(depth) & (depth > 0)
     near = 1.0 - np.where(valid, np.clip(depth / far, 0.0, 1.0), 0.0)

@@ -3,8 +3,8 @@
 The choice depends only on the device. The choice is not based on timing, because on a busy machine
 the same command could then choose a different format and train different weights.
 
-The trainer stores its choice in the checkpoint and applies :func:`computing` to all its
-computations: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
+The trainer stores its choice in the checkpoint. The trainer runs all computations inside
+:func:`computing`: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
 evaluations compute in float32, so that rows from different machines can be compared.
 """
 
@@ -22,9 +22,9 @@ import torch.nn.functional as F
 
 CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # environment variable that limits the instructions that oneDNN uses
-_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # limits that still allow bf16 instructions
-# Milliseconds of the probe on the machine where the costs of stages were measured
-# (2 cores of an AMD EPYC, limited to AVX2).
+_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # limits that allow bf16 instructions
+# milliseconds of the test step on the machine where the costs of stages were measured (2 cores of
+# an AMD EPYC, limited to AVX2)
 REFERENCE = 12.0
 
 
@@ -37,8 +37,9 @@ def check(precision: str) -> None:
 def choose(precision: str, device: torch.device) -> str:
     """Return "fp32" or "bf16" for ``precision``, one of ``CHOICES``.
 
-    "auto" is bf16 only if the device computes it natively. Emulated bf16 is 3 to 10 times slower
-    than fp32 (measured with AVX2). Raises ValueError for any name that is not in ``CHOICES``.
+    "auto" means bf16 only if the device computes bf16 natively, else fp32. Emulated bf16 is 3 to 10
+    times slower than fp32 (measured with AVX2). Raises ValueError for any name that is not in
+    ``CHOICES``.
     """
     check(precision)
     if precision != "auto":
@@ -49,7 +50,7 @@ def choose(precision: str, device: torch.device) -> str:
 
 
 def device_of(name: str) -> torch.device:
-    """Return the device for a ``name`` such as "cpu" or "cuda:1"; "auto" is CUDA if available.
+    """Return the device for a ``name`` such as "cpu" or "cuda:1"; "auto" means CUDA if available.
 
     Raises:
         ValueError: The device is not available.
@@ -60,7 +61,7 @@ def device_of(name: str) -> torch.device:
     devices = ["auto", "cpu", *(f"cuda:{n}" for n in range(gpus))]
     try:
         device = torch.device(name)
-        if device.type == "cuda":  # this does not initialise CUDA, because workers are forked later
+        if device.type == "cuda":  # do not initialise CUDA here, because workers are forked later
             cause = "it is not available"
             usable = torch.cuda.is_available() and (device.index or 0) < gpus
         else:
@@ -78,15 +79,16 @@ def device_of(name: str) -> torch.device:
 
 
 def to_device(value: Any, device: torch.device) -> Any:
-    """Move tensors and other objects with a method ``to`` to ``device``; return the rest unchanged.
+    """Move tensors, and other objects with a method ``to``, to ``device``; leave other values
+    unchanged.
 
-    Dicts, lists and tuples are searched recursively.
+    The contents of dicts, lists and tuples are moved too.
     """
-    if hasattr(value, "to"):  # users' agents define the class of their own batches
+    if hasattr(value, "to"):  # users' agents may define their own class of batches
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}
-    if type(value) in (list, tuple):  # named tuples are moved by objectives
+    if type(value) in (list, tuple):  # objectives move named tuples themselves
         return type(value)(to_device(item, device) for item in value)
     return value
 
@@ -116,10 +118,10 @@ def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
 
 @lru_cache(maxsize=1)
 def probe(rounds: int = 7) -> float:
-    """Measure the speed of this machine as the milliseconds of a small fp32 training step.
+    """Measure the speed of this machine: the milliseconds that a small fp32 training step takes.
 
-    The step has convolutions and a matrix product, and the fastest of ``rounds`` runs is returned.
-    The measurement takes a tenth of a second and runs once per process.
+    The step has convolutions and a matrix product. The time of the fastest of ``rounds`` runs is
+    returned. The measurement takes a tenth of a second and runs once per process.
     """
     with torch.random.fork_rng(devices=[]):
         x = torch.randn(48, 32, 32, 32)

@@ -1,7 +1,7 @@
 """Load pretrained networks in Hugging Face's format, optionally in 8 or 4 bits.
 
-A folder or hub id may come from an untrusted source: no code in it is run, and its weights must be
-safetensors files. Every failure raises an error with the cause and a command that fixes it.
+A folder or hub id may come from an untrusted source, so its code is never run, and its weights must
+be safetensors files. Every error message states the cause and a command that fixes it.
 """
 
 from __future__ import annotations
@@ -17,8 +17,8 @@ import torch
 from torch import nn
 
 PRECISIONS = ("fp32", "bf16", "int8", "nf4")
-LORA = "lora_"  # text that is part of the name of every LoRA tensor (PEFT)
-PEFT_WEIGHTS = "adapter_model.safetensors"  # file of LoRA weights (PEFT)
+LORA = "lora_"  # the name of every LoRA tensor of PEFT contains this text
+PEFT_WEIGHTS = "adapter_model.safetensors"  # name of PEFT's file with LoRA weights
 
 
 def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
@@ -29,13 +29,14 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
         place: a folder or hub id.
         precision: precision of the weights: "fp32", "bf16", "int8" (bitsandbytes LLM.int8) or
             "nf4" (bitsandbytes, 4-bit NormalFloat, computed in bf16).
-        options: further arguments of ``from_pretrained``.
+        options: additional arguments of ``from_pretrained``.
     """
     dtype = torch.bfloat16 if precision in ("bf16", "nf4") else torch.float32
     if precision in ("int8", "nf4"):
         from transformers import BitsAndBytesConfig
 
-        # hides a warning that would be repeated for every product, which is always in float16
+        # hide the warning that products are computed in float16, which would be repeated for every
+        # product
         logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
         quantised: dict[str, Any] = {"load_in_8bit": True}
         if precision == "nf4":
@@ -62,7 +63,7 @@ def check_place(base: str, example: str) -> None:
 
 
 def local_folder(base: str) -> str:
-    """Return the folder of a model; the files of a hub id are downloaded, without pickles."""
+    """Return the folder of a model; for a hub id, download the files first, except pickles."""
     if Path(base).is_dir():
         return base
     from huggingface_hub import snapshot_download
@@ -98,7 +99,10 @@ def explained(base: str, precision: str, install: str) -> Iterator[None]:
 
 
 def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
-    """Return the sha256 of the weights in a folder (files in order of name), or of a hub id."""
+    """Return the sha256 of the weights in a folder, whose files are read in order of name.
+
+    For a hub id, return the sha256 of the id itself.
+    """
     files = sorted(Path(place).glob(pattern))
     sha = hashlib.sha256()
     for file in files:
@@ -109,7 +113,7 @@ def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
 
 
 def keep_lora_only(module: nn.Module) -> None:
-    """Exclude the frozen base in ``module.network`` from the state dicts of ``module``."""
+    """Exclude the frozen base weights in ``module.network`` from the state dicts of ``module``."""
     module.register_state_dict_post_hook(_keep_lora)
     module.register_load_state_dict_post_hook(_allow_missing_base)
 

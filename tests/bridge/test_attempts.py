@@ -83,9 +83,7 @@ def test_run_measures_other_conditions_if_one_is_locked(run, skips, tmp_path):
     with open(folder / "lock", "w") as handle:
         fcntl.flock(handle, fcntl.LOCK_EX)
         result = run(tmp_path / "o", "conditions=[spatter,flare]", f"{skips} {{out}}/results.json")
-    assert (
-        "spatter-s0.6: Another run is at work in" in result.stderr and "flare" not in result.stderr
-    )
+    assert "spatter-s0.6: Another run is using" in result.stderr and "flare" not in result.stderr
     assert (tmp_path / "o/conditions/flare-s0.6/done.json").exists()
 
 

@@ -149,7 +149,7 @@ RESULTS = BEGIN + (
         ("success=float('nan')", "must be a number"),
         ("success='yes'", "must be a number"),
         ("success=False, spl=0.7", "the SPL of a failed episode must be 0"),
-        ("success=True, path_length=-1", "must be a number that is not negative"),
+        ("success=True, path_length=-1", "must be a number >= 0"),
     ],
 )
 def test_finish_rejects_invalid_results(tmp_path, results, words):

@@ -219,7 +219,7 @@ def test_run_rejects_the_folder_of_a_running_run(run, tmp_path):
     with open(folder / "lock", "w") as handle:
         fcntl.flock(handle, fcntl.LOCK_EX)
         result = run(tmp_path / "o", "conditions=[clean]")
-    assert result.returncode == 1 and "Another run is at work in" in result.stderr
+    assert result.returncode == 1 and "Another run is using" in result.stderr
 
 
 @pytest.mark.parametrize(

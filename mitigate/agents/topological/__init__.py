@@ -1,4 +1,4 @@
-"""The reference agent: ETPNav's structure, small."""
+"""The reference agent: a small agent with the structure of ETPNav."""
 
 from mitigate.agents.topological.agent import TopologicalAgent
 

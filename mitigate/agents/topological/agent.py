@@ -1,8 +1,8 @@
-"""The reference agent perceives, extends its topological map, chooses a ghost, and goes there.
+"""The reference agent extends its topological map at each decision and goes to a ghost node.
 
 ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
 agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
-observation renders no other frames.
+observation renders frames only for decisions.
 """
 
 from __future__ import annotations
@@ -52,14 +52,15 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, POSE, RGB, 
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# imported only here, because it imports tensordict, which is as slow to import as torch
+# only for type checkers, because the module imports tensordict, whose import is as slow as torch's
 if TYPE_CHECKING:
     from mitigate.agents.topological.stored import Store
 
 MAX_DECISIONS = 15  # maximum number of decisions; ETPNav uses 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-# weights of the auxiliary losses of the planner (metres to the goal; views that show the goal's
-# landmark) and of perception (concepts in views; free space); chosen for the shipped agents
+# weights of the auxiliary losses, chosen for the shipped agents. The planner predicts the distance
+# to the goal, and the views that show the goal's landmark ("grounding"). Perception predicts the
+# concepts in each view, and where space is free ("waypoints").
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # unit of the planner's distance, in metres
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
@@ -100,7 +101,8 @@ class TopologicalAgent(Agent, nn.Module):
     """
 
     fingerprint_kind = (
-        "mitigate.agents.topological.agent.TopologicalAgent"  # in published fingerprints
+        # this name is part of published fingerprints
+        "mitigate.agents.topological.agent.TopologicalAgent"
     )
 
     run_state = ("_memory", "_started")
@@ -148,7 +150,7 @@ class TopologicalAgent(Agent, nn.Module):
         self._memory: Memory | None = None
         if encoder == IMAGENET:
             self.rgb_encoder, self.frozen = ImageNetEncoder(width, size), BORROWED
-            size = SIZE  # same depth encoder as in the base agent
+            size = SIZE  # use the same depth encoder as the base agent
         else:
             self.rgb_encoder = RGBEncoder(width=width, size=size)
         self.depth_encoder = DepthEncoder(width=width, size=size)
@@ -159,14 +161,14 @@ class TopologicalAgent(Agent, nn.Module):
             insert_adapters(self, **adapters)
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments, which the config stores."""
+        """Return the constructor's arguments, which are stored with the weights."""
         return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
     def device(self) -> torch.device:
         return self.planner.places.weight.device
 
-    # features, which recipes train and distil --------------------------------------------------
+    # features, which training recipes use ----------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Encode P panoramas; inputs in ``blind`` are blanked.
@@ -176,8 +178,8 @@ class TopologicalAgent(Agent, nn.Module):
             depth: float32 metres [P, 12, H, W, 1].
 
         Returns:
-            Views [P, 12, rgb + concepts + depth] (concepts as probabilities), concept logits
-            [P, 12, C], waypoint logits [P, 120, 12].
+            View features [P, 12, rgb + concepts + depth], which contain the probabilities of
+            concepts; the concept logits [P, 12, C]; and the waypoint logits [P, 120, 12].
         """
         rgb = torch.zeros_like(rgb) if "rgb" in self.blind else rgb
         depth = torch.zeros_like(depth) if "depth" in self.blind else depth
@@ -208,7 +210,7 @@ class TopologicalAgent(Agent, nn.Module):
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = LABELS
     plain_walks = False
-    stored_parts = ("planner",)  # parts that can be trained on stored features
+    stored_parts = ("planner",)  # modules that can be trained on stored features
 
     def store(self, world: Callable[[], Any], folder: str, **variants: Any) -> Store:
         """Return stored features of all scenes of a world, for training without rendering."""
@@ -217,7 +219,7 @@ class TopologicalAgent(Agent, nn.Module):
         return Store(self, world, folder, **variants)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the four modules by name."""
+        """Return the two encoders, the waypoint head and the planner by name."""
         return dict(self.named_children())
 
     def as_teacher(self) -> TopologicalAgent:
@@ -267,7 +269,7 @@ class TopologicalAgent(Agent, nn.Module):
         return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """With ``clean``, replace clean frames by their features."""
+        """If ``clean`` is true, replace the clean frames by their features."""
         if clean and CLEAN_RGB in piece.seen:
             views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
@@ -278,8 +280,9 @@ class TopologicalAgent(Agent, nn.Module):
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Return logits over [stop] and ghosts, and features "views" [P, 12, F] and "nodes" [n,
-        width].
+        """Return the logits over [stop] and ghost nodes, and the features.
+
+        The features are "views" [P, 12, F] and "nodes" [n, width].
         """
         views, losses, figures = self._perception(decisions, clean)
         planner, valid = self.planner, decisions.valid
@@ -294,9 +297,9 @@ class TopologicalAgent(Agent, nn.Module):
         return Output(out["logits"], decisions.allowed, features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """Return view features of a sensor's frames (``agents/agent.py``).
+        """Return the view features of one sensor's frames (``agents/agent.py``).
 
-        RGB features include the probabilities of concepts.
+        The features of RGB frames include the probabilities of concepts.
         """
         if sensor == DEPTH:
             features, logits = self.encode_depth(frames)
@@ -315,7 +318,9 @@ class TopologicalAgent(Agent, nn.Module):
     def _perception(
         self, seen: MapDecisions, clean: bool
     ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
-        """Return view features [P, 12, F], and the losses and figures of a trained perception."""
+        """Return view features [P, 12, F], and the losses and metrics if perception is being
+        trained.
+        """
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
@@ -366,7 +371,7 @@ class TopologicalAgent(Agent, nn.Module):
         self.decisions = 0
         self._views: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
-        self._chosen: int | None = None  # the ghost that the agent is moving to
+        self._chosen: int | None = None  # the ghost node to which the agent moves
         self._final = False
         with torch.inference_mode():
             self._text = self.planner.read(self.tokens([instruction]))
@@ -380,7 +385,7 @@ class TopologicalAgent(Agent, nn.Module):
                 dtype, shape or unit.
         """
         check_started(self._started)
-        self._decided: Decision | None = None  # the last decision of this call
+        self._decided: Decision | None = None  # the last decision in this call of act
         action = self.controller.action(checked.pose(observation))
         while action is None:
             if self._final or not self._decide(observation):
@@ -394,7 +399,7 @@ class TopologicalAgent(Agent, nn.Module):
             return None
         rgb, depth = (torch.from_numpy(np.array(f))[None] for f in checked.frames(observation))
         views = self.perceive(rgb.to(self.device), depth.to(self.device))[0]
-        # copies, because tensors of inference mode have no gradients
+        # these are copies, because tensors created in inference mode have no gradients
         earlier = [view.clone() for view in self._views[:-1]]
         text = tuple(part.clone() for part in self._text)
         batch = collate([self._decided], [0], [0]).to(self.device)
@@ -402,8 +407,8 @@ class TopologicalAgent(Agent, nn.Module):
         return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the route after a motion that the agent did not choose, and decide at the next
-        step.
+        """Discard the route after a motion that the agent did not choose. The agent decides again
+        at its next step.
         """
         self.controller = Controller()
         self._chosen = None
@@ -412,7 +417,9 @@ class TopologicalAgent(Agent, nn.Module):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """The end of the agent's route in plan metres [2], or None."""
+        """The end of the agent's route [2], in metres on the floor plan, or None without a
+        route.
+        """
         return self.controller.route[-1] if self.controller.route else None
 
     @torch.inference_mode()
@@ -449,7 +456,9 @@ class TopologicalAgent(Agent, nn.Module):
         return views, select(waypoints[0].float().cpu().numpy())
 
     def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
-        """Return ``encode`` of a sensor's frames [12, H, H, c], cached in :meth:`remembering`."""
+        """Apply ``encode`` to a sensor's frames [12, H, H, c]; use the cache of
+        :meth:`remembering`.
+        """
         frames = np.zeros_like(frames) if sensor in self.blind else frames
 
         def encoded() -> tuple:

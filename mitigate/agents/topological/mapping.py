@@ -1,7 +1,8 @@
-"""The topological map of one episode, with visited nodes, ghosts (seen but not visited) and routes.
+"""The topological map of one episode: visited nodes, ghost nodes (seen but not visited), routes.
 
-The rules are simplified from ETPNav: a waypoint merges into a ghost or node within ``MERGE``
-metres, a ghost stores the views that faced it, and a chosen ghost becomes a node on arrival.
+The rules are simplified from ETPNav: a waypoint within ``MERGE`` metres of a ghost or node is
+merged into it. A ghost stores the views that face it. When the agent arrives at a ghost, a node
+replaces it.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import numpy as np
 
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
-MERGE = 0.6  # metres (ETPNav: 0.5)
+MERGE = 0.6  # distance in metres; ETPNav uses 0.5
 SIGHTINGS = 4  # number of views that are stored per ghost
 GEOMETRY = 12  # number of features of a token's position relative to the agent
 _STOP, _NODE, _GHOST = 0, 1, 2
@@ -63,7 +64,9 @@ class TopologicalMap:
     _born: int = 0
 
     def add(self, pose: np.ndarray, waypoints: np.ndarray) -> None:
-        """Add a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (yaw clockwise, metres)."""
+        """Add a panorama at ``pose`` [3], and its ``waypoints`` [n, 2] (clockwise yaw, and
+        metres).
+        """
         self.start = pose.copy() if self.start is None else self.start
         node = self._visit(pose[:2].astype(np.float64))
         for yaw, metres in waypoints:
@@ -174,7 +177,9 @@ class TopologicalMap:
         return float(np.hypot(*(self.positions[node] - self.ghosts[ghost].position)))
 
     def _dijkstra(self) -> tuple[np.ndarray, dict[int, int]]:
-        """Return metres from the current node to every node, and each node's predecessor."""
+        """Return the metres from the current node to every node, and the predecessor of each node
+        on the shortest path.
+        """
         distance = np.full(len(self.positions), np.inf)
         distance[self.current] = 0.0
         before: dict[int, int] = {}

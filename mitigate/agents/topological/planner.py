@@ -1,9 +1,9 @@
 """The cross-modal planner scores [stop] and the ghosts of the map, given the instruction.
 
-Structure after ETPNav: RGB and depth embeddings are summed per view and pass a panorama
-transformer. A node is the mean over its views, and a ghost the mean over the views that faced it. A
-cross-modal transformer then reads map and text. The 12 views of the current panorama are additional
-tokens (as in DUET's fine branch).
+The structure follows ETPNav. RGB and depth embeddings are summed per view and go through a panorama
+transformer. The embedding of a node is the mean over its views; for a ghost node, it is the mean
+over the views that face the ghost. A cross-modal transformer then reads the map and the text. The
+12 views of the current panorama are additional tokens (as in DUET's fine branch).
 """
 
 from __future__ import annotations
@@ -53,8 +53,10 @@ class DecisionBatch:
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
-    """Pad decisions; ``episodes[i]`` is the index of the text, ``offsets[i]`` of the first
-    panorama.
+    """Pad decisions and join them into a batch.
+
+    ``episodes[i]`` is the index of the text of decision i, and ``offsets[i]`` is the index of the
+    first panorama of its episode.
     """
     n = max(len(d.nodes) for d in decisions)
     g = max(1, max(len(d.ghosts) for d in decisions))
@@ -78,7 +80,7 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
 
 
 class Planner(TextReader):
-    """Score [stop] and ghosts; the module's docstring describes the structure.
+    """Score [stop] and ghost nodes; the module's docstring describes the structure.
 
     Args:
         rgb_width: number of RGB features per view.
@@ -88,9 +90,9 @@ class Planner(TextReader):
         text_layers: transformer layers over the text.
         layers: cross-modal layers.
         dropout: dropout rate.
-        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). With it, nodes and
-            ghosts are means over their views, weighted by the reliability of the encoder features.
-            If None, all views have equal weights.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). The weigher weights
+            the views of a node or ghost by the reliability of the encoder features. If None, all
+            views have equal weights.
         vocabulary: words of the instructions, or None for the default vocabulary.
     """
 
@@ -125,7 +127,8 @@ class Planner(TextReader):
         self.stop = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
         self.distance = nn.Linear(width, 1)
         self.grounding = nn.Linear(width, 1)
-        # created last, so that the initial values of the other weights do not depend on it
+        # this module is created last, so that it does not change the initial values of other
+        # weights
         self.fusion = None if fusion is None else weigher(rgb_width + depth_width, **fusion)
         yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
         self.register_buffer(
@@ -142,7 +145,7 @@ class Planner(TextReader):
     def look(self, views: Tensor) -> Tensor:
         """Return view tokens [P, 12, width] of view features [P, 12, view_width].
 
-        With ``fusion`` a last channel holds the reliability of each view (``looked_width``).
+        With ``fusion``, one more channel holds the reliability of each view.
         """
         rgb, concepts, depth = views.split(self.widths, -1)
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
@@ -176,9 +179,10 @@ class Planner(TextReader):
             batch: the padded decisions.
 
         Returns:
-            "logits" [B, 1 + N + G], -inf where not allowed; "distance" [B, 1 + N + G], predicted
-            metres to the goal divided by 5; "grounding" [B, 12], logits that a view shows the
-            goal's landmark; "nodes" [B, 1 + N + G, width], the features that distillation compares.
+            "logits" [B, 1 + N + G], -inf for tokens that are not allowed; "distance" [B, 1 + N +
+            G], the predicted metres to the goal, divided by 5; "grounding" [B, 12], one logit per
+            view for whether it shows the goal's landmark; "nodes" [B, 1 + N + G, width], the
+            features that distillation compares.
         """
         weights = None if self.fusion is None else views[..., -1:]
         views = views if self.fusion is None else views[..., :-1]

@@ -1,8 +1,8 @@
 """Run several episodes in parallel for imitation learning, and batch their decisions.
 
-The oracle chooses among the map's ghosts; a schedule sets the fraction of decisions that follow the
-oracle. A *walk* executes decisions: ``LiveWalk`` runs in any world, and ``StoredWalk``
-(``stored.py``) moves between poses with stored features.
+The oracle chooses among the ghost nodes of the map; a schedule sets the fraction of decisions that
+follow the oracle. A *walk* executes the decisions of one episode. The class ``LiveWalk`` executes
+decisions in any world, and ``StoredWalk`` (``stored.py``) moves between poses with stored features.
 """
 
 from __future__ import annotations
@@ -24,10 +24,10 @@ from mitigate.core.observation import CLEAN_DEPTH, CLEAN_RGB, DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
 
-# the oracle stops within this many metres of the goal if the world counts it as success
+# the oracle stops at most this many metres from the goal, if the world counts that as success
 STOP_WITHIN = 1.0
-STOP_BEST = 1.75  # the same distance if no ghost is closer to the goal
-# temperature in metres with which ghosts that are about equally good share the target
+STOP_BEST = 1.75  # this limit applies if no ghost node is closer to the goal
+# temperature in metres; ghost nodes with similar costs get similar target probabilities
 _TEMPERATURE = 0.3
 STOP_WEIGHT = 1.5  # weight of stop decisions, which are about one decision in six
 FARTHEST = 25.0  # targets of the distance loss are clipped at this many metres
@@ -35,9 +35,7 @@ _TRAVEL = 0.4  # weight of the path to a ghost relative to the path from the gho
 
 
 class Walk(Protocol):
-    """The state of one rollout: pose, motion along routes, the expert, and the end of the
-    episode.
-    """
+    """One rollout: its pose, its expert, whether it has ended, and how it moves along a route."""
 
     episode: Episode
 
@@ -50,7 +48,7 @@ class Walk(Protocol):
     def go(self, route: list[np.ndarray]) -> None: ...
 
 
-# function that encodes the panoramas of several walks, as views [12, F] and waypoints [n, 2]
+# function that returns, for each of several walks, view features [12, F] and waypoints [n, 2]
 Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
@@ -60,7 +58,7 @@ class Step:
 
     Attributes:
         decision: the input of the planner.
-        target: float32 [1 + g] over [stop] and ghosts, summing to 1.
+        target: float32 [1 + g], the probabilities of [stop] and of the ghosts.
         metres: geodesic distance in metres to the goal from the current position, each node and
             each ghost.
     """
@@ -81,16 +79,14 @@ class Trace:
 
 @dataclass
 class Piece:
-    """Rollouts of several episodes: their traces, and the observations [P, ...] of all
-    decisions.
-    """
+    """The traces of several episodes, and the observations [P, ...] of all their decisions."""
 
     traces: list[Trace]
     seen: dict[str, np.ndarray]
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """Return a decision with the answer of the shortest-path oracle.
+    """Return the decision with the oracle's answer, which is based on shortest paths.
 
     Raises:
         ValueError: The world's expert does not provide distances.
@@ -118,7 +114,7 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
 class LiveWalk:
     """A rollout in a world, from the start of ``episode``.
 
-    ``looks`` holds the observation of each decision, by name.
+    ``looks`` holds the frames and labels of each decision, by name.
 
     Args:
         world: any world.
@@ -146,7 +142,7 @@ class LiveWalk:
             entries |= dict(zip((CLEAN_RGB, CLEAN_DEPTH), clean, strict=True))
         truth: Mapping[str, np.ndarray] = self.world.truth() if self.labels else {}
         entries |= {name: truth[name] for name in self.labels if name in truth}
-        # copies, because a world may reuse its arrays
+        # these are copies, because a world may reuse its arrays
         self.looks.append({name: np.array(value) for name, value in entries.items()})
 
     def pose(self) -> np.ndarray:
@@ -175,19 +171,19 @@ def roll_out(
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run all walks until the oracle stops, the limit is reached or the episode ends.
+    """Run all episodes; each runs until the oracle stops, the limit is reached or the episode ends.
 
     Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
-    from the planner's distribution over ghosts. The planner's stop is never taken, so that traces
+    from the planner's distribution over ghosts. The planner never stops an episode, so that traces
     also contain the decisions after a wrong stop.
 
     Args:
         planner: the planner.
         tokens: int64 [E, L], the instructions.
-        walks: one walk per episode.
-        look: function that encodes the panoramas of walks.
+        walks: one :class:`Walk` per episode.
+        look: function that encodes the current panorama of each walk.
         follow_oracle: probability of following the oracle.
-        rngs: one generator per walk, so that its draws do not depend on the other walks.
+        rngs: one random generator per walk, so that its samples do not depend on the other walks.
         limit: maximum number of decisions.
     """
     graphs = [TopologicalMap() for _ in walks]
@@ -231,7 +227,7 @@ def _sample_ghosts(
     tokens_of: list[list[Tensor]],
     rngs: Sequence[np.random.Generator],
 ) -> list[int]:
-    """Sample a ghost for each walk in ``rows`` from the planner's distribution."""
+    """Sample a ghost node from the planner's distribution for each episode in ``rows``."""
     offsets = np.cumsum([0, *(len(tokens_of[i]) for i in rows)])[:-1]
     views = torch.stack([t for i in rows for t in tokens_of[i]])
     decisions = [traces[i].steps[-1].decision for i in rows]
@@ -248,9 +244,9 @@ def _sample_ghosts(
 class MapDecisions(DecisionBatch):
     """B padded decisions of E episodes with P panoramas, and the oracle's answers.
 
-    ``target`` and ``metres`` are [B, 1 + N + G], ``weight`` [B], ``tokens`` int64 [E, L].
-    Observations are either features (``views``, ``clean_views`` [P, 12, F]) or frames. Labels are
-    None if the world lacks them.
+    ``target`` and ``metres`` have the shape [B, 1 + N + G], ``weight`` has [B], and ``tokens`` is
+    int64 [E, L]. Observations are either features (``views``, ``clean_views`` [P, 12, F]) or
+    frames. Labels are None if the world lacks them.
     """
 
     target: Tensor
@@ -270,7 +266,7 @@ class MapDecisions(DecisionBatch):
 
 
 def join(pieces: Sequence[Piece], tokens: Callable[[list[str]], Tensor]) -> MapDecisions:
-    """Pad the decisions of all traces with their targets; ``tokens`` encodes instructions."""
+    """Join all decisions and targets into one padded batch; ``tokens`` encodes instructions."""
     traces = [trace for piece in pieces for trace in piece.traces]
     steps = [(row, step) for row, trace in enumerate(traces) for step in trace.steps]
     offsets = np.cumsum([0, *(len(trace.steps) for trace in traces)])

@@ -1,10 +1,11 @@
 """Stored features of whole scenes, for training without rendering.
 
 ``ScenesTask`` computes the features of an agent's encoders in worker processes, on a lattice of
-poses in each scene. ``Store`` keeps them in memory-mapped folders, which worker processes share,
-and ``StoredWalk`` runs episodes on them. A scene may have corrupted *variants*, each with one fixed
-corruption. Only training imports this module, because tensordict is as slow to import as torch.
-Agents are of class :class:`TopologicalAgent`, whose module imports this one.
+poses in each scene. ``Store`` keeps the features in memory-mapped folders, which worker processes
+share. ``StoredWalk`` runs episodes on stored features. A scene may have corrupted *variants*, each
+with one fixed corruption. Only training imports this module, because tensordict is as slow to
+import as torch. The agents belong to the class :class:`TopologicalAgent`, whose module imports this
+module.
 """
 
 from __future__ import annotations
@@ -41,13 +42,13 @@ from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 from mitigate.worlds.world import depth_sensor, expert_of
 
 SPACING = 0.5  # metres between poses
-# fields of a schedule that select which rollouts get a variant, but do not change its content
+# fields of a schedule that decide which rollouts use a corrupted variant, not what it contains
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
-WORTH = 4  # minimum number of scenes per process (heuristic): about 5 s each
+WORTH = 4  # minimum number of scenes per process (heuristic); one scene takes about 5 s
 ON_GPU = 8  # maximum number of processes that encode on one GPU; each takes 0.5 GB
 _BATCH = 16  # number of panoramas that are encoded at once
 
-Job = tuple[str, Sequence[int]]  # a scene, and the numbers of its variants
+Job = tuple[str, Sequence[int]]  # the name of a scene, and the numbers of its variants
 
 
 @tensorclass
@@ -81,7 +82,7 @@ class Features:
 
     @torch.no_grad()
     def blank(self, agent: Any, size: int) -> None:
-        """Replace features of inputs that the agent is blind to by features of blank frames."""
+        """Use features of blank frames for the inputs that the agent's option ``blind`` names."""
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
         blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
@@ -99,9 +100,8 @@ class StoredWalk:
     """A rollout on stored features, in which each move ends at the lattice pose nearest to its
     target.
 
-    ``landmark_views`` holds, for each observation, which views show the goal's landmark: float32
-    [12].
-    Low-level steps are not counted, so the episode is never ``done``.
+    For each observation, ``landmark_views`` marks the views that show the goal's landmark (float32
+    [12]). Low-level steps are not counted, so the episode is never ``done``.
     """
 
     done = False
@@ -116,7 +116,7 @@ class StoredWalk:
         self.landmark_views: list[np.ndarray] = []
 
     def look(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return the views and waypoints at the current pose."""
+        """Return the view features and waypoints at the current pose."""
         features = self.features
         waypoints = features.waypoints[self.index]
         waypoints = waypoints[waypoints[:, 1] > 0].copy()
@@ -139,7 +139,7 @@ class StoredWalk:
 
 
 def _turns(heading: float) -> int:
-    """Return a heading as a number of 30-degree steps, counter-clockwise."""
+    """Convert a heading to a number of counter-clockwise steps of 30 degrees."""
     return int(np.round(np.degrees(heading) / VIEW_STEP_DEGREES)) % VIEWS
 
 
@@ -147,9 +147,9 @@ def _turns(heading: float) -> int:
 class ScenesTask:
     """Compute the features of scenes in worker processes (``mitigate/core/workers.py``).
 
-    The result of a job is a list of (variant, entries of ``ScenePoses`` by name). Variant 0 is
-    clean. For each other variant, ``schedule`` samples a corruption with ``seed``. ``kind`` is the
-    floating-point precision of the encoders.
+    The result of a job is a list of pairs: a variant's number, and the entries of its
+    ``ScenePoses``. Variant 0 is clean. For each other variant, ``schedule`` samples a corruption
+    with ``seed``. ``kind`` is the floating-point precision of the encoders.
     """
 
     agent: Any
@@ -177,7 +177,7 @@ class ScenesTask:
             torch.set_num_threads(threads)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[list[tuple[int, dict[str, np.ndarray]]]]:
-        """Yield the entries of the variants of each scene."""
+        """Yield the result of each job."""
         for scene, variants in jobs:
             yield list(self._poses(scene, variants))
 
@@ -201,7 +201,7 @@ class ScenesTask:
             yield variant, entries | {name: features[name] for name in ("waypoints", "seen")}
 
     def _corrupted(self, frames: list[tuple], name: str) -> list[tuple]:
-        """Return the frames of all poses under the corruption of the variant ``name``."""
+        """Return the corrupted frames of all poses for the variant ``name``."""
         assert self.schedule is not None
         schedule = replace(self.schedule, clean_share=0.0)
         sensor = depth_sensor(self.world.sensors)
@@ -216,7 +216,7 @@ class ScenesTask:
 
 
 def lattice(points: np.ndarray) -> np.ndarray:
-    """Return indices of the points [n, 2] that are nearest to the points of a lattice."""
+    """Return the indices of those ``points`` [n, 2] that are nearest to the points of a lattice."""
     key = np.floor(points / SPACING).astype(int)
     middle = np.abs(points / SPACING - key - 0.5).sum(1)
     order = np.lexsort((middle, key[:, 1], key[:, 0]))
@@ -238,8 +238,9 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Return features of frames by name, except for sensors whose frames equal those in
-    ``known``.
+    """Return features of frames by name.
+
+    Sensors are left out if their frames are the same as in ``known``.
     """
     seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
     features = {"seen": seen}
@@ -278,20 +279,20 @@ def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
 
 
 class Store:
-    """The features of an agent's encoders in all scenes of a world.
+    """The stored features that an agent's encoders compute in all scenes of a world.
 
     Args:
         agent: the agent whose encoders are used.
-        world: function that returns a world which renders from any pose, has an expert, and lists
-            the goal's landmarks in the entry "seen" of its truth.
+        world: function that returns a world. The world must render from any pose and have an
+            expert. The entry "seen" of its truth must list the objects visible in each view.
         root: parent folder of the stores, which has one subfolder per set of encoders.
-        schedule: samples the corruption of each variant; its clean share is the fraction of
-            rollouts on the clean scene.
+        schedule: samples the corruption of each variant. Its ``clean_share`` is the fraction of
+            rollouts on clean scenes.
         variants: number of corrupted variants per scene.
         seed: corruption seed.
 
     Raises:
-        ValueError: The number of variants is above 0, but there is no schedule that corrupts.
+        ValueError: The number of variants is above 0, but no schedule samples corruptions.
     """
 
     def __init__(
@@ -329,12 +330,12 @@ class Store:
     def build(self, workers: int | None = None) -> None:
         """Compute the features that are not stored yet.
 
-        The store holds features of inputs that are not blanked (:meth:`Features.blank`). The
+        The features are stored without blanking inputs; :meth:`Features.blank` does that later. The
         features do not depend on the number of processes.
 
         Args:
-            workers: number of worker processes. None uses one per core if there is enough work, and
-                0 uses only this process.
+            workers: number of worker processes. None starts one process per core if there is enough
+                work, and 0 uses only this process.
         """
         for folder in (self.folder, self.corrupted) if self.variants else (self.folder,):
             delete_abandoned(make_folder(folder).glob(".*.tmp"))
@@ -362,12 +363,14 @@ class Store:
                 progress.advance()
 
     def path(self, scene: str, variant: int = 0) -> Path:
-        """Return the folder of a scene's variant; variant 0 is clean."""
+        """Return the folder that stores a variant of a scene; variant 0 is clean."""
         name = scene.replace("/", "-")
         return self.corrupted / f"{name}-{variant}" if variant else self.folder / name
 
     def features(self, scene: str, variant: int = 0) -> Features:
-        """Return the features of a scene, with the agent's blind inputs blanked."""
+        """Return the features of a scene; inputs that the agent's option ``blind`` names are
+        blanked.
+        """
         key = (scene, variant)
         if key not in self._loaded:
             self._loaded[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]
@@ -411,12 +414,14 @@ class Store:
 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
-    """Write the entries of ``ScenePoses`` atomically: to a temporary folder, which is renamed."""
+    """Write the entries of ``ScenePoses`` atomically: to a temporary folder, which is then
+    renamed.
+    """
     tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
     poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
     suffix = f".{os.getpid()}.tmp"
     with tempfile.TemporaryDirectory(suffix, f".{path.name}.", path.parent) as aside:
-        # makes it readable for other users, unlike a temporary folder
+        # a new subfolder is readable for other users, unlike the temporary folder
         draft = Path(aside) / path.name
         draft.mkdir()
         poses.memmap(draft, num_threads=0)  # type: ignore[attr-defined]
@@ -428,6 +433,8 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
 
 
 def _content(schedule: Schedule) -> tuple[Any, ...]:
-    """Return the settings and corruption versions that, besides the seed, determine a variant."""
+    """Return the settings and corruption versions that, together with the seed, determine a
+    variant.
+    """
     names = (*schedule.names, *(BROAD if schedule.broad_share else ()))
     return replace(schedule, **UNUSED), SUITE_VERSION, [version(name) for name in names]

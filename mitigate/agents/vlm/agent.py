@@ -2,7 +2,8 @@
 
 The logits of a decision are the log-likelihoods of the allowed answers, so every objective that
 trains on decisions (imitation, distillation, self-distillation) also trains this agent. Only LoRA
-weights are trained. ``save`` writes them as a PEFT folder, which other code can load.
+weights are trained. ``save`` writes the LoRA weights as a PEFT folder, which other programs can
+load.
 """
 
 from __future__ import annotations
@@ -52,36 +53,37 @@ from mitigate.worlds.world import World
 
 INSTALL = "pip install -e '.[train,vlm]'"
 CONFIG, BASE = "adapter_config.json", "base.json"  # files of a saved agent, next to its weights
-LIMIT = 90  # maximum decisions of a training rollout (heuristic), as for the recurrent agent
+# maximum number of decisions in a training rollout (heuristic), as for the recurrent agent
+LIMIT = 90
 
 
 class VLMAgent(AnsweringAgent, nn.Module):
     """Choose the likeliest of the allowed answers with a vision-language model.
 
-    The model sees the instruction, earlier frames and the current view, and is never asked to
-    generate text: each allowed answer is scored, so every decision is one of them.
+    The model sees the instruction, earlier frames and the current view. It never generates text: it
+    scores each allowed answer, so every decision is an allowed answer.
 
     Args:
         model: folder or hub id of a model for ``AutoModelForImageTextToText`` with its processor.
         precision: precision of the frozen weights, one of ``PRECISIONS`` ("int8" and "nf4" need
             bitsandbytes).
-        lora: ``r``, ``alpha``, ``dropout``, and names of linear modules: ``language`` for those of
-            the language model, ``vision`` for the others. None adds no adapter.
+        lora: ``r``, ``alpha``, ``dropout``, and names of linear modules: ``language`` lists modules
+            of the language model, and ``vision`` lists other modules. If None, no LoRA is added.
         answers, history, task, system_prompt: see ``AnsweringAgent``.
         images: keyword arguments of the image processor, such as ``{"max_pixels": 100352}``.
-        checkpointing: whether the backward pass computes each decision again, so that only one
-            decision is in memory.
+        checkpointing: whether the backward pass computes each decision a second time, so that
+            memory holds the activations of only one decision.
         adapters: must be None; recipes that insert adapters into encoders do not fit this agent.
 
     Raises:
         ValueError: A setting is invalid, a package is missing, or the model cannot be loaded.
-        FileNotFoundError: There is no model folder.
+        FileNotFoundError: The folder of the model does not exist.
     """
 
     frozen = ("network",)
     own_config_only = ("model",)
     brings_weights = True
-    base_sha256: Tensor  # uint8 [32], of the model's weights
+    base_sha256: Tensor  # uint8 [32], the sha256 of the model's weights
     _answer_ids: Tensor  # [n, L]
     _is_answer: Tensor  # bool [n, L]
 
@@ -134,14 +136,15 @@ class VLMAgent(AnsweringAgent, nn.Module):
             network: Any = load_network(AutoModelForImageTextToText, folder, precision)
             progress.advance()
         sha = torch.tensor(list(bytes.fromhex(files_sha256(folder))), dtype=torch.uint8)
-        self.register_buffer("base_sha256", sha)  # makes the base part of the fingerprint
+        # as a buffer, the sha256 is part of the fingerprint
+        self.register_buffer("base_sha256", sha)
         network.requires_grad_(False)
         self.network: Any = _with_lora(network, lora) if lora else network
         keep_lora_only(self)
         self._read_template()
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments that determine the answers, without ``model``.
+        """Return the constructor's arguments that determine the answers, except ``model``.
 
         ``base_sha256`` identifies the model.
         """
@@ -154,7 +157,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # prompts and likelihoods ------------------------------------------------------------------
 
     def _read_template(self) -> None:
-        """Read special tokens and the tokens of each answer from the model's chat template.
+        """Read the special tokens, and the tokens of each answer, from the model's chat template.
 
         Raises ValueError for a chat template that omits a part of the conversation.
         """
@@ -183,7 +186,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
                     "cannot be scored. Choose a different model or agent.answers."
                 )
             space = before[len(prompt) :] if before.startswith(prompt) else ""
-            whole = space + text + after.rstrip()  # with the mark that ends the turn
+            whole = space + text + after.rstrip()  # with the token that ends the turn
             rows.append(tokenizer(whole, add_special_tokens=False)["input_ids"])
         width = max(map(len, rows))
         ids = torch.tensor([row + row[-1:] * (width - len(row)) for row in rows])
@@ -204,8 +207,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
     def _prompt(self, instruction: str, system: str | None, images: int) -> str:
         """Return the text of the conversation before the answer.
 
-        Special tokens in the instruction and in the system prompt are removed, because they could
-        end the turn of the user or stand for an image.
+        Special tokens in the instruction and in the system prompt are removed, because such a token
+        could end the user's turn or stand for an image.
         """
         instruction = self._special.sub(" ", instruction)
         system = None if system is None else self._special.sub(" ", system)
@@ -235,7 +238,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
         return likelihoods(self.network, inputs, self._answer_ids, self._is_answer)
 
     def logits(self, memory: Memory) -> Tensor:
-        """Return the log-likelihood [n] of each answer to the last frame of ``memory``."""
+        """Return the log-likelihood [n] of each answer for the last frame of ``memory``."""
         frames = [memory.frames[i] for i in views_of(len(memory.frames), self.history)]
         inputs = self._inputs(memory.instruction, memory.system, frames)
         return check_logits(self._likelihoods(inputs), self)
@@ -248,7 +251,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # training ---------------------------------------------------------------------------------
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the network, of which only LoRA weights are trained (``frozen``)."""
+        """Return the network; all its weights except LoRA's are frozen."""
         return {"network": self.network}
 
     @torch.no_grad()
@@ -276,7 +279,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
         return piece_of(runs, self.history)
 
     def join(self, pieces: Sequence[Piece]) -> AnswerDecisions:
-        """Join the decisions of several pieces into one batch."""
+        """Join the decisions of several calls of :meth:`collect` into one batch."""
         return join_pieces(pieces, len(self.answers))
 
     def decide(self, decisions: AnswerDecisions, *, clean: bool = False) -> Output:
@@ -301,9 +304,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # files ------------------------------------------------------------------------------------
 
     def save(self, folder: str | Path) -> None:
-        """Write the LoRA weights in PEFT's folder format, with the sha256 of their base.
+        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model.
 
-        Raises ValueError if there is no adapter.
+        Raises ValueError if the agent has no LoRA weights.
         """
         with folders.write_folder(folder, "agent") as draft:
             tensors = {name: value.cpu().clone() for name, value in self._adapter().items()}
@@ -311,15 +314,15 @@ class VLMAgent(AnsweringAgent, nn.Module):
             self.network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
             for file in draft.iterdir():
                 if file.name not in (CONFIG, PEFT_WEIGHTS):
-                    file.unlink()  # PEFT's README template
+                    file.unlink()  # this is PEFT's template of a README
             base = {"model": self.model, "sha256": self._base()}
             write_text(draft / BASE, json.dumps(base, indent=1) + "\n")
 
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.
 
-        Raises FileNotFoundError if the folder holds none, and ValueError if they are damaged, or
-        belong to a different base or to other modules.
+        Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
+        weights are damaged, or were trained for a different base model or for other modules.
         """
         from peft import set_peft_model_state_dict
 
@@ -329,12 +332,14 @@ class VLMAgent(AnsweringAgent, nn.Module):
                 f"There is no LoRA adapter at {folder}: expected {PEFT_WEIGHTS}, which `make train "
                 "ARGS=agent=vlm` and PEFT write."
             )
-        if (file.parent / BASE).is_file():  # a folder of other code has no such file
+        # this file is missing in folders that other programs wrote
+        if (file.parent / BASE).is_file():
             base = read_object(file.parent / BASE, "Fetch the folder again, or train again.")
             if base.get("sha256") != self._base():
                 raise ValueError(
                     f"The adapter {folder} was trained on the model {str(base.get('model')):.200} "
-                    f"with another sha256 than {self.model}. Set agent.model to that model."
+                    f"with another sha256 than that of {self.model}. Set agent.model to the model "
+                    "of the adapter."
                 )
         tensors, expected = load_tensors(file), self._adapter()
         wrong = sorted(
@@ -368,7 +373,7 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
     """Return the log-likelihood [n] of each answer after a prompt.
 
     The prompt is computed once, and its keys and values are repeated for the answers. Answers are
-    padded on the right, which causal attention does not see.
+    padded on the right, and causal attention ignores later tokens.
 
     Args:
         network: a causal model of transformers.
@@ -377,21 +382,22 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
         mask: bool [n, L], False for padding.
     """
     prompt = network(**inputs, use_cache=True, logits_to_keep=1)
-    name = "cache" if "cache" in prompt else "past_key_values"  # transformers 5.24 renamed it
+    # transformers 5.24 renamed this argument
+    name = "cache" if "cache" in prompt else "past_key_values"
     prompt[name].batch_repeat_interleave(len(ids))
     logits = prompt.logits[:, -1:].expand(len(ids), -1, -1)
     if ids.shape[1] > 1:
         rest = network(input_ids=ids[:, :-1], use_cache=True, **{name: prompt[name]})
         logits = torch.cat([logits, rest.logits], 1)
     each = logits.float().log_softmax(-1).gather(-1, ids[..., None])[..., 0]
-    for module in network.modules():  # state of Qwen's models, which depends on the last prompt
+    for module in network.modules():  # Qwen's models keep this state of the last prompt
         if vars(module).get("rope_deltas") is not None:
             module.rope_deltas = None
     return (each * mask).sum(-1)
 
 
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
-    """Add LoRA to the linear modules of ``network`` that ``lora`` names.
+    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``.
 
     Raises ValueError if a name matches no module.
     """

@@ -1,7 +1,7 @@
 """Define the answers that a vision-language agent may give, and read them from text.
 
-An answer such as "forward 75 cm" stands for one low-level action that is taken several times, as in
-NaVid (Zhang et al., RSS 2024). The step sizes are those of VLN-CE: 25 cm and 15 degrees.
+An answer such as "forward 75 cm" repeats one low-level action, as in NaVid (Zhang et al., RSS
+2024). The step sizes are those of VLN-CE: 25 cm and 15 degrees.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ from typing import NamedTuple
 from mitigate.core.names import unknown
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
 
-MOST = 3  # most low-level actions of an answer: 75 cm and 45 degrees, as in NaVid
-LONGEST = 200  # characters of an answer that are read (heuristic); the longest answer has 22
+MOST = 3  # maximum number of low-level actions in an answer: 75 cm or 45 degrees, as in NaVid
+# number of characters of an answer that are read (heuristic); the longest answer has 22
+LONGEST = 200
 
 
 class Answer(NamedTuple):
-    """An answer of the model: ``text``, and the low-level ``action`` that it repeats."""
+    """An answer of the model: its ``text``, and the low-level ``action`` that it stands for,
+    repeated.
+    """
 
     text: str
     action: int
@@ -46,7 +49,7 @@ ANSWERS: dict[str, tuple[Answer, ...]] = {
 
 
 def answers_of(style: str) -> tuple[Answer, ...]:
-    """Return the answers of ``style``, of which "stop" is the first.
+    """Return the answers of ``style``; the first answer is "stop".
 
     Raises ValueError for an unknown style.
     """
@@ -56,10 +59,10 @@ def answers_of(style: str) -> tuple[Answer, ...]:
 
 
 def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
-    """Return the answer that ``text`` consists of, or None if it is not exactly one of ``answers``.
+    """Return the answer whose text is exactly ``text``, or None if there is no such answer.
 
-    Case, spaces, and a full stop at the end do not matter. Everything else does: a sentence that
-    contains an answer is not an answer, and neither is a distance that is not in ``answers``.
+    Case, spaces, and a full stop at the end do not matter. A sentence that contains an answer and
+    other words is not an answer. A distance that is not in ``answers`` is not an answer either.
     """
     words = re.sub(r"(?<=\d)(?=[a-z])", " ", text.lower().strip().removesuffix("."))  # "75cm"
     return {answer.text: answer for answer in answers}.get(" ".join(words.split()))

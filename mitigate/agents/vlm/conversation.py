@@ -46,7 +46,7 @@ class Memory:
 
 
 def views_of(count: int, history: int) -> list[int]:
-    """Return the frames that a decision sees, in order: the last one and earlier ones.
+    """Return the indices of the frames that the model sees, from the earliest to the last.
 
     Args:
         count: number of frames so far.
@@ -69,7 +69,7 @@ class AnsweringAgent(Agent):
         answers: a style in ``ANSWERS``: "actions" or "navid".
         history: maximum number of earlier frames that the model sees.
         task: text of the user; "{instruction}" and "{answers}" in it are replaced.
-            None is ``TASK``.
+            None means ``TASK``.
         system_prompt: text of the system, or None to send none.
 
     Raises:
@@ -84,7 +84,7 @@ class AnsweringAgent(Agent):
     def prepare(
         self, answers: str, history: int, task: str | None, system_prompt: str | None
     ) -> None:
-        """Set the arguments above; constructors call it."""
+        """Set the arguments that the class's docstring describes; constructors call this."""
         self.answers = answers_of(answers)
         if not 0 <= history <= MOST_FRAMES:
             raise ValueError(f"agent.history must be from 0 to {MOST_FRAMES}, got {history}.")
@@ -99,11 +99,11 @@ class AnsweringAgent(Agent):
         self.system_prompt = system_prompt
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
-        """Return the answer of each episode to its last frame."""
+        """Return, for each episode, the model's answer to its last frame."""
         raise NotImplementedError(f"{type(self).__name__} defines no ask(memories)")
 
     def messages(self, instruction: str, system: str | None, images: Sequence[Any]) -> list[dict]:
-        """Return the conversation. The entries of ``images``, one per frame, precede the text."""
+        """Return the conversation, in which ``images`` (one entry per frame) precede the text."""
         text = question(self.task, self.answers, instruction)
         user = {"role": "user", "content": [*images, {"type": "text", "text": text}]}
         if system is None:
@@ -111,7 +111,10 @@ class AnsweringAgent(Agent):
         return [{"role": "system", "content": [{"type": "text", "text": system}]}, user]
 
     def begin(self, instruction: str) -> Memory:
-        """Return the memory of a new episode; raise TypeError if the instruction is not a str."""
+        """Return the memory of a new episode.
+
+        Raises TypeError if the instruction is not a string.
+        """
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         return Memory(instruction, self.system_prompt)
@@ -121,7 +124,7 @@ class AnsweringAgent(Agent):
     ) -> list[int]:
         """Return one low-level action per episode.
 
-        An episode with pending actions of its last answer ignores its observation.
+        While actions of the last answer are pending in an episode, its observation is ignored.
         """
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:
@@ -137,13 +140,15 @@ class AnsweringAgent(Agent):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the next low-level action.
 
-        Raises RuntimeError before the first ``reset``, and the errors of
-        ``agents/observation.py``.
+        Raises RuntimeError if ``reset`` was not called, and raises the errors of
+        ``agents/observation.py`` for invalid observations.
         """
         check_started(self._memory is not None)
         return self.act_all([observation], [self._memory])[0]  # type: ignore[list-item]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Drop the rest of the last answer after a motion that the agent did not choose."""
+        """Discard the pending actions of the last answer after a motion that the agent did not
+        choose.
+        """
         assert self._memory is not None, "reset first"
         self._memory.pending.clear()

@@ -17,7 +17,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 CONVERSATIONS = "conversations.jsonl"
-LIMIT = 500  # maximum decisions of an episode, VLN-CE's limit of steps
+LIMIT = 500  # maximum number of decisions per episode, equal to VLN-CE's limit of steps
 
 
 def write_conversations(
@@ -31,14 +31,15 @@ def write_conversations(
 ) -> int:
     """Run the expert of ``world``, and write one JSON line per decision to ``conversations.jsonl``.
 
-    A line holds "id", "episode_id", "images" (paths below ``folder``, the current view last) and
-    "conversations": the question "human", in which "<image>" stands for each image, and the answer
-    "gpt". For corrupted frames, wrap the world in ``mitigate.worlds.world.Corrupted``.
+    A line holds "id", "episode_id", "images" and "conversations". "images" are paths below
+    ``folder``; the last image is the current view. "conversations" holds the question ("human"), in
+    which one "<image>" stands for each image, and the answer ("gpt"). For corrupted frames, wrap
+    the world in ``mitigate.worlds.world.Corrupted``.
 
     Args:
         world: the world, which must have an expert and one camera.
         episodes: the episodes.
-        folder: the folder, in which frames are PNG files ``frames/EPISODE/DECISION.png``.
+        folder: the output folder; the frames in it are PNG files ``frames/EPISODE/DECISION.png``.
         answers: style of the answers, see ``AnsweringAgent``.
         history: maximum number of earlier frames.
         task: text of the question.
@@ -53,7 +54,7 @@ def write_conversations(
     with atomic_text(make_folder(folder) / CONVERSATIONS) as file:
         for number, episode in enumerate(episodes):
             memory = Memory(episode.instruction.text, None)
-            rng = np.random.default_rng(0)  # the expert decides at every step
+            rng = np.random.default_rng(0)  # never used, because the expert decides at every step
             expert_share = 1.0
             targets, _ = run_episode(
                 world, episode, memory, _no_agent, allowed, expert_share, rng, False, LIMIT

@@ -6,9 +6,9 @@ from typing import Any
 
 
 def load_processor(place: str) -> Any:
-    """Return the processor of the model at ``place``, a folder or hub id, without its video part.
+    """Return the processor, without its video part, of the model ``place`` (a folder or hub id).
 
-    The agent sends images only, and the video processors of transformers need torchvision.
+    The agent sends images only, and the video processors of transformers would require torchvision.
     """
     from transformers import AutoConfig
     from transformers.models.auto.processing_auto import PROCESSOR_MAPPING
@@ -24,5 +24,5 @@ def load_processor(place: str) -> Any:
             return [name for name in kind.get_attributes() if "video" not in name]
 
     processor = ImagesOnly.from_pretrained(place, trust_remote_code=False)
-    processor.__class__ = kind  # a local class cannot be pickled
+    processor.__class__ = kind  # restore the class, because a local class cannot be pickled
     return processor

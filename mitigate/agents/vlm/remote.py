@@ -1,4 +1,4 @@
-"""The remote agent asks a served vision-language model over HTTP (OpenAI-compatible chat).
+"""The remote agent asks a vision-language model over HTTP (OpenAI-compatible chat).
 
 The model runs on a different machine, for example in vLLM. Several episodes run at once, each with
 its own request, deadline and retries.
@@ -25,23 +25,23 @@ OPTIONS = {"temperature": 0, "max_tokens": 32}
 
 
 class RemoteAgent(AnsweringAgent):
-    """Take the answers of a chat model that reads images.
+    """Choose each action by asking a chat model that reads images.
 
     An answer that is not exactly one of the allowed answers is counted and reported, and
     ``otherwise`` is taken instead. If the endpoint gives no answer after all retries, the
-    evaluation stops with an error. The rows that are finished stay in their file, and the same
-    command measures the missing ones.
+    evaluation stops with an error. Finished rows stay in their file, and running the same command
+    again adds the missing rows.
 
     Args:
         url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
         model: name of the model at the endpoint.
         answers, history, task, system_prompt: see ``AnsweringAgent``.
-        otherwise: the allowed answer that replaces an unreadable one; None is the shortest turn to
-            the left.
+        otherwise: the allowed answer that replaces an unreadable answer. None means the shortest
+            turn to the left.
         together: number of episodes that run at once.
         timeout: seconds for one request.
         retries: number of retries of a request after a temporary failure.
-        pause: seconds before the first retry, doubled before each later one.
+        pause: seconds before the first retry; the pause doubles before each later retry.
         key: environment variable with the API key.
         options: additional fields of the request.
 
@@ -100,7 +100,7 @@ class RemoteAgent(AnsweringAgent):
         self.unreadable = 0
 
     def settings(self) -> dict[str, Any]:
-        """Return the arguments that determine the actions; deadlines and retries do not."""
+        """Return the arguments that determine the actions; deadlines and retries are left out."""
         return dict(self._settings)
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
@@ -115,7 +115,7 @@ class RemoteAgent(AnsweringAgent):
         return [self._read(text, memory) for text, memory in zip(texts, memories, strict=True)]
 
     def episode_figures(self, memory: Memory | None) -> dict[str, int]:
-        """Return the number of unreadable answers, for the row of the episode."""
+        """Return the number of unreadable answers, which is stored in the row of the episode."""
         memory = memory or self._memory
         return {} if memory is None else {"unreadable_answers": memory.unreadable}
 
@@ -139,7 +139,8 @@ class RemoteAgent(AnsweringAgent):
             return answer
         memory.unreadable += 1
         self.unreadable += 1
-        if self.unreadable & (self.unreadable - 1) == 0:  # at 1, 2, 4, 8 ... unreadable answers
+        # warn at 1, 2, 4, 8 ... unreadable answers
+        if self.unreadable & (self.unreadable - 1) == 0:
             say(
                 f"{self.client.model}: {self.unreadable} of {self.answered} answers are not one "
                 f"of the allowed answers, the last {short(text)}; each counts as "

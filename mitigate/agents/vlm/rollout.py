@@ -61,11 +61,11 @@ def run_episode(
 ) -> tuple[list[int], list[np.ndarray]]:
     """Run a training episode, and add its frames to ``memory``.
 
-    A decision of the expert repeats the expert's action as long as the expert agrees, up to the
-    longest answer. The target of a decision is the longest answer that the expert agreed with
-    during the actions that were taken, or else the shortest one that begins with the expert's
-    action. The agent's STOP is never taken, so that it also learns from the steps after a wrong
-    STOP.
+    If the expert decides, its action is repeated while the expert still chooses it, up to the
+    longest answer. The training target of a decision is the longest answer whose actions all agreed
+    with the expert. If the first action already disagreed, the target is the shortest answer with
+    the expert's action. The agent's STOP is never executed, so that the agent also learns from
+    later steps.
 
     Args:
         world: the world.
@@ -79,7 +79,7 @@ def run_episode(
         limit: maximum number of decisions.
 
     Returns:
-        The index of the target of each decision, and its frame before corruption.
+        For each decision, the index of its target and its frame before corruption.
     """
     observation, expert = world.reset(episode), expert_of(world)
     targets: list[int] = []

@@ -1,10 +1,12 @@
-"""The agent's side of the bridge, which corrupts the inputs of an unchanged program in its process.
+"""The agent's side of the bridge: it corrupts the inputs of an unchanged program in its own
+process.
 
 ``mitigate run -- COMMAND`` puts this folder first on PYTHONPATH, so every Python process of the
-command loads this file (``sitecustomize.py``), however it was started. When a process imports
-habitat-lab (0.1.5 to 0.3), habitat-sim alone or WMNav, this file wraps a few of their methods.
-Frames go to the server through shared memory, instructions through a socket, and both come back
-corrupted. A loop that does not use Habitat calls ``connect``, ``corrupt`` and ``finish``:
+command loads this file through ``sitecustomize.py``. When a process imports habitat-lab (0.1.5 to
+0.3), habitat-sim alone or WMNav, this file wraps a few methods of these packages. It sends frames
+to the server through shared memory, and instructions through a socket. The server sends back
+corrupted frames and instructions. A loop that does not use Habitat calls ``connect``, ``corrupt``
+and ``finish``:
 
     import mitigate_hook
     episode = mitigate_hook.connect("17", scene="x.glb", instruction="Go to the door.")
@@ -31,29 +33,30 @@ import sys
 import threading
 import weakref
 
-np = None  # loaded on demand: every Python process loads this file, and some have no numpy
+np = None  # imported on demand: every Python process loads this file, and some have no numpy
 PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
 # JSON with folder, file of plain_adapters.py, module, class and path
 ADAPTERS = "MITIGATE_ADAPTERS"
 HEADER = struct.Struct("!4sI")  # magic bytes, and the size of the JSON object that follows
 MAGIC = b"mtg1"
-# maximum bytes of a message; an episode with all view points of its goals has 1e6
+# maximum bytes of a message; an episode with all view points of its goals needs 1e6
 MAX_MESSAGE = 1 << 24
-KEYS_PER_MESSAGE = 10000  # maximum number of episode names; train splits have millions
-LOADED = "loaded"  # a file next to the socket that is created when a process has loaded this module
+KEYS_PER_MESSAGE = 10000  # maximum number of episode names; train splits have millions of episodes
+# name of a file next to the socket; a process creates it when it loads this module
+LOADED = "loaded"
 MAX_TEXT = 4000  # maximum characters of a reported problem
-STATUS = 97  # exit status of a process that was stopped
-REPORT_TIMEOUT = 3.0  # seconds that a stopping process has to report its reason (heuristic)
+STATUS = 97  # exit status of a process that stopped itself
+REPORT_TIMEOUT = 3.0  # maximum seconds for a stopping process to report the reason (heuristic)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
-# ends of an episode: it was over; its Env was reset or closed early; an exception left it
+# how an episode ended: it was over, its Env was reset or closed early, or an exception ended it
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
-# exceptions that end a loop without a fault
+# exceptions that end a loop normally
 ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)
 
 
 class _Thread(threading.local):
-    session = None  # the session of ``connect``
+    session = None  # the session that ``connect`` uses
 
 
 _thread = _Thread()
@@ -65,7 +68,7 @@ _corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValu
 
 
 def send(channel, message):
-    """Send a dict of plain data; numpy numbers and arrays are converted to Python's types.
+    """Send a dict of plain data; convert numpy numbers and arrays to Python's types.
 
     Raises:
         ValueError: The message is too large.
@@ -85,7 +88,7 @@ def _as_python(value):
 
 
 def receive(channel):
-    """Return the next message, None at the end. Raises ValueError for an invalid message."""
+    """Return the next message, or None at the end. Raises ValueError for an invalid message."""
     header = _read(channel, HEADER.size)
     if header is None:
         return None
@@ -114,10 +117,10 @@ def _read(channel, size):
 
 
 def stop(problem, reported=False):
-    """Print a message and end this process at once; the program might catch an exception.
+    """Print a message and end this process at once, because the program might catch an exception.
 
-    The server gets the reason, so that the condition does not count as finished. Neither a failure
-    in this function nor an interrupt lets the process continue.
+    The server gets the reason, so that the condition does not count as finished. The process ends
+    even if this function fails or is interrupted.
 
     Args:
         problem: The reason, as a sentence.
@@ -133,7 +136,8 @@ def stop(problem, reported=False):
                 "continue with frames that are not corrupted. The results so far are kept; see "
                 "the output of `mitigate run`.\n"
             )
-            # sys.stderr may be None; if sys.__stderr__ is None too, descriptor 2 may be any file
+            # sys.stderr may be None; if sys.__stderr__ is also None, descriptor 2 may belong to any
+            # file
             if sys.__stderr__ is not None:
                 os.write(2, text.encode("utf-8", "replace"))
     finally:
@@ -141,8 +145,8 @@ def stop(problem, reported=False):
 
 
 def _report(problem):
-    """Send the reason why this process ends to the server, through a new connection."""
-    with contextlib.suppress(BaseException):  # the process ends in any case
+    """Send the server the reason why this process ends, through a new connection."""
+    with contextlib.suppress(BaseException):  # the process ends even if this fails
         hello = {"kind": "hello", "protocol": PROTOCOL, "token": os.environ.get(TOKEN, "")}
         hello.update(pid=os.getpid(), python=sys.version.split()[0])
         channel = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
@@ -155,8 +159,8 @@ def _report(problem):
 
 
 class Channel:
-    """The connection between one environment and the server. Every failure ends the process
-    (``stop``).
+    """The connection between one environment and the server. Every failure calls ``stop``, which
+    ends the process.
     """
 
     def __init__(self):
@@ -164,13 +168,13 @@ class Channel:
         self.pid = os.getpid()
         self.memory = None
         self.layout = {}
-        self.number = 0  # number of the last message, which its answer repeats
+        self.number = 0  # number of the last message; the answer contains the same number
         self.patience = float(os.environ.get(PATIENCE, "25"))
         try:
             self.socket = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
             self.socket.settimeout(self.patience)
             self.socket.connect(os.environ[ADDRESS])
-        # also catches interrupts, which the agent might catch otherwise
+        # this also handles interrupts, because the agent might catch them
         except BaseException as error:
             stop(
                 f"the server of `mitigate run` cannot be reached at "
@@ -182,8 +186,8 @@ class Channel:
     def ask(self, kind, **fields):
         """Send a message and return the answer.
 
-        No message is sent after an interrupted one, because its answer would be read as the answer
-        to the next message.
+        After an interrupted message, no other message is sent, because the late answer would be
+        read as the answer to the next message.
         """
         self.number += 1
         number = self.number
@@ -191,9 +195,9 @@ class Channel:
         try:
             send(self.socket, fields)
             answer = receive(self.socket)
-        except socket.timeout:  # not a TimeoutError before Python 3.10
+        except socket.timeout:  # before Python 3.10, this is not a TimeoutError
             stop(f"the server did not answer within {self.patience:g} s.")
-        except TypeError as error:  # raised by json before anything was sent
+        except TypeError as error:  # json raises this before anything is sent
             stop(
                 f"the values of {kind} must be numbers, text and lists, and cannot be sent "
                 f"({error}). Convert them."
@@ -212,7 +216,7 @@ class Channel:
     def map_memory(self, cameras, unread):
         """Describe the cameras to the server and map the memory that it provides.
 
-        ``unread`` names observations that look like frames and whose sensors are no cameras.
+        ``unread`` names observations that look like frames, although their sensors are no cameras.
         """
         answer = self.ask("spec", cameras=cameras, unread=unread)
         self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
@@ -233,7 +237,7 @@ class Channel:
             )
 
     def frame_array(self, camera):
-        """Return a camera's frame in the mapped memory, as an array."""
+        """Return an array that shares memory with a camera's mapped frame."""
         count, offset = int(np.prod(camera["shape"])), self.layout[camera["name"]]
         return np.frombuffer(self.memory, camera["dtype"], count, offset).reshape(camera["shape"])
 
@@ -250,7 +254,7 @@ def _is_orderly(error):
 
 
 def _describe_fault(error):
-    """Return class name and text of an exception, with the file and line that raised it."""
+    """Return the class name and text of an exception, and the file and line that raised it."""
     traceback = error.__traceback__
     while traceback is not None and traceback.tb_next is not None:
         traceback = traceback.tb_next
@@ -262,7 +266,7 @@ def _describe_fault(error):
 
 def _get(owner, name, default=None):
     """Return an attribute that exists only in some versions of a library, else ``default``."""
-    return getattr(owner, name, default)  # only the name of such an attribute is known
+    return getattr(owner, name, default)  # the name is known only at run time
 
 
 def _load_numpy():
@@ -282,13 +286,13 @@ def _versions():
 
 
 def _uninterrupted(failure):
-    """Wrap a method of ``Session`` so that one thread runs at a time and exceptions end the
-    process.
+    """Wrap a method of ``Session`` so that only one thread at a time runs it and an exception ends
+    the process.
 
     An interrupt also ends the process, because the agent might catch it and act on incomplete data.
 
     Args:
-        failure: Text for the message: the action that did not take place.
+        failure: Text for the message that says what did not happen.
     """
 
     def decorate(method):
@@ -317,19 +321,20 @@ class Session:
     def __init__(self):
         self.channel = None
         self.cameras = None  # camera descriptions that the server has received
-        self.unread = []  # observations that look like frames and whose sensors are no cameras
+        # observations that look like frames, although their sensors are no cameras
+        self.unread = []
         self.sim = self.task = self.episode = None
         self.active = False  # whether an episode has begun and not ended
         self.busy = False
         self.handled = id(None)  # id of the exception that was being handled when the episode began
-        self.farthest = {}  # maps a depth camera to the maximum of its first frame
+        self.farthest = {}  # maps a depth camera to the maximum depth in its first frame
         # whether this episode received frames from habitat-sim without habitat-lab
         self.simulated = False
         self.episode_pid = None  # id of the process that began the episode
         self.lock_pid = os.getpid()
         self.lock = threading.RLock()
         self.current = None  # the Episode that ``connect`` returned
-        self.words = None  # the instruction object of this episode, while its text is replaced
+        self.words = None  # the instruction object whose text is replaced during this episode
         self.clear()
 
     def clear(self):
@@ -349,7 +354,7 @@ class Session:
             self.busy = False
 
     def close(self):
-        """Close the connection; later frames would open a new one."""
+        """Close the connection; the next frame would open a new connection."""
         self.renew_lock()
         with self.lock:
             if self.channel is not None:
@@ -364,7 +369,7 @@ class Session:
 
     @_uninterrupted("the episode could not begin")
     def begin(self, scene, name, **fields):
-        """Begin an episode; the answer holds the instruction for the agent."""
+        """Begin an episode; return the answer, which contains the instruction for the agent."""
         self.clear()
         self.episode_pid = os.getpid()
         self.simulated = False
@@ -379,8 +384,8 @@ class Session:
 
         Args:
             observations: Arrays by name.
-            cameras: Dicts with name, type ("rgb" or "depth") and other options that the server
-                reads (``_describe_sensor``).
+            cameras: Dicts that describe the cameras: name, type ("rgb" or "depth") and other
+                options (``_describe_sensor``).
             heading: Radians, counter-clockwise.
         """
         self._check(observations, cameras)
@@ -407,7 +412,7 @@ class Session:
         for camera in described:
             if camera["name"] in answer["changed"]:
                 before = observations[camera["name"]]
-                frame = np.empty(before.shape, before.dtype)  # owned, writable, contiguous
+                frame = np.empty(before.shape, before.dtype)  # a new, writable, contiguous array
                 if camera["alpha"]:
                     frame[..., 3] = before[..., 3]
                     frame[..., :3] = channel.frame_array(camera)
@@ -417,7 +422,7 @@ class Session:
         return observations
 
     def _check(self, observations, cameras):
-        """Stop the process if frames belong to no episode or are already corrupted."""
+        """Stop the process if the frames belong to no episode or are already corrupted."""
         if self.episode_pid not in (None, os.getpid()):
             stop(
                 f"process {self.episode_pid} began the current episode, and its fork "
@@ -440,7 +445,7 @@ class Session:
         return None if state is None else [float(x) for x in state.position]
 
     def record_step(self, action=None):
-        """Count a low-level step, and record its action and the position after it."""
+        """Count a low-level step; record the action and the position after the step."""
         self.steps += 1
         if sys.exc_info()[1] is None:
             self.handled = id(None)
@@ -453,9 +458,9 @@ class Session:
     def end(self, metrics, how=OVER, stopped=None):
         """Report the result of the episode exactly once.
 
-        An episode without a step is not reported, and a forked process does not end the episode
-        of its parent. If the program leaves the episode early because of an exception that was
-        raised after its begin, the unfinished episode is the program's fault, not the agent's.
+        An episode without a step is not reported, and a forked process does not end the episode of
+        its parent. If an exception makes the program leave a running episode, the episode counts as
+        unfinished and not as a failure of the agent.
         """
         if not self.active or self.episode_pid != os.getpid():
             return
@@ -481,7 +486,7 @@ class Session:
         return None if id(error) == self.handled else error
 
     def _distances(self):
-        """Return the geodesic distances to the goals from start and end, and whether STOP was
+        """Return the geodesic distances from start and end to the goals, and whether STOP was
         called.
         """
         if self.sim is None or self.episode is None:
@@ -495,14 +500,16 @@ class Session:
 
 
 def _is_corrupted(frame):
-    """Return whether an array is a corrupted frame, or a view of one."""
+    """Return whether an array is a corrupted frame or a view of a corrupted frame."""
     while isinstance(frame, np.ndarray) and isinstance(frame.base, np.ndarray):
         frame = frame.base
     return _corrupted_frames.get(id(frame)) is frame
 
 
 def _plain_action(action):
-    """Return an action of Habitat (a number, a name, or a dict with one) as plain data."""
+    """Convert a Habitat action to plain data; it is a number, a name, or a dict with one of
+    these.
+    """
     if isinstance(action, dict):
         action = action.get("action")
     if action is None:
@@ -511,7 +518,7 @@ def _plain_action(action):
 
 
 def _describe_array(frame, name):
-    """Return the shape and dtype of a frame for the server."""
+    """Describe the shape and dtype of a frame for the server."""
     if not isinstance(frame, np.ndarray):
         stop(
             f"the camera {name} must return a numpy array, got {type(frame).__name__}. Set "
@@ -526,7 +533,7 @@ def _describe_array(frame, name):
 def _plain_data(value):
     """Return a camera's description with Python lists and numbers instead of numpy values.
 
-    Descriptions are compared by value at each step, which does not work for arrays.
+    Descriptions are compared with ``==`` at each step, and numpy arrays do not support that.
     """
     if isinstance(value, dict):
         return {name: _plain_data(entry) for name, entry in value.items()}
@@ -536,16 +543,16 @@ def _plain_data(value):
 
 
 def _median_and_maximum(depth):
-    """Return median and maximum of the valid depth, or (None, None) if all pixels are holes."""
+    """Return the median and maximum of the valid depth, or (None, None) if no pixel is valid."""
     sample = np.asarray(depth[::4, ::4], np.float64)
     sample = sample[np.isfinite(sample) & (sample > 0)]
     return (float(np.median(sample)), float(sample.max())) if sample.size else (None, None)
 
 
 def _finite_numbers(metrics, prefix=""):
-    """Return the finite numbers in nested dicts, by dotted name.
+    """Return a flat dict of the finite numbers in nested dicts, with dotted names as keys.
 
-    ``distance_to_goal`` may be infinite, because an unreachable goal is a failure by every rule.
+    ``distance_to_goal`` may be infinite, because an unreachable goal means failure by every rule.
     """
     numbers = {}
     for name, value in dict(metrics or {}).items():
@@ -565,7 +572,7 @@ def _finite_numbers(metrics, prefix=""):
 
 
 def _distance(sim, position, episode):
-    """Return geodesic metres to the nearest goal or its view points, or None if unknown.
+    """Return the geodesic distance in metres to the nearest goal or view point, or None if unknown.
 
     The result is infinite if no goal can be reached.
     """
@@ -581,12 +588,12 @@ def _distance(sim, position, episode):
 
 
 CAMERA = ("hfov", "min_depth", "max_depth", "normalize_depth", "position", "orientation")
-# maps the id of a sensor to (sensor, description), because reading configs is slow
+# caches (sensor, description) by the id of the sensor, because reading configs is slow
 _descriptions = {}
 
 
 def _describe_sensor(sensor):
-    """Return the description of a habitat-lab sensor; before 0.2.3, option names are upper case."""
+    """Describe a habitat-lab sensor; in versions before 0.2.3, option names are in upper case."""
     if id(sensor) in _descriptions:
         return _descriptions[id(sensor)][1]
     config, description = _get(sensor, "config"), {}
@@ -616,20 +623,20 @@ _sessions = {}  # maps the id of a simulator or sensor suite to (that object, it
 
 def _session_of(owner):
     """Return the session of a sensor suite or simulator."""
-    if id(owner) not in _sessions:  # the entry keeps the object, so that its id is not reused
-        _sessions.setdefault(id(owner), (owner, Session()))  # one value for all threads
+    if id(owner) not in _sessions:  # the entry keeps the object alive, so that its id is not reused
+        _sessions.setdefault(id(owner), (owner, Session()))  # all threads get the same session
     return _sessions[id(owner)][1]
 
 
 def _call_clean(original, *args, **kwargs):
-    """Call a method that takes frames for other purposes than acting: goal pictures or videos."""
+    """Call a method whose frames are not for acting but for goal pictures or videos."""
     return original(*args, **kwargs)
 
 
 def _is_clean_call():
     """Return whether this thread is inside ``_call_clean``.
 
-    This reads the stack, because an interrupt could leave a flag set.
+    The function inspects the stack, because an interrupt could leave a flag set.
     """
     frame = sys._getframe(1)
     while frame is not None and frame.f_code is not _call_clean.__code__:
@@ -640,8 +647,8 @@ def _is_clean_call():
 def _get_observations(original, suite, *args, **kwargs):
     """Wrap the simulator's ``SensorSuite.get_observations``.
 
-    habitat-lab passes ``task`` and ``episode`` for the sensors of the task, which may render a goal
-    picture.
+    habitat-lab passes ``task`` and ``episode`` only for the sensors of the task, which may render a
+    picture of the goal.
     """
     if "task" in kwargs or "episode" in kwargs:
         return _call_clean(original, suite, *args, **kwargs)
@@ -667,7 +674,7 @@ def _is_float_image(value):
 
 
 def _task_reset(original, task, episode, *args, **kwargs):
-    """Wrap ``EmbodiedTask.reset``: end the last episode and replace the next instruction."""
+    """Wrap ``EmbodiedTask.reset`` to end the last episode and replace the next instruction."""
     sim = task._sim
     if _get(_get(sim, "config"), "enable_batch_renderer"):
         stop(
@@ -700,9 +707,9 @@ def _task_reset(original, task, episode, *args, **kwargs):
 def _original_words(words):
     """Return the original text and tokens of an instruction in the data set.
 
-    A session may have replaced both, and the program may have changed them afterwards. Replaced
-    texts must not be corrupted again. A copy or pickle of a replaced instruction is recognised by
-    its text.
+    A session may have replaced both, and the program may have changed them later. A replaced text
+    must not be corrupted again. A copy or pickle of a replaced instruction is recognised by its
+    text.
     """
     text = _get(words, "instruction_text")
     replacement, *originals = _get(words, "_mitigate_own", (None, None, None))
@@ -726,7 +733,7 @@ def _restore_words(session):
     words, session.words = session.words, None
     if words is None or _is_in_use(words):
         return
-    # only once, because several threads may end the episode at the same time
+    # pop makes this happen only once, even if several threads end the episode at the same time
     originals = vars(words).pop("_mitigate_own", None)
     if originals is not None:
         _set_words(words, *originals[1:])
@@ -758,7 +765,7 @@ def _make_dataset(original, *args, **kwargs):
 
 
 def _keep_selected(dataset):
-    """Remove the episodes that the run does not request."""
+    """Remove the episodes that the run does not need."""
     if dataset is not None and len(dataset.episodes):
         keep = _select(dataset.episodes, lambda e: _episode_key(e.scene_id, e.episode_id), 1)
         if keep is not None:
@@ -767,12 +774,12 @@ def _keep_selected(dataset):
 
 
 def _select(episodes, key, least):
-    """Return the indices of the episodes that the run requests, or None for all.
+    """Return the indices of the episodes that the run needs, or None for all episodes.
 
     Args:
         episodes: All episodes.
-        key: Function that returns the name of an episode. Names are sent in parts, and only if the
-            server selects episodes.
+        key: Function that returns the name of an episode. Names are sent, in several messages, only
+            if the server chooses episodes.
         least: The minimum number of episodes to keep, 0 or 1.
     """
     channel, count = Channel(), len(episodes)
@@ -785,7 +792,7 @@ def _select(episodes, key, least):
 
 
 def _env_reset(original, env, *args, **kwargs):
-    """Wrap ``Env.reset`` to measure the last episode before the next scene is loaded."""
+    """Wrap ``Env.reset`` to report the last episode before the next scene is loaded."""
     _end_episode(env, RESET)
     return original(env, *args, **kwargs)
 
@@ -798,9 +805,7 @@ def _env_step(original, env, *args, **kwargs):
 
 
 def _env_close(original, env, *args, **kwargs):
-    """Wrap ``Env.close``, so that programs which open one Env per episode do not leak
-    connections.
-    """
+    """Wrap ``Env.close``, so that programs that open an Env per episode do not leak connections."""
     _end_episode(env, CLOSE)
     suite = _get(env.sim, "sensor_suite")
     try:
@@ -837,7 +842,7 @@ def _env_render(original, env, *args, **kwargs):
 
 def _sensor_observations(original, sim, *args, **kwargs):
     """Wrap ``Simulator.get_sensor_observations``."""
-    # called as clean, because some versions call themselves once per agent
+    # some versions call this method again for each agent; those inner calls must stay clean
     observations = _call_clean(original, sim, *args, **kwargs)
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -846,7 +851,7 @@ def _sensor_observations(original, sim, *args, **kwargs):
 
 def _async_observations(original, sim, *args, **kwargs):
     """Wrap ``Simulator.get_sensor_observations_async_finish``, if habitat-sim has it."""
-    agent_ids = _get(sim, "_async_draw_agent_ids")  # the call clears these agent ids
+    agent_ids = _get(sim, "_async_draw_agent_ids")  # read first, because the call clears it
     observations = _call_clean(original, sim, *args, **kwargs)
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -854,11 +859,12 @@ def _async_observations(original, sim, *args, **kwargs):
 
 
 def _is_called_by_lab(sim):
-    """Return whether the caller is habitat-lab, whose sensors corrupt the frames themselves.
+    """Return whether habitat-lab is the caller, because its frames are corrupted at its own
+    sensors.
 
-    The caller counts as habitat-lab if it is one of its modules, or a method of one of its
-    simulators, overridden or not. Any other caller that takes frames from a habitat-lab simulator
-    is stopped.
+    The caller counts as habitat-lab if its code is in a module of habitat-lab, or is a method of a
+    habitat-lab simulator or of a subclass. If any other code takes frames from a habitat-lab
+    simulator, the process stops.
     """
     frame = sys._getframe(1)
     passed_over = (_package(__name__), "habitat_sim")
@@ -889,7 +895,7 @@ def _corrupt_acting_agent(sim, observations, agent_ids):
 
     Args:
         sim: The simulator.
-        observations: Observations by sensor, or by number of the agent if there are several.
+        observations: Observations by sensor, or by agent number if there are several agents.
         agent_ids: The ids of the requested agents; None means the acting agent.
     """
     acting = _default_agent(sim)
@@ -939,7 +945,7 @@ def _describe_simulator(sim):
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """Wrap WMNav's ``Env._run_episode``, which opens one simulator per episode without
+    """Wrap WMNav's ``Env._run_episode``, which opens a simulator per episode and does not use
     habitat-lab.
     """
     _thread.session = session = _thread.session or Session()
@@ -972,10 +978,10 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
 
 
 def _make_adapter_wrapper(folder, file, path):
-    """Return a wrapper for ``forward`` of an encoder's class.
+    """Return a wrapper for the method ``forward`` of an encoder's class.
 
-    The wrapper attaches adapters to the module ``path`` at the first call of each instance, when
-    the weights have been loaded.
+    At the first call of each instance, the wrapper attaches adapters to the module ``path``. The
+    weights have been loaded before this call.
     """
 
     def forward(original, encoder, *args, **kwargs):
@@ -1033,7 +1039,7 @@ class Episode:
         Args:
             observations: Arrays by name: ``rgb*`` (uint8) and ``depth*`` (float32, metres).
             heading: Radians, counter-clockwise.
-            cameras: Descriptions of cameras with other names, and of depth that is not metres
+            cameras: Descriptions of cameras that have other names, or whose depth is not in metres
                 from 0 to 10: {name: {"type": "depth", "min_depth": 0.5, "max_depth": 5.0,
                 "normalize_depth": True, "hfov": 79, "orientation": [0, 0.5, 0]}}.
         """
@@ -1058,10 +1064,10 @@ class Episode:
 
         Args:
             success: 0 or 1.
-            spl: 0 to 1. If None, it is computed from ``path_length`` and ``geodesic_distance``, or
-                equals the success.
-            stopped: Whether the agent itself called STOP, 0 or 1. None means unknown; some success
-                rules need this value.
+            spl: 0 to 1. If None, it is computed from ``path_length`` and ``geodesic_distance`` or,
+                without these, is equal to ``success``.
+            stopped: Whether the agent called STOP, 0 or 1. None means unknown; some success rules
+                need this value.
             **metrics: Other measures, such as ``distance_to_goal``.
 
         Raises:
@@ -1123,18 +1129,18 @@ def _check_fraction(value, name):
 def _check_non_negative(value, name):
     """Return a number that is 0 or more, or infinite. Raises ValueError for all other values."""
     try:
-        number = float(value)  # also accepts an array or tensor with one item
+        number = float(value)  # float also accepts an array or tensor with one item
     except (TypeError, ValueError):
         number = math.nan
     if not number >= 0:
-        raise ValueError(f"finish({name}={value!r}): it must be a number that is not negative.")
+        raise ValueError(f"finish({name}={value!r}): it must be a number >= 0.")
     return number
 
 
 def _find_cameras(observations, cameras):
     """Return a copy of the observations and the description of each camera in them.
 
-    Stop if an entry may be a frame and is not described.
+    If an entry may be a frame but is not described, the process stops.
     """
     observations, cameras, described = dict(observations), dict(cameras or {}), []
     for name, value in observations.items():
@@ -1168,7 +1174,7 @@ def _find_cameras(observations, cameras):
 
 
 def _find_frame(value, name):
-    """Return name and shape of the first array in an entry that may be a frame, else None.
+    """Return the name and shape of the first array in an entry that may be a frame, else None.
 
     Nested dicts and lists are searched.
     """
@@ -1188,12 +1194,14 @@ def _find_frame(value, name):
 
 
 def _may_be_frame(shape):
-    """Return whether an array of this shape may be a frame: it has two dimensions above 8."""
+    """Return whether an array of this shape may be a frame: two dimensions must be larger than
+    8.
+    """
     return len(shape) > 1 and sorted(shape)[-2] > 8
 
 
 def _shape(value):
-    """Return the shape of an array, a tensor, a PIL image, or nested lists of these or numbers."""
+    """Return the shape of an array, tensor or PIL image, or of nested lists."""
     outer = []
     while isinstance(value, (list, tuple)) and value:
         outer.append(len(value))
@@ -1203,19 +1211,19 @@ def _shape(value):
         return tuple(outer) if isinstance(value, (int, float)) else ()
     try:
         return (*outer, *map(int, inner))
-    except (TypeError, ValueError):  # the attribute has a different meaning
+    except (TypeError, ValueError):  # this attribute is not the shape or size of an array
         return ()
 
 
 def wanted(episodes):
-    """Return the episodes that this run requests.
+    """Return the episodes that this run needs.
 
     Args:
         episodes: List of (scene, episode id).
 
     Returns:
-        All episodes if ``episodes=`` is not set; otherwise about that number, selected by a hash of
-        their names.
+        All episodes if ``episodes=`` is not set; otherwise about that number of episodes, chosen by
+        a hash of their names.
 
     Raises:
         RuntimeError: The program does not run under ``mitigate run``.
@@ -1264,7 +1272,7 @@ def connect(episode, scene="", instruction=None):
 
 # installing -------------------------------------------------------------------------------------
 
-PATCHES = {  # maps a module to (class or "" for a function, method, wrapper) tuples
+PATCHES = {  # maps a module to tuples (class, method, wrapper); the class is "" for a function
     "habitat.core.simulator": (("SensorSuite", "get_observations", _get_observations),),
     "habitat.core.embodied_task": (
         ("EmbodiedTask", "reset", _task_reset),
@@ -1307,7 +1315,7 @@ def patch(module):
 
 
 def _describe_missing(module, missing):
-    """Return the message for methods, (class, name) pairs, that cannot be wrapped."""
+    """Return the message for ``methods``, pairs (class, name), that cannot be wrapped."""
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
@@ -1326,7 +1334,7 @@ def _describe_missing(module, missing):
 
 
 def _join(methods):
-    """Return the names of methods, given as tuples that begin with class and name."""
+    """Return the names of methods; each method is a tuple that begins with its class and name."""
     return ", ".join(f"{owner}.{name}" if owner else name for owner, name, *_ in methods)
 
 
@@ -1339,7 +1347,9 @@ def _wrap(original, wrapper):
 
 
 class Finder:
-    """Makes the loaders of the modules in ``PATCHES`` call ``patch`` after the module code."""
+    """Import finder that makes the modules in ``PATCHES`` call ``patch`` after they are
+    executed.
+    """
 
     def find_spec(self, name, path=None, target=None):
         if name not in PATCHES:
@@ -1373,7 +1383,7 @@ def install():
 
 
 def run_hidden_sitecustomize(file):
-    """Run the ``sitecustomize`` module that is hidden by the one in ``file``, if there is one."""
+    """Run the ``sitecustomize`` module that ``file`` hides, if there is one."""
     folder = os.path.dirname(os.path.abspath(file))
     path = [p for p in sys.path if os.path.abspath(p or os.curdir) != folder]
     spec = importlib.machinery.PathFinder.find_spec("sitecustomize", path)

@@ -1,7 +1,8 @@
 """Load ``mitigate_hook`` in every Python process that is started under ``mitigate run``.
 
-Python imports the first ``sitecustomize`` on its path at start-up. This folder is first on
-PYTHONPATH, so this file may hide a different ``sitecustomize``, which it runs afterwards.
+At start-up, Python imports the first module ``sitecustomize`` on its path. This folder is first on
+PYTHONPATH, so this file may hide a different ``sitecustomize``. Therefore, this file runs the
+hidden module at the end.
 """
 
 import sys
