@@ -104,8 +104,8 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
     """Load hardened weights (from ``mitigate.harden``) into ``policy``, in place, and return it.
 
     Args:
-        policy: a policy with the architecture of the hardened one; for adapters it must be the
-            original policy, because they fit only its weights.
+        policy: a policy with the architecture of the hardened policy. If the folder holds adapters,
+            it must be the original policy, because adapters fit only its weights.
         folder: the folder ``agent`` of the run.
 
     Raises:
