@@ -41,7 +41,7 @@ class Adapter(nn.Module):
 
 
 def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
-    """Raise ValueError for a size below 1 or an even kernel; sizes of None are not checked."""
+    """Raise ValueError if a size is below 1 or the kernel size is even; None is not checked."""
     for name, size in sizes.items():
         if size is not None and size < 1:
             raise ValueError(f"{name} of a {owner} must be >= 1, got {size}.")

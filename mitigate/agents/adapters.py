@@ -1,12 +1,12 @@
 """Zero-initialised residual adapters for any frozen torch encoder.
 
-``insert_adapters(model, target_modules=...)`` adds ``x + up(act(down(x)))`` after named modules, as
-PEFT does for attention. Inserting adapters changes neither the names and values of the backbone's
-weights nor its ``forward``. The output of the backbone stays the same until ``up`` is trained. Each
-adapter is a child of its module and is called by a forward hook. ``adapter_layers.py`` defines the
-layers. Modules that return maps get convolutional adapters, and modules that return tokens get
-linear adapters. *Ring* adapters also read the neighbours of each view of a panorama. *Gates*
-restrict the correction to frames that they classify as corrupted.
+``insert_adapters(model, target_modules=...)`` adds a residual layer ``x + up(act(down(x)))`` after
+named modules, as PEFT does for attention layers. Inserting adapters changes neither the names and
+values of the backbone's weights nor its ``forward``. The output of the backbone stays the same
+until ``up`` is trained. Each adapter is a child of its module and is called by a forward hook.
+``adapter_layers.py`` defines the layers. Modules that return maps get convolutional adapters, and
+modules that return tokens get linear adapters. *Ring* adapters also read the neighbours of each
+view of a panorama. *Gates* restrict the correction to frames that they classify as corrupted.
 """
 
 from __future__ import annotations
@@ -68,7 +68,7 @@ def insert_adapters(
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\.[01]"`` finds ``rgb_encoder.stages.0``).
         reduction: the width of a bottleneck is the number of channels divided by this number.
-        kernel: convolution size of adapters for maps.
+        kernel: kernel size of convolutional and ring adapters.
         ring: targets that get a :class:`RingAdapter` instead of the adapter from
             ``target_modules``. The views of a panorama must be consecutive in the batch (n = P *
             views).

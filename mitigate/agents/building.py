@@ -43,7 +43,8 @@ def build_agent(
         config = plain(node)
         known = schema.schema_of(config["_target_"]).settings
         config = {name: value for name, value in config.items() if name in known}
-        again = "Give it such a value, or leave it out."  # the class rejects unknown settings
+        # the agent's class rejects unknown settings
+        again = "Give it such a value, or leave it out."
         schema.check(config, "The options", node["_target_"], again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)

@@ -1,10 +1,10 @@
 """Encoders of views: small residual CNNs with GroupNorm for RGB and for depth, and their losses.
 
-Adapters are added after their ``stages``. All encoders take raw sensor data: square views of any
-size, as uint8 RGB or as depth in float32 metres. They resize and normalise the data themselves.
-``RGBEncoder`` and ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and ``CameraDepth``
-read one camera and return features for four vertical strips ("columns") of the view, because an
-agent with one camera steers by the horizontal position of an object.
+Adapters are added after the modules in their ``stages``. All encoders take raw sensor data: square
+views of any size, as uint8 RGB or as depth in float32 metres. They resize and normalise the data
+themselves. ``RGBEncoder`` and ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and
+``CameraDepth`` read one camera and return features for four vertical strips ("columns") of the
+view, because an agent with one camera steers by the horizontal position of an object.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ SIZE = 64  # side in pixels of the views that the shipped agents were trained on
 # depth is clipped at this distance (metres); farther surfaces do not matter, because moves have at
 # most 3 m
 DEPTH_RANGE = 5.0
-GRID = 4  # rows and columns of the last feature map at 64 pixels
+GRID = 4  # number of rows and columns of the last feature map for views of 64 pixels
 # free space: number of direction bins over 90 degrees, number of distance bins, metres per bin
 DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25
 LABELS = {RGB: "concepts", DEPTH: "free"}

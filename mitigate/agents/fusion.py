@@ -98,7 +98,7 @@ def weigher(
     The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
 
     Raises:
-        ValueError: ``learned`` is combined with ``rate``.
+        ValueError: ``learned`` and ``rate`` are both set.
     """
     if learned and rate is not None:
         raise ValueError(

@@ -65,7 +65,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         folder: a hardened folder (as in :func:`load_hardened`), shipped weights
             (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. The folder is
             searched first in the current folder, then in this project.
-        agent: an agent of a user's class with the settings of the trained one, into which the
+        agent: an agent of a user's class with the settings of the trained agent, into which the
             weights are loaded in place. If it is None, a new agent of a shipped kind is built.
 
     Raises:
@@ -108,7 +108,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         base: if the folder holds only adapters, the file or folder of the weights to which they
             belong. If None, the path in the card is used; it is searched below the current folder,
             the folders above ``folder``, and the checkout.
-        agent: an agent of a user's class with the settings of the exported one, into which the
+        agent: an agent of a user's class with the settings of the exported agent, into which the
             weights are loaded in place. If this agent has no ``settings()``, it receives the
             settings in the folder. If it is None, a new agent of a shipped kind is built.
 

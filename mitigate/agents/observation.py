@@ -80,7 +80,7 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
     Raises:
         KeyError: The entry is missing.
         TypeError: RGB is not uint8, or depth is not floating point.
-        ValueError: The shape differs, or depth is in millimetres.
+        ValueError: The shape is not the expected shape, or depth is in millimetres.
     """
     array = _entry(observation, name)
     if name == RGB and array.dtype != np.uint8:

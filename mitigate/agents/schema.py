@@ -128,7 +128,7 @@ class Schema(NamedTuple):
     usual: tuple[int, int] = (1, 1)
 
 
-KINDS = (  # the only classes that a folder may name
+KINDS = (  # the only classes that the config in a folder may name
     "mitigate.agents.topological.TopologicalAgent",
     "mitigate.agents.recurrent.RecurrentAgent",
     "mitigate.agents.frontier.FrontierAgent",

@@ -94,7 +94,7 @@ class FrontierAgent(SideBySide, nn.Module):
         ValueError: A name in ``blind`` is unknown.
     """
 
-    # part of published fingerprints, so it must not change
+    # this name is part of published fingerprints, so it must not change
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"
 
     run_state = ("_started", "actions")
@@ -133,7 +133,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return copy.deepcopy(self._settings)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the encoder by its name."""
+        """Return a dict that maps the encoder's name to the encoder."""
         return {"rgb_encoder": self.rgb_encoder}
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
@@ -184,7 +184,7 @@ class FrontierAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return one low-level action.
 
-        Raises RuntimeError before the first ``reset``, and the errors of
+        Raises RuntimeError if ``reset`` was not called before, and the errors of
         ``agents/observation.py``.
         """
         check_started(self._started)

@@ -22,7 +22,7 @@ from mitigate.core.observation import FORWARD_METRES
 
 CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
-REACH = 5.0  # maximum depth in metres that is used (VLFM: 5)
+REACH = 5.0  # maximum depth in metres that is used (as in VLFM)
 LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
 # surfaces between these heights in metres can belong to objects
 THINGS_LOW, THINGS_HIGH = 0.05, 2.3
@@ -159,7 +159,8 @@ def _scan(depth, camera, columns, free, things):
                 _witness(x + dx * r, y + dy * r, r, odds[column], seen[column], things)
         met = second <= REACH  # two readings are needed, because one may be noise
         end = second if met else min(floor, REACH)
-        conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the centre of the view
+        # as in VLFM, the square of the cosine of the angle from the view's centre
+        conf = 1 / stretch**2
         for k in range(int(end / CELL)):
             i, c = int((y + dy * k * CELL) / CELL), int((x + dx * k * CELL) / CELL)
             if i < 0 or c < 0 or i >= occupied.shape[0] or c >= occupied.shape[1]:
@@ -199,7 +200,7 @@ class Routes:
 
     Attributes:
         cost: float [h, w] in metres.
-        before: int [h * w], the predecessor of each cell.
+        before: int [h * w], the predecessor of each cell on its path.
         corner: row and column of the window's first cell.
     """
 

@@ -139,7 +139,7 @@ class Policy(Agent, nn.Module):
         """Return the entropy of the last action's distribution (``agents/agent.py``).
 
         Raises:
-            ValueError: The policy gives no distribution.
+            ValueError: The policy returns no distribution of actions.
         """
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]

@@ -90,7 +90,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
     """
 
-    # part of published fingerprints, so it must not change
+    # this name is part of published fingerprints, so it must not change
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"
 
     run_state = ("_walk",)
@@ -338,7 +338,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the likeliest action.
 
-        Raises RuntimeError before the first ``reset``, and the errors of
+        Raises RuntimeError if ``reset`` was not called before, and the errors of
         ``agents/observation.py``.
         """
         check_started(self._walk is not None)

@@ -26,9 +26,9 @@ from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN
 
 # number of motion features: last action (5 values), sine and cosine of heading, metres, steps
 MOVES = 5 + 4
-_METRES, _STEPS = 5.0, 50.0  # units of the distance moved and of the number of steps
+_METRES, _STEPS = 5.0, 50.0  # divisors of the distance moved and of the number of steps
 ACTIONS = 4
-KEYS = 64  # width of the attention over words; a compromise with training time
+KEYS = 64  # width of the attention over words; chosen small to limit the training time
 REACH = 7  # kernel size (in words) of the location-sensitive attention; must be odd
 
 
@@ -57,7 +57,7 @@ class Odometer:
         self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
-        """Return the motion as float32 [9].
+        """Return the features of the motion, float32 [9].
 
         The first five values are a one-hot code of the last action (no action, or one of four). The
         others are the sine and cosine of the heading relative to the start, the metres moved
@@ -115,7 +115,7 @@ class State:
         return State(self.hidden[index], self.last[index], self.sum[index])
 
     def put(self, index: Tensor, fresh: State) -> None:
-        """Replace the rows ``index``, in place."""
+        """Replace the rows ``index`` of this state by ``fresh``, in place."""
         for name, value in vars(fresh).items():
             vars(self)[name][index] = value
 

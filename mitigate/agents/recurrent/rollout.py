@@ -18,7 +18,7 @@ from mitigate.core.observation import POSE, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world, expert_of
 
-INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
+INFLECTION = 3.2  # weight of a step at which the expert changes its action (as in VLN-CE)
 _FARTHEST = 25.0  # maximum target of the distance loss in metres; larger targets are clipped
 Piece = dict[str, Any]
 
