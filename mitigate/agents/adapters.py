@@ -246,8 +246,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. Load the weights they "
-            "were trained on first; to run in another dtype, convert the model afterwards."
+            f"{escaped(str(expected))}, but this one has {sha}. First load the weights that "
+            "the adapters were trained on. To run in another dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -339,9 +339,9 @@ def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
     idle = [name for name in kinds if name not in gates.values()]
     if idle:
         raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for maps follows it in the "
-            "same encoder, and adapters for tokens take no gate. Leave it out of gates, or choose "
-            "other target modules."
+            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps follows it "
+            "in the same encoder, and a gate cannot control adapters for tokens. Leave it out of "
+            "gates, or choose other target modules."
         )
     # an existing attribute with this name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]

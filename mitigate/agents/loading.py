@@ -202,7 +202,7 @@ def _check_size(config: Path, weights: Path) -> None:
     size = weights.stat().st_size
     if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
         raise ValueError(
-            f"The agent's settings in {config} do not fit: they ask for {count} weights, but "
+            f"The agent's settings in {config} do not fit: they require {count} weights, but "
             f"{weights} has only {size} bytes. Do not use this folder."
         )
 
@@ -268,8 +268,8 @@ def check_same(agent: Any, config: Path, again: str) -> None:
     if not wrong:
         return
     text = (
-        f"{config} is of an agent with {wrong[0]}={stored[wrong[0]]!r:.60}, but the given agent "
-        f"has {actual[wrong[0]]!r:.60}. Build it with the settings in that file."
+        f"{config} belongs to an agent with {wrong[0]}={stored[wrong[0]]!r:.60}, but the given "
+        f"agent has {actual[wrong[0]]!r:.60}. Build it with the settings in that file."
     )
     if stated is not None:
         raise ValueError(text)
@@ -290,7 +290,7 @@ def give_settings(agent: Any, config: Path, again: str) -> None:
 def _settings_in(config: Path, again: str) -> dict[str, Any]:
     stored = settings.read(config).get("agent")
     if not isinstance(stored, dict):
-        raise ValueError(f"{config} has no settings of an agent. {again}")
+        raise ValueError(f"{config} contains no settings of an agent. {again}")
     return stored
 
 
@@ -458,7 +458,7 @@ def _find_base(folder: Path, reference: dict[str, str], base: str | Path | None)
     for file in present:
         if sha256(file) == reference["sha256"]:
             return file
-    cause = f"{present[0]} has another" if present else f"{files[0]} does not exist"
+    cause = f"{present[0]} has a different one" if present else f"{files[0]} does not exist"
     raise (ValueError if present else FileNotFoundError)(
         f"The adapters in {folder} belong to the weights {reference['weights']} with sha256 "
         f"{reference['sha256']}, but {cause}. Name these weights: load_hardened(folder, base=...)."

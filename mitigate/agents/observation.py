@@ -51,8 +51,8 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
         views = sensor.shape[0] if len(sensor.shape) == 4 else 1
         if name in (RGB, DEPTH) and views != expected:
             raise ValueError(
-                f"The world {world} shows {views} of {VIEWS} views in {name}, but "
-                f"{type(agent).__name__} takes {expected}. Set env.views={expected}, as conf/agent "
+                f"The number of views in {name} is {views} in the world {world}, but "
+                f"{type(agent).__name__} needs {expected}. Set env.views={expected}, as conf/agent "
                 'does for this kind of agent (mitigate.benchmark: options=["env.views='
                 f'{expected}"]), or choose another agent.'
             )
@@ -138,8 +138,8 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
         raise TypeError(f"instruction must be a string, got a {type(text).__name__}.")
     if set(vocabulary.encode(text)) == {UNKNOWN}:
         warnings.warn(
-            f"The agent knows no word of the instruction {text[:60]!r}, so it walks without one. "
-            "It was trained on English routes.",
+            f"The agent knows no word of the instruction {text[:60]!r}, so it acts without an "
+            "instruction. It was trained on English routes.",
             stacklevel=3,
         )
     return text

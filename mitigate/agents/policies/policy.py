@@ -195,8 +195,8 @@ def copied(policy: Policy) -> Policy:
         twin._modules = {"network": copy.deepcopy(policy.network)}
     except Exception as error:  # the user's code may raise any error
         raise ValueError(
-            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which "
-            "the clean teacher needs. Give a policy without open files or environments."
+            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), but "
+            "the clean teacher is a copy. Give a policy without open files or environments."
         ) from error
     return twin
 
