@@ -3,12 +3,13 @@
     L = mean over scales of |out - clean| + w_grad |their image gradients|
         + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel
 
-The last term counts wrong pixels instead of measuring their error, so that correct pixels next to
-drops, stripes or noise are not changed. In the first term, depth that is too far is weighted by
-``w_far``. The reason is that a path that does not exist can make an episode fail, while a missed
-path only costs a detour. RGB is in [0, 1], depth is divided by its range; pixels that have no valid
-clean depth are ignored. Training does not use an agent, so one restorer can be used with all
-agents. The restorer's gate is trained afterwards on fixed maps (``restore_gate.py``).
+The last term counts wrong pixels instead of measuring their error. It keeps the restorer from
+changing correct pixels next to drops, stripes or noise. In the first term, the error is multiplied
+by ``w_far`` if restored depth is too far. Depth that is too far can make an episode fail, because
+it shows free paths that do not exist. Depth that is too near only costs a detour. RGB is in [0, 1],
+and depth is divided by its range. Pixels without a valid clean depth are ignored. Because no agent
+is used in training, one restorer works with all agents. The restorer's gate is trained afterwards
+on fixed maps (``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ from mitigate.guards.frames.sensor import TOLERANCE, SensorRestorer
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.training.restoration_pairs import Pairs, pairs_of
 
-SCALES = (1, 4)  # scales in pixels, for errors of edges and of surfaces (heuristic)
+SCALES = (1, 4)  # pooling sizes in pixels: 1 compares edges, 4 compares surfaces (heuristic)
 RESTORER = "This recipe trains a restorer: set agent=restorer (docs/restoration.md)."
 
 
@@ -42,7 +43,7 @@ class Restore(Objective):
         seed: seed for choosing these steps.
         w_grad: weight of the error of image gradients.
         w_right: weight of the fraction of wrong pixels.
-        w_far: factor on the error of depth that is too far.
+        w_far: factor by which the error of depth that is too far is multiplied.
 
     Raises:
         ValueError: A number is invalid.
@@ -113,8 +114,8 @@ class Restore(Objective):
         return {"loss": loss, "before": before, "after": after}
 
     def _error(self, out: Tensor, target: Tensor, valid: Tensor) -> Tensor:
-        """Return the sum of L1 errors over scales, the L1 error of gradients, and the wrong
-        fraction.
+        """Return the L1 error averaged over scales, the L1 error of gradients, and the fraction of
+        wrong pixels.
         """
         total = out.new_zeros(())
         difference = (out - target) * valid

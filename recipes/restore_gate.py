@@ -1,12 +1,12 @@
-"""Train the gate of a restorer, which decides for which frames restoring reduces the error.
+"""Train the gate of a restorer, which decides which frames are restored.
 
     L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
 
-If only the mean error decided, blurring a partly wrong frame would count as better, although an
-agent loses details. A frame is ignored if it is not clean and restoring makes it neither clearly
-better nor worse. The inputs of the gate do not change in this stage, so they are computed once for
-``instants`` random time steps and used many times. At the end, the threshold is set such that a
-fraction ``touched`` of held-out clean frames of the training scenes is above it.
+The limit ``SPENT`` is needed, because blurring a partly wrong frame can reduce its mean error
+although details are lost. A corrupted frame is ignored if restoring makes it neither clearly better
+nor worse. The inputs of the gate do not change in this stage, so they are computed only once, for
+``instants`` random time steps. At the end, the threshold is set such that a fraction ``touched`` of
+held-out clean frames of the training scenes is above it.
 """
 
 from __future__ import annotations
@@ -30,20 +30,23 @@ from mitigate.training.restoration_pairs import Pairs, pairs_of, with_clean_shar
 CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 # the error after restoring must be below this fraction of the error before (heuristic)
 BETTER = 0.85
-SPENT = 0.15  # maximum loss of correct pixels, as a fraction of all pixels (heuristic)
-# First step numbers, so that time steps are not from the network's training and have one purpose.
+# maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
+SPENT = 0.15
+# First step number of each purpose. No purpose uses the time steps of another one, or those on
+# which the network was trained.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 
 class Judged(NamedTuple):
-    """Measures of N time steps with V views.
+    """Gate inputs and restoration errors of N time steps with V views.
 
     Attributes:
         stats: input of the gate [N, V, s].
         textures: input of the gate [N, V, t].
         before: mean error of the original frames [N], divided by the range.
         after: mean error of the restored frames [N].
-        spent: fraction of correct pixels before minus the fraction after [N] (``TOLERANCE``).
+        spent: fraction of pixels within ``TOLERANCE`` before restoring, minus the fraction after
+            [N].
     """
 
     stats: Tensor
@@ -54,9 +57,7 @@ class Judged(NamedTuple):
 
     @property
     def labels(self) -> tuple[Tensor, Tensor]:
-        """Return masks [N] of the time steps that should be restored, and of those used in the
-        loss.
-        """
+        """Return masks [N] of time steps: those to be restored, and those used in the loss."""
         intact = self.spent <= SPENT
         better = (self.before > 0) & (self.after < BETTER * self.before) & intact
         return better, better | (self.after >= self.before) | ~intact
@@ -68,11 +69,11 @@ class RestoreGate(Objective):
     Args:
         agent: the restorer; its network's gate for the sensor in ``pairs`` is trained in place.
         pairs: the source of frames.
-        instants: number of training time steps, and of single views.
+        instants: number of time steps for training, and also the number of single views.
         held: number of held-out clean time steps for setting the threshold.
-        batch: number of time steps per training step.
+        batch: number of time steps per batch.
         single: fraction of training steps on single views.
-        touched: fraction of clean time steps above the threshold.
+        touched: fraction of clean time steps that may be above the threshold.
         seed: seed of the batches.
 
     Raises:
@@ -80,7 +81,7 @@ class RestoreGate(Objective):
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
-    here = True  # jobs run here because a step takes only milliseconds
+    here = True  # jobs run in this process, because a step takes only milliseconds
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
 
@@ -98,7 +99,7 @@ class RestoreGate(Objective):
         super().__init__()
         if not (0 <= single <= 1 and 0 < touched < 1 and min(instants, held, batch) >= 1):
             raise ValueError(
-                "recipe.single and recipe.touched must be shares from 0 to 1, got "
+                "recipe.single and recipe.touched must be fractions from 0 to 1, got "
                 f"{single} and {touched}; recipe.instants, held and batch must be >= 1, got "
                 f"{instants}, {held} and {batch}."
             )
@@ -114,7 +115,8 @@ class RestoreGate(Objective):
         self.net.gate.requires_grad_(True)
         self.pairs = with_clean_share(pairs, CLEAN_SHARE)
         self.clean = with_clean_share(pairs, 1.0)
-        self.learned: list[Judged] = []  # data sets for panoramas (if any) and for single views
+        # one data set of panoramas (if there are any), and one of single views
+        self.learned: list[Judged] = []
 
     def identity(self) -> dict[str, str]:
         return self.pairs.identity()
@@ -126,7 +128,7 @@ class RestoreGate(Objective):
         self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def pieces(self) -> int:
-        """Return 1 piece per step, because a step cannot be divided among ranks."""
+        """Return 1, because a batch cannot be divided among ranks."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:
@@ -148,14 +150,14 @@ class RestoreGate(Objective):
         }
 
     def _logits(self, judged: Judged) -> Tensor:
-        """Return the logit of each time step [N]."""
+        """Return the gate's logit for each time step [N]."""
         stats, textures = (part.flatten(0, 1) for part in judged[:2])
         return self.net.gate(stats, textures, judged.stats.shape[1]).float()
 
     @torch.no_grad()
     def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
-        """Measure ``count`` time steps, as panoramas if ``ring`` is true, else each view
-        separately.
+        """Measure ``count`` time steps: whole panoramas if ``ring`` is true, otherwise single
+        views.
         """
         parts: list[tuple[Tensor, ...]] = []
         step, collected, device = OFFSETS[which], 0, self.net.threshold.device
@@ -191,10 +193,10 @@ class RestoreGate(Objective):
 
     @torch.no_grad()
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return the threshold, which is set at the end, and two fractions above it.
+        """Return the threshold and the fractions of clean and of corrupted time steps above it.
 
-        The fractions are measured on other clean time steps, and on corrupted ones that restoring
-        improves.
+        The clean time steps were not used before, and the corrupted ones are those that restoring
+        improves. The threshold is set only at the end of training.
         """
         ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)

@@ -1,6 +1,6 @@
 """Fine-tune the safeguard's language model with LoRA to rewrite corrupted text as plain text.
 
-The loss is the cross-entropy of the completions, averaged over all their tokens in a step. The
+The loss is the cross-entropy of the completions, averaged over all completion tokens in a step. The
 pairs of a step are grouped by length into micro-batches.
 """
 
@@ -32,7 +32,8 @@ class SafeguardLora(Objective):
         micro_batch: number of pairs in memory at once.
         files: episode files of R2R or RxR with additional instructions to corrupt.
         chats: chat files (``messages``) with additional pairs.
-        share: fraction of pairs from these files; half from each kind if both are set.
+        share: fraction of pairs from ``files`` and ``chats``; if both are set, each provides half
+            of it.
         seed: seed of the pairs.
     """
 
@@ -71,7 +72,7 @@ class SafeguardLora(Objective):
         return {path: sha256(path) for path in self.read}
 
     def pair(self, index: int) -> Pair:
-        """Return the pair ``index``, which depends only on the seed."""
+        """Return the pair with this index; it depends only on the seed."""
         if not self.chats:
             return draw_pair(self.seed, index, self.texts, self.share)
         rng = generator(self.seed, "chat", index)
@@ -87,7 +88,7 @@ class SafeguardLora(Objective):
         return (job, *self.encode_pair(self.pair(job)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for workers, which excludes the large language model."""
+        """Return the state for workers without the language model, which is large."""
         return {**self.__dict__, "_modules": {}}
 
     def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
@@ -109,7 +110,7 @@ class SafeguardLora(Objective):
         }
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Return the groups, each with the total number of tokens in the step."""
+        """Return the micro-batches, each with the number of completion tokens in the batch."""
         tokens = self.weight(batch)
         return [{"group": group, "tokens": tokens} for group in batch["groups"]]
 

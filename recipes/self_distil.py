@@ -1,22 +1,22 @@
-"""Self-distil a trained policy: it teaches a copy of itself, without expert or rewards.
+"""Self-distil a trained policy: a policy teaches a copy of itself, without an expert or rewards.
 
 The copy (student) runs episodes under corruptions. At every step, the unchanged policy (teacher)
-gives its answer for the clean frame, and the student learns to give the same answer for the
-corrupted frame. This is DAgger (Ross et al. 2011) with the policy on clean frames in place of an
-expert. The loss has four terms:
+answers the clean frame, and the student learns to give the same answer for the corrupted frame.
+This is DAgger (Ross et al. 2011), where the teacher on clean frames replaces the expert. The loss
+has four terms:
 
-* ``w_policy``: the divergence of the action distributions (KL; for actions without a distribution
-  the squared error),
-* ``w_imitation``: the cross-entropy of the teacher's likeliest action (for continuous actions the
-  squared error), because an undecided policy acts differently after a small change of its
-  probabilities,
+* ``w_policy``: the KL divergence of the action distributions (the squared error for actions without
+  a distribution),
+* ``w_imitation``: the cross-entropy of the teacher's likeliest action (the squared error for
+  continuous actions); it is needed because small changes of nearly equal probabilities change the
+  action,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
-* ``w_consistency``: the divergence between the answers to two corruptions of the same frame.
+* ``w_consistency``: the divergence between the student's answers to two corruptions of one frame.
 
 The severity rises during the first part of training, and the last part uses mostly clean frames, so
-that the student returns to the clean behaviour (the order of STRONG-VLA, 2026).
+that the student behaves as before on clean frames (STRONG-VLA, 2026, uses the same order).
 
-Rollouts are slow and learning is fast, so the student runs episodes only every ``every`` steps.
+Rollouts are slower than training steps, so the student runs episodes only every ``every`` steps.
 The clean frames of these episodes are stored, and each step corrupts a random sample of all stored
 frames with new random numbers.
 """
@@ -49,11 +49,11 @@ from mitigate.worlds.world import Corrupted, TrainingEpisodes, World, depth_sens
 
 RISE = 0.6  # fraction of training during which the severity rises (heuristic)
 SETTLE = 0.85  # after this fraction of training, most frames are clean (heuristic)
-SETTLED_CLEAN = 0.75  # fraction of clean frames in that last part (heuristic)
+SETTLED_CLEAN = 0.75  # fraction of clean frames in the last part of training (heuristic)
 
 
 class SelfDistil(Objective):
-    """Trains a policy to act under corruptions as it does on clean frames.
+    """Trains a policy to take the same actions under corruptions as on clean frames.
 
     Args:
         agent: the student, which is trained in place; if it has adapters, only these are trained.
@@ -65,7 +65,7 @@ class SelfDistil(Objective):
         steps: number of training steps.
         every: number of steps between two rounds of rollouts.
         episodes: number of episodes per round.
-        frames: maximum number of frames that are stored per episode, spread evenly.
+        frames: maximum number of frames that are stored per episode, at even intervals.
         batch: number of frames per step.
         window: number of consecutive frames for a recurrent policy; 1 for other policies.
         w_policy, w_imitation, w_feat, w_consistency: weights of the losses.
@@ -75,7 +75,7 @@ class SelfDistil(Objective):
         seed: seed of episodes and corruptions.
 
     Raises:
-        ValueError: A number is out of its range, the policy reads no frames, or it has no such
+        ValueError: A number is out of its range, or the policy reads no frames or has no such
             module.
     """
 
@@ -136,11 +136,13 @@ class SelfDistil(Objective):
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
     def pieces(self) -> int:
-        """Return 1 piece per step, because each process trains on the frames that it stored."""
+        """Return 1, because each process trains on the frames that it stored."""
         return 1
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return clean frames and two corruptions of each, by sensor [B * window, ...]."""
+        """Return clean frames and two corrupted versions of each; the arrays of a sensor are [B *
+        window, ...].
+        """
         for number in range(len(self._stored), step // self.every + 1):
             self._stored.append(self._round(number * self.every))
         rng = generator(self.seed, "self-distil", step)
@@ -224,7 +226,7 @@ class SelfDistil(Objective):
         return stored
 
     def _rollout(self, step: int, number: int) -> dict[str, np.ndarray]:
-        """Run an episode, and return windows of the clean frames that occurred in it."""
+        """Run an episode, and return its clean frames in windows."""
         rng = generator(self.seed, "self-distil rollout", step, number)
         episode = self.training_episodes.draw(rng, (0, 1))
         schedule = self.schedule_at(step)
@@ -286,7 +288,7 @@ def clean_teacher(policy: Policy) -> Policy:
 def _mean(
     loss: Callable[[Answer, Answer], Tensor], teacher: list[Answer], student: list[Answer]
 ) -> Tensor:
-    """Return the mean loss over the positions in a window."""
+    """Return the loss averaged over the positions in a window."""
     pairs = [loss(one, other) for one, other in zip(teacher, student, strict=True)]
     return torch.stack(pairs).mean()
 

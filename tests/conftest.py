@@ -1,4 +1,4 @@
-"""Load ``tests/process.py`` in every process that runs tests."""
+"""Load the plugin ``tests/process.py`` in every process that runs tests."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pytest
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Leave out the process that only distributes tests to workers; the imports take seconds."""
+    """The process that only distributes tests to workers does not load the plugin, whose imports
+    take seconds."""
     if "PYTEST_XDIST_WORKER" in os.environ or not config.getoption("numprocesses", None):
         config.pluginmanager.register(import_module("tests.process"))

@@ -1,4 +1,4 @@
-"""Functions that make processes die, for tests."""
+"""Functions for tests that kill their process."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from multiprocessing.connection import Connection
 
 
 def die_in_a_message() -> None:
-    """Kill this process after its pipes have sent the length of a message but not all of its
+    """Kill this process when a pipe has sent the length of a message and only a part of its
     content."""
     for pipe in gc.get_objects():
         if isinstance(pipe, Connection) and not pipe.closed and pipe.writable:

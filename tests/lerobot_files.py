@@ -1,7 +1,7 @@
-"""Write small LeRobot datasets of version 3, with pyarrow and av alone.
+"""Write small LeRobot datasets of version 3, using only pyarrow and av.
 
-The layout follows ``src/lerobot/datasets`` of lerobot 0.6: the first two episodes are in one file
-of data/ and one video per camera, the third is in the next files.
+The layout follows ``src/lerobot/datasets`` of lerobot 0.6: the first two episodes share one data
+file and one video per camera, and the third episode has its own files.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ def rgb(camera: str, episode: int, frame: int) -> np.ndarray:
 
 
 def depth(episode: int, frame: int) -> np.ndarray:
-    """Return millimetres, uint16 [H, W], with a hole of 0."""
+    """Return depth in millimetres, uint16 [H, W], with a hole (value 0)."""
     y, x = np.mgrid[0:HEIGHT, 0:WIDTH]
     millimetres = 500 + 40 * x + 30 * y + 7 * frame + 100 * episode
     millimetres[4:8, 6:12] = 0
@@ -42,7 +42,7 @@ def depth(episode: int, frame: int) -> np.ndarray:
 
 
 def action(episode: int, frame: int) -> np.ndarray:
-    """Return the action of a row, float32 [2]."""
+    """Return the action of a dataset row, float32 [2]."""
     return np.array([episode + frame / 10, -frame], np.float32)
 
 
@@ -186,7 +186,7 @@ def _write_rows(
         file = path / f"data/chunk-000/file-{number:03d}.parquet"
         with pq.ParquetWriter(file, table.schema) as writer:
             start = 0
-            for episode in episodes:  # one row group per episode, as lerobot writes them
+            for episode in episodes:  # like lerobot, write one row group per episode
                 writer.write_table(table.slice(start, LENGTHS[episode]))
                 start += LENGTHS[episode]
 

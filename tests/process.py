@@ -1,4 +1,4 @@
-"""A plugin for processes that run tests: cached configs, marks of slow tests, the fork server."""
+"""A pytest plugin that caches configs, marks slow tests and starts the fork server."""
 
 from __future__ import annotations
 
@@ -21,13 +21,14 @@ from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.registry import modality, unseen_names
 from mitigate.training.workers import PRELOAD
 
-PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")  # options that name a folder of one test
+# options whose value is a temporary folder of one test
+PLACE = re.compile(r"(folder|runs|out)=(/[\w./-]+)")
 compose = conf.load_config
 composed: dict[tuple, DictConfig] = {}
 
 
 def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
-    """Compose each set of options once per process, since Hydra takes 0.2 s each time."""
+    """Compose each set of options only once per process, because Hydra needs 0.2 s each time."""
     overrides = [*words]
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
@@ -44,20 +45,21 @@ def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
     return cfg
 
 
-gc.disable()  # until the tests are collected, imported objects are not garbage
+# saves time, because no imported object becomes garbage before the tests are collected
+gc.disable()
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
 for command in (
     *("train", "evaluate", "table1", "table2", "sweep", "harden", "run", "replay", "export_drive"),
 ):
-    import_module(COMMANDS[command].module)  # registers the types of its options
+    import_module(COMMANDS[command].module)  # registers the types of the command's options
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reads the marks
+@pytest.hookimpl(tryfirst=True)  # runs before pytest-xdist reads the marks
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Send all tests of a module to one worker, and mark those with slow fixtures.
+    """Send all tests of a module to one worker, and mark the tests that use slow fixtures.
 
-    They share fixtures, composed configs and what the first of them imports.
+    Tests of a module share fixtures, composed configs and imports.
     """
     for item in items:
         if SLOW_FIXTURES & item._fixtureinfo.name2fixturedefs.keys():
@@ -67,10 +69,10 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def compile_kernels(share: int, workers: int) -> None:
-    """Compile a share of the corruptions' kernels, which takes a minute in a new checkout.
+    """Compile one worker's part of the corruption kernels (a minute in a new checkout).
 
-    No test starts before all workers have compiled their share. Each worker reads the kernels of
-    the others from numba's cache and does not compile them.
+    No test starts before all workers have compiled their kernels. Then each worker reads the
+    kernels of the others from numba's cache.
     """
     frames = {
         "rgb": np.full((12, 32, 32, 3), 90, np.uint8),
@@ -81,13 +83,13 @@ def compile_kernels(share: int, workers: int) -> None:
         corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
 
 
-@pytest.hookimpl(tryfirst=True)  # before pytest-xdist reports the tests
+@pytest.hookimpl(tryfirst=True)  # runs before pytest-xdist reports the tests
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 
-    Garbage collection starts again, without the modules and tests of this process. The fork server
-    starts once for all tests, and the first test that needs workers may preload less. Only runs
-    of many tests (pytest-xdist) start it here: a single test would wait for it.
+    The fork server starts only once per process, and a test might start it with fewer modules. In
+    runs without pytest-xdist it is not started here, because a single test would have to wait for
+    it. Garbage collection is enabled again, but ignores all modules and tests that are loaded now.
     """
     gc.freeze()
     gc.enable()

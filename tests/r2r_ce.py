@@ -1,4 +1,4 @@
-"""Find the real R2R-CE episodes for tests that read them; these files are not shipped."""
+"""Find the files of the R2R-CE episodes for tests that need them; they are not shipped."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests, by reading the source, that each package imports only lower packages."""
+"""Tests that each package imports only packages of lower layers; the tests read the source."""
 
 from __future__ import annotations
 
@@ -23,20 +23,22 @@ SOURCES = sorted(
 
 
 def package_of(module: str) -> str:
-    """Return the package of a dotted module, such as ``mitigate.core.names`` is in ``core``."""
+    """Return the package of a dotted module name: "core" for ``mitigate.core.names``."""
     parts = module.split(".")
     return parts[1] if parts[0] == "mitigate" and len(parts) > 1 else parts[0]
 
 
 def module_of(path: Path) -> str:
-    """Return the dotted module of a file; recipes are ``mitigate.recipes``."""
+    """Return the dotted module name of a file; files in ``recipes`` belong to
+    ``mitigate.recipes``."""
     parts = path.relative_to(ROOT).with_suffix("").parts
     parts = parts[1:] if parts[:2] == ("mitigate", "recipes") else parts
     return ".".join(("mitigate", *parts) if parts[0] == "recipes" else parts)
 
 
 def imported(source: str) -> set[str]:
-    """Return the dotted names of everything that ``source`` imports, inside functions too."""
+    """Return the dotted names of everything that ``source`` imports, including imports in
+    functions."""
     names: set[str] = set()
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
@@ -48,7 +50,8 @@ def imported(source: str) -> set[str]:
 
 
 def climbing(module: str, names: set[str]) -> set[str]:
-    """Return the imported ``names`` that are above the package of ``module`` or on its level."""
+    """Return the imported ``names`` whose packages are in the layer of ``module`` or in a higher
+    layer."""
     own_value = package_of(module)
     others = {name for name in names if package_of(name) in RANK and package_of(name) != own_value}
     return {name for name in others if RANK[package_of(name)] >= RANK[own_value]}

@@ -20,7 +20,7 @@ from mitigate.core.checkpoint import weights_sha
 from mitigate.training.config import read
 from mitigate.training.plan import leave_out_stages
 
-# only one worker of pytest trains, instead of each
+# one pytest worker trains for all workers
 pytestmark = pytest.mark.xdist_group("bring your own")
 
 ROOT = Path(__file__).parent.parent
@@ -28,7 +28,9 @@ PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
 CONFIGS = dict(re.findall(r"`(mine/[\w/]+\.yaml)`[^\n]*\n\n```yaml\n(.*?)```", PAGE, re.DOTALL))
 COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
-LONGEST = 80  # maximum lines of a world and an agent that can be trained, evaluated and exported
+# maximum number of lines in which a user can write a world and an agent that trains, evaluates and
+# exports
+LONGEST = 80
 
 
 def run(folder: Path, *command: str) -> None:
@@ -60,7 +62,7 @@ def files(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def folder(files) -> Path:
-    """The same folder after the commands of the page: training, evaluation and export."""
+    """The folder of :func:`page` after the page's commands, which train, evaluate and export."""
     for command in COMMANDS:
         run(files, *shlex.split(command)[1:])
     return files
@@ -88,7 +90,7 @@ def test_own_agent_trains_with_every_kind_of_recipe(folder):
 
 @pytest.mark.slow
 def test_saved_agent_equals_the_trained_one(folder):
-    """The settings are read with the weights, so the command does not name adapters."""
+    """The command need not name the adapters, because the settings are loaded with the weights."""
     rows = "rows.jsonl"
     trained = folder / "runs/corridor-s0.6-seed0" / rows
     assert success(folder / "again" / rows) == success(trained)

@@ -1,4 +1,4 @@
-"""Tests of the command ``mitigate``: its list of commands, and messages about missing parts."""
+"""Tests of the command ``mitigate``: its list of commands, and messages about missing packages."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def test_unknown_command_names_the_nearest():
 
 def test_modules_are_those_that_the_documentation_runs():
     """``python -m mitigate.train`` is equivalent to ``mitigate train``; newer commands have only
-    the second form."""
+    the form ``mitigate NAME``."""
     modules = {path.stem for path in (ROOT / "mitigate/commands").glob("*.py")}
     pages = [
         *ROOT.glob("*.md"),
@@ -53,7 +53,8 @@ def test_modules_are_those_that_the_documentation_runs():
 
 
 def test_options_are_read_before_torch_is_imported():
-    """``--help`` and mistakes must be answered before torch is imported, which takes seconds."""
+    """``--help`` and invalid options must be answered without importing torch, which takes
+    seconds."""
     modules = [command.module for command in cli.COMMANDS.values()]
     code = (
         f"import sys, importlib; [importlib.import_module(name) for name in {modules}]\n"
@@ -127,7 +128,8 @@ def test_dash_in_a_command_is_an_underscore(capsys):
 
 def test_closed_pipe_ends_the_command_silently():
     reader, writer = os.pipe()
-    os.close(reader)  # before the start, so that no process of another test inherits it
+    # unset before the process starts, so that processes of other tests do not inherit it
+    os.close(reader)
     command = [sys.executable, "-m", "mitigate.table1", "--help"]
     process = subprocess.run(command, stdout=writer, stderr=subprocess.PIPE)
     os.close(writer)
@@ -171,21 +173,21 @@ PRINTS = (
 
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
 def test_command_prints_characters_that_the_encoding_lacks(tmp_path, encoding):
-    """Issue T2, faults: an encoding that cannot print."""
+    """Issue T2 (faults): the output encoding lacks some characters."""
     done = run_python(PRINTS, PYTHONIOENCODING=encoding, FILE=str(tmp_path / "file"))
     assert done.returncode == 0 and "\\udcff" in done.stdout, done.stderr
 
 
 @pytest.mark.parametrize("shell", [">&-", ">&- 2>&-", "<&- >&- 2>&-"])
 def test_command_with_closed_streams_prints_into_no_file(tmp_path, shell):
-    """Issue T2, faults: closed stdout."""
+    """Issue T2 (faults): stdout is closed."""
     file = tmp_path / "file"
     done = run_python(PRINTS, shell=shell, FILE=str(file))
     assert done.returncode == 0 and file.read_bytes() == b"data", done.stderr
 
 
 def test_sigterm_runs_the_cleanup_of_a_command():
-    """Issue T2, faults: a signal arrives during an export."""
+    """Issue T2 (faults): a signal arrives during an export."""
     code = (
         "import os, signal; from mitigate import cli; from mitigate.core import doctor\n"
         "def main():\n"

@@ -87,7 +87,7 @@ def test_readme_python_examples_run(monkeypatch, tmp_path):
 
 @pytest.fixture
 def mitigate(monkeypatch, capsys):
-    """Run the command ``mitigate`` in this process and return its output."""
+    """Run a ``mitigate`` command in this process and return its output."""
     monkeypatch.chdir(ROOT)
     monkeypatch.setattr(sys, "argv", ["mitigate"])
     monkeypatch.setattr(sys, "path", [*sys.path])

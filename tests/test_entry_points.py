@@ -18,7 +18,7 @@ from mitigate.worlds.habitat_baselines import CorruptObservationConfig
 ROOT = Path(__file__).parent.parent
 PAGE = (ROOT / "docs/corruption-entry-points.md").read_text(encoding="utf-8")
 SECTIONS = dict(re.findall(r"^## ([^\n]+)\n(.*?)(?=^## |\Z)", PAGE, re.MULTILINE | re.DOTALL))
-LONGEST = 15  # maximum lines of an example, without empty lines
+LONGEST = 15  # maximum number of non-empty lines in an example
 
 
 def blocks(language: str) -> list:
@@ -43,7 +43,7 @@ def test_python_examples_run(code, tmp_path, monkeypatch):
     if "gymnasium" in code:
         pytest.importorskip("gymnasium")
     monkeypatch.chdir(tmp_path)
-    assert "assert " in code  # an example without output is not counted
+    assert "assert " in code  # an example must check its result
     exec(compile(code, "example", "exec"), {"__name__": "example"})
 
 

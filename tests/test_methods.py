@@ -1,8 +1,8 @@
-"""Inventory of methods, with one test per method for its defining property.
+"""Tests of all methods: one test checks the defining property of each method.
 
-Augmentation per frame, per episode and by success; distillation with policy KL and feature MSE;
-zero-initialised residual ConvAdapters; reliability-weighted panorama fusion; the LoRA fine-tune of
-an 8-bit Llama; a Hydra multirun; export.
+The methods are: augmentation per frame, per episode and by success rate; distillation with a KL
+loss on policies and an MSE loss on features; zero-initialised residual ConvAdapters; panorama
+fusion weighted by reliability; LoRA fine-tuning of an 8-bit Llama; a Hydra multirun; export.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ FRAMES = 4000
 
 
 def draws(schedule: Schedule, episodes: int, frames: int) -> list[list[str]]:
-    """Return the names of the corruptions of each frame of each episode."""
+    """Return, for each episode, the names of the corruptions of its frames."""
     return [
         [schedule.draw(0, str(episode), frame)[0].name for frame in range(frames)]
         for episode in range(episodes)
@@ -104,7 +104,7 @@ def test_fresh_conv_adapter_changes_no_bit_and_has_gradients():
 def test_fusion_weights_sum_to_one_and_follow_reliability(factor):
     views = torch.randn(4, 12, 32, generator=torch.Generator().manual_seed(0))
     views = views / views.norm(dim=-1, keepdim=True)
-    views[:, 5] *= factor  # a blank view or an overexposed view
+    views[:, 5] *= factor  # like a blank view or an overexposed view
     weights = reliability(views)
     torch.testing.assert_close(weights.sum(-1), torch.ones(4))
     others_ = torch.cat([weights[:, :5], weights[:, 6:]], 1)

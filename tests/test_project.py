@@ -1,4 +1,4 @@
-"""Tests that the Makefile lists its targets, and that the doctor reports."""
+"""Tests that the Makefile lists its targets, and that ``mitigate doctor`` prints its report."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from mitigate.core import doctor
 if sys.version_info >= (3, 11):
     import tomllib
 else:
-    import tomli as tomllib  # installed together with pytest there
+    import tomli as tomllib  # pytest installs it for these Python versions
 
 ROOT = Path(__file__).parent.parent
 TARGETS = {
@@ -77,7 +77,7 @@ def test_doctor_says_what_to_do_with_an_older_python(capsys, monkeypatch):
 
 @pytest.mark.parametrize(("reported", "expected"), [(None, "PASSIVE"), ("ACTIVE", "ACTIVE")])
 def test_waiting_threads_leave_their_core_to_others_unless_told(reported, expected):
-    """The variable must be set before torch is imported; otherwise OpenMP does not read it."""
+    """``OMP_WAIT_POLICY`` must be set before torch is imported; otherwise OpenMP ignores it."""
     code = "import mitigate, os, sys; print(os.environ['OMP_WAIT_POLICY'], 'torch' in sys.modules)"
     environment = {k: v for k, v in os.environ.items() if k != "OMP_WAIT_POLICY"}
     environment |= {} if reported is None else {"OMP_WAIT_POLICY": reported}

@@ -1,4 +1,4 @@
-"""A tiny objective and agent for the trainer's tests, whose steps take a millisecond."""
+"""A tiny objective and agent for tests of the trainer; a training step takes a millisecond."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mitigate.training.objective import Objective, split_arguments
 
 
 class TinyAgent(nn.Module):
-    """A network whose output depends on random state (dropout), and whose ``frozen`` must not
-    change."""
+    """A network with dropout, so that its output depends on random state. Its layer ``frozen`` must
+    not change."""
 
     def __init__(self, width: int = 8) -> None:
         super().__init__()
@@ -22,7 +22,8 @@ class TinyAgent(nn.Module):
 
 
 class TinyRecipe(Objective):
-    """Regression on noise from the global generator; ``count`` is state other than tensors."""
+    """A regression on noise from the global generator; ``count`` is an example of state that is not
+    a tensor."""
 
     def __init__(self, agent: nn.Module | None = None, *, bad_step: int = -1, pause: float = 0.0):
         super().__init__()
@@ -57,7 +58,7 @@ class TinyRecipe(Objective):
 
 
 def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
-    """Build an objective and its source from built arguments, which are split as in a recipe."""
+    """Build an objective and its data source from arguments that are split as in a recipe."""
     parameter = next((name for name in kind.sources if name not in arguments), "")
     own_value, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
     if parameter:

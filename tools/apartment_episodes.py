@@ -1,4 +1,4 @@
-"""Write the fixed episode list of a validation split of the apartments:
+"""Write the fixed list of episodes for a validation split of the apartments:
 ``python -m tools.apartment_episodes OUT.json.gz --split val_unseen --task vln``.
 """
 

@@ -1,10 +1,10 @@
-"""Compare the results of two commits on this machine: ``python tools/compare.py COMMIT [COMMIT]``.
+"""Compare the results of two commits on one machine: ``python tools/compare.py COMMIT [COMMIT]``.
 
-This is for code that is moved or rewritten and must not change its results. In a checkout of each
-commit, every recipe trains two steps and every shipped agent runs 20 episodes under the whole
-suite, with the normal commands. Weights and rows must be equal bit for bit. Training uses fp32,
-because older commits choose the precision by timing. Bits differ between processors, so the digests
-are stored only in ``runs/compare``, for later comparisons on this machine.
+The tool checks that moving or rewriting code has not changed results. In a checkout of each commit,
+the normal commands train two steps with every recipe, and evaluate every shipped agent in 20
+episodes under the whole suite. Weights and rows must be equal bit for bit. Training uses fp32,
+because older commits measured times to choose the precision. Bits differ between processors, so
+digests are valid only on one machine. They are stored in ``runs/compare`` for later comparisons.
 
 By default, the second commit is the working tree. The exit status is 1 if anything differs.
 """
@@ -30,14 +30,14 @@ from mitigate.core.files import write_text
 
 ROOT = Path(__file__).resolve().parent.parent
 STORED = ROOT / "runs" / "compare"
-AGENTS = {  # maps patterns of weight folders to the kind of agent
+AGENTS = {  # patterns of weight folders, and the kind of agent in them
     "checkpoints/base": "topological",
     "checkpoints/teacher": "topological",
     "checkpoints/hardened/*": "topological",
     **{f"checkpoints/{kind}/*": kind for kind in ("recurrent", "recurrent_rgb", "frontier")},
     "checkpoints/topological_imagenet/*": "topological_imagenet",
 }
-# entries of a row that are labels and not measured values
+# entries of a result row that are labels instead of measured values
 UNSTABLE = ("agent", "weights", "name", "rule")
 EXTRA = {"safeguard_lora": ("stages.lora.recipe.pairs=2", "stages.lora.recipe.micro_batch=2")}
 
@@ -70,7 +70,9 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return the digests by name of a commit (which are stored) or of the working tree."""
+    """Return the digests of a commit or of the working tree by name; those of a commit are
+    stored.
+    """
     digests: dict[str, str] = {}
     sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()
     file = STORED / f"{sha}-{episodes}.json"
@@ -88,8 +90,9 @@ def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[s
 
 
 def subjects(folder: Path, episodes: int) -> Iterator[tuple]:
-    """Yield the name of each recipe and agent of a checkout, with a function that returns a
-    digest."""
+    """Yield the name of each recipe and agent in a checkout, with a function that computes its
+    digest.
+    """
     for path in sorted(folder.glob("conf/recipe/*.yaml")):
         yield f"recipe/{path.stem}", lambda name=path.stem: train(folder, name)
     agents = [(p, kind) for pattern, kind in AGENTS.items() for p in folder.glob(pattern)]
@@ -148,7 +151,7 @@ def run(command: list[str], folder: Path) -> str:
 
 @contextmanager
 def checkout(sha: str | None) -> Iterator[Path]:
-    """Yield a folder with the files of a commit, or the working tree for None."""
+    """Yield a folder with the files of a commit; for None, yield the working tree."""
     if sha is None:
         yield ROOT
         return

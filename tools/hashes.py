@@ -1,4 +1,5 @@
-"""Print a hash of each corruption's output for a few frames or a text, to compare environments.
+"""Print a hash of each corruption's output on a few frames or a text, so that environments can be
+compared.
 
     python tools/hashes.py > here.txt    # then in another environment, and compare with diff
 

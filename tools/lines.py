@@ -1,8 +1,8 @@
 """Count lines of code: ``python tools/lines.py [PATH ...] [--most N]``.
 
 A line of code holds at least one token that is neither a comment nor part of a docstring. Without
-paths, the package and the recipes are counted, per subpackage and in total, with the lines that
-use ``getattr`` or ``hasattr``.
+paths, the tool counts the package and the recipes, per subpackage and in total. It also counts the
+lines that use ``getattr`` or ``hasattr``.
 """
 
 from __future__ import annotations
@@ -30,7 +30,9 @@ LAYOUT = {
 
 
 def count(source: str) -> tuple[int, int]:
-    """Return the number of code lines in ``source``, and of lines that use getattr or hasattr."""
+    """Return the number of code lines in ``source``, and the number of lines that use getattr or
+    hasattr.
+    """
     code: set[int] = set()
     optional: set[int] = set()
     for token in tokenize.generate_tokens(io.StringIO(source).readline):
@@ -53,7 +55,9 @@ def _docstring_lines(source: str) -> set[int]:
 
 
 def files(path: Path) -> list[Path]:
-    """Return the Python files below ``path``, without those behind symbolic links to folders."""
+    """Return the Python files in ``path`` and its subfolders, but do not follow symbolic links to
+    folders.
+    """
     if path.is_file():
         return [path]
     links = {folder for folder in path.iterdir() if folder.is_symlink()}
@@ -61,7 +65,9 @@ def files(path: Path) -> list[Path]:
 
 
 def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
-    """Return the counts of files, code lines and lines with getattr or hasattr, by subpackage."""
+    """Return, by subpackage, the numbers of files, of code lines, and of lines with getattr or
+    hasattr.
+    """
     sums: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
     for path in paths:
         for file in files(path):
@@ -74,7 +80,7 @@ def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table; exit with an error if the count is above ``--most``."""
+    """Print the table; exit with an error if there are more lines of code than ``--most``."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )

@@ -1,10 +1,10 @@
-"""Break central functions on purpose, one line at a time, and require that a test fails.
+"""Introduce errors into central functions, one line at a time, and check that a test fails.
 
     python -m tools.mutation            every mutation (minutes)
     python -m tools.mutation kl spl     these mutations only
 
 Each mutation is applied to a temporary copy of the checkout, in which its test file runs. If no
-test catches it, or if its line is no longer in the source, the command ends with status 1.
+test fails, or if the line is no longer in the source, the command ends with status 1.
 """
 
 from __future__ import annotations
@@ -22,11 +22,11 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 COPIED = ("conf", "mitigate", "recipes", "tests", "tools", "pyproject.toml")
 COMPILED = shutil.ignore_patterns("__pycache__")
-TESTS_FAILED = 1  # exit status of pytest for failed tests; others mean that no test ran
+TESTS_FAILED = 1  # exit status of pytest if tests failed; other values mean that no test ran
 
 
 class Mutation(NamedTuple):
-    """A wrong line of code, and the test file that must fail with it."""
+    """A wrong line of code, and the test file that must detect it."""
 
     source: str
     test: str
@@ -34,7 +34,8 @@ class Mutation(NamedTuple):
     new: str
 
 
-# name, source and test file, the part of a line to replace, and its replacement
+# in each line: name, source file, test file, the part of a source line to replace, and its
+# replacement
 TABLE = """
 seeding mitigate/core/seeding.py tests/core/test_seeding.py
 - f"{type(part).__name__}:{part}" for part in key
@@ -86,7 +87,7 @@ def outcome(mutation: Mutation) -> str:
                 shutil.copytree(ROOT / name, copy / name, symlinks=True, ignore=COMPILED)
             else:
                 shutil.copy(ROOT / name, copy / name)
-        # folders that are large and to which no test writes
+        # linked instead of copied, because this folder is large and no test writes to it
         (copy / "checkpoints").symlink_to(ROOT / "checkpoints")
         source = (copy / mutation.source).read_text(encoding="utf-8")
         if source.count(mutation.old) != 1:
@@ -107,7 +108,7 @@ def outcome(mutation: Mutation) -> str:
 
 
 def main() -> None:
-    """Run the mutations that the command line names, or all mutations."""
+    """Run the mutations that are named on the command line, or all mutations."""
     results = {}
     for name in sys.argv[1:] or MUTATIONS:
         start = time.monotonic()

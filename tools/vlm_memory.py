@@ -1,9 +1,10 @@
 """Estimate the peak memory of training a vision-language agent: ``python -m tools.vlm_memory``.
 
-The language model is built without memory for its weights (torch's meta device), and one decision
-runs through it. The tensors that autograd keeps for the backward pass are counted exactly. The
-image encoder is frozen, so it keeps none; its weights are added. Memory of the CUDA context, of
-temporary tensors and of fragmentation is not included. Nothing is measured on a GPU.
+The language model is built on torch's meta device, which needs no memory for weights, and processes
+one decision. The tensors that autograd keeps for the backward pass are counted exactly. The image
+encoder is frozen, so autograd keeps none of its tensors; only its weights are counted. Memory of
+the CUDA context, of temporary tensors and of fragmentation is not included. Nothing is measured on
+a GPU.
 """
 
 from __future__ import annotations
@@ -18,19 +19,20 @@ from mitigate.agents.vlm.agent import likelihoods
 
 # published sizes of the language models; the other weights (image encoder, projector) are rounded
 MODELS = {
-    # name: layers, hidden, intermediate, heads, key-value heads, vocabulary, other weights
+    # name: layers, hidden size, intermediate size, heads, key-value heads, vocabulary size, number
+    # of other weights
     "SmolVLM-256M": (30, 576, 1536, 9, 3, 49280, 93e6 + 7e6),
     "LLaVA-OneVision-0.5B": (24, 896, 4864, 14, 2, 152000, 400e6),
     "Qwen2.5-VL-3B": (36, 2048, 11008, 16, 2, 151936, 668e6),
     "Qwen2.5-VL-7B": (28, 3584, 18944, 28, 4, 152064, 676e6),
 }
-BYTES = {"fp32": 4.0, "bf16": 2.0, "int8": 1.0, "nf4": 0.53}  # per weight of a linear layer
+BYTES = {"fp32": 4.0, "bf16": 2.0, "int8": 1.0, "nf4": 0.53}  # bytes per weight of a linear layer
 GIB = 2**30
 TARGETS = ["q_proj", "k_proj", "v_proj", "o_proj"]
 
 
 def language_model(name: str, rank: int) -> nn.Module:
-    """Return the language model of ``name`` with LoRA, on the meta device."""
+    """Return the language model called ``name`` with LoRA, on the meta device."""
     from peft import LoraConfig, get_peft_model
     from transformers import Qwen2Config, Qwen2ForCausalLM
 
@@ -64,7 +66,8 @@ def kept_bytes(network: nn.Module, prompt: int, answers: int, length: int) -> in
     def count(tensor: torch.Tensor) -> torch.Tensor:
         storage = tensor.untyped_storage()
         if storage._cdata not in weights:
-            storages[storage._cdata] = storage  # it stays alive, so that no later one has its key
+            # a reference is kept, so that no later storage gets the same key
+            storages[storage._cdata] = storage
         return tensor
 
     ids = torch.zeros(1, prompt, dtype=torch.long, device="meta")
@@ -87,7 +90,8 @@ def estimate(name: str, precision: str, prompt: int, rank: int = 16) -> dict[str
         activations *= 2
     parts = {
         "weights": linear * BYTES[precision] + tables * wide,
-        "lora": lora * 16.0,  # fp32 weights, gradients and two moments of AdamW
+        # bytes per weight in fp32: the weight, its gradient and two moments of AdamW
+        "lora": lora * 16.0,
         "decision": float(activations),
     }
     return {part: size / GIB for part, size in parts.items()}

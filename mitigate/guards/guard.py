@@ -46,9 +46,9 @@ class EpisodeStart:
 class Guard:
     """Base class of guards. Subclasses override methods, whose defaults change nothing.
 
-    An episode's result must not depend on other episodes or on their order. So ``observe`` must not
-    keep state between calls, unless the guard overrides ``attach``. In that case, episodes run one
-    after the other.
+    An episode's result must not depend on other episodes or on their order. So a guard that
+    remembers earlier frames overrides ``for_episode``. A guard that overrides ``attach`` may keep
+    state in the agent; its episodes run one after the other.
 
     Attributes:
         label: part of a table's column name.
@@ -79,11 +79,13 @@ class Guard:
         """
         return observation
 
-    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Apply :meth:`observe` to each observation; the observations belong to different
-        episodes.
+    def for_episode(self) -> Guard:
+        """Return the guard for one episode.
+
+        A guard that remembers earlier frames returns a new guard without memories. ``observe`` of
+        such a guard is called at every step, also for frames that the agent does not read.
         """
-        return [self.observe(observation) for observation in observations]
+        return self
 
     def attach(self, agent: Any) -> AbstractContextManager:
         """Return a context manager that adapts ``agent`` for one episode.
@@ -190,10 +192,15 @@ class Guards(Guard):
             observation = guard.observe(observation)
         return observation
 
-    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        for guard in self.guards:
-            observations = guard.observe_all(observations)
-        return [*observations]
+    @property
+    def remembers(self) -> bool:
+        """Whether a guard remembers earlier frames of the episode."""
+        return bool(self._overriding("for_episode"))
+
+    def for_episode(self) -> Guards:
+        if not self.remembers:
+            return self
+        return Guards(guard.for_episode() for guard in self.guards)
 
     @property
     def continual(self) -> bool:  # type: ignore[override]
@@ -263,18 +270,26 @@ class Guarded(WorldWrapper):
     """Wrapper around a world whose frames are changed by a guard.
 
     Frames are changed only when the agent reads them, so the guard costs nothing for other frames.
-    ``observation.clean`` does not change.
+    A guard that remembers frames receives all of them. ``observation.clean`` does not change.
     """
 
-    def __init__(self, world: World, guard: Guard) -> None:
+    def __init__(self, world: World, guards: Guards) -> None:
         super().__init__(world)
-        self.guard = guard
+        self.guards = guards
+        self.started = guards  # for the current episode
+
+    def reset(self, episode: Episode) -> Observation:
+        self.started = self.guards.for_episode()
+        return super().reset(episode)
 
     def _observe(self, met: Observation) -> Observation:
         def observed() -> dict[str, Any]:
-            guarded_frames = self.guard.observe(dict(met))
+            guarded_frames = self.started.observe(dict(met))
             return {name: guarded_frames[name] for name in met.frames}
 
+        if self.guards.remembers:
+            frames = observed()
+            return Observation(met.ready, lambda: frames, met.frames, clean=met.clean)
         return Observation(met.ready, observed, met.frames, clean=met.clean)
 
 

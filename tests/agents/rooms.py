@@ -1,4 +1,4 @@
-"""Small worlds for the tests of agents: an empty room, and an untrained agent that can move."""
+"""Small worlds and an untrained agent for the tests of agents."""
 
 from __future__ import annotations
 
@@ -31,21 +31,21 @@ class Brief(ApartmentsWorld):
 
 
 class Corner(ApartmentsWorld):
-    """Apartments with only the first few places, so that few features are stored."""
+    """Apartments that offer only their first few places, so that only a few features are stored."""
 
     def points(self) -> np.ndarray:
         return super().points()[:400]
 
 
 def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return the logits [120, 12] of a waypoint predictor without errors."""
+    """Return the logits [120, 12] that a perfect waypoint predictor would return."""
     return np.where(free_directions(space, xy, heading) > 0.5, 20.0, -20.0)
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
     """Return an untrained agent that predicts free space everywhere. ``stop`` is the bias of the
-    stop score. At -50 the agent stops only at the limit of decisions; near 0 this depends on the
-    frames."""
+    stop score. At -50 the agent stops only when it reaches the limit of decisions; near 0 stopping
+    depends on the frames."""
     seeding.seed_everything(0, "wanderer")
     small = {"heads": 2, "text_layers": 1, "layers": 1}
     agent = TopologicalAgent(16, small, blind, size=16).eval()

@@ -1,5 +1,5 @@
-"""Tests of adapters: insertion keeps outputs, training keeps the backbone, removal restores the
-model."""
+"""Tests that inserting adapters keeps the outputs, training keeps the backbone, and removal
+restores the model."""
 
 from __future__ import annotations
 
@@ -111,7 +111,7 @@ def test_training_changes_only_adapters(encoder):
     model, targets, x, _ = encoder
     insert_adapters(model, targets)
     before = adapters.backbone_sha(model)
-    model.eval()  # the running statistics of BatchNorm are also unchanged
+    model.eval()  # the running statistics of BatchNorm have not changed either
     optimizer = torch.optim.SGD([p for p in model.parameters() if p.requires_grad], lr=0.1)
     first = model(x)
     for _ in range(3):
@@ -171,7 +171,7 @@ def test_scale_covers_every_kind(kind):
 
 def test_find_sites_restores_modes():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8)).train()
-    model[1].eval()  # as in the code of users who train layers around a frozen encoder
+    model[1].eval()  # users who train layers around a frozen encoder do this
     insert_adapters(model, ["0"], run=lambda n: model(torch.zeros(n, 3, 8, 8)))
     assert model.training and model[0].training and not model[1].training
 
@@ -242,7 +242,7 @@ def test_share_on_the_reference_agent_is_small():
 def test_failed_insertion_keeps_the_model():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
     for options in (
-        {"target_modules": ["0", "2"]},  # a Linear module has no map channels
+        {"target_modules": ["0", "2"]},  # a Linear module has no channels of feature maps
         {"target_modules": ["0"], "ring": ["0"], "hfov": 200.0},
     ):
         with pytest.raises(ValueError, match="channels of 2|hfov|field of view"):
@@ -350,7 +350,7 @@ def test_load_rejects_invalid_folders(tmp_path, spoil):
         settings.write_text(json.dumps({"adapters": 3}), encoding="utf-8")
     elif spoil == "levels":
         settings.write_text("[" * 100_000, encoding="utf-8")
-    elif spoil == "memory":  # would need a kernel of 100 GB
+    elif spoil == "memory":  # a kernel of this size would need 100 GB
         text = settings.read_text(encoding="utf-8")
         settings.write_text(text.replace('"kernel": 3', '"kernel": 30001'), encoding="utf-8")
     elif spoil == "shapes":

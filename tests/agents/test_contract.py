@@ -1,4 +1,5 @@
-"""Tests of users' objects as agents, worlds and experts: missing members get defaults."""
+"""Tests that users' objects can be agents, worlds and experts, and that missing members get
+defaults."""
 
 from __future__ import annotations
 
@@ -91,7 +92,7 @@ def test_teacher_is_by_default_a_copy_without_adapters():
 
 
 class Place:
-    """A world with only the required members, and an expert that only defines ``action``."""
+    """A world with only the required members; its expert defines only ``action``."""
 
     sensors: dict = {}
     rule = "STOP"

@@ -45,7 +45,7 @@ def test_fingerprint_changes_with_every_difference():
         fingerprint(agent(blind=["rgb"]), views),
         fingerprint(agent(size=32), views),
         fingerprint(agent(planner={**SMALL, "fusion": {"rate": 4, "cap": 3}}), views),
-        # the same number of words with different ids
+        # the same words with different ids
         fingerprint(agent(vocabulary=[*WORDS[1:], WORDS[0]]), views),
         fingerprint(plain, cameras(32)),
         fingerprint(plain, views, "rules"),
@@ -73,7 +73,8 @@ def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
 
 
 def _hashes(folder, agent, sources):
-    """Return the hash of the class ``agent`` for each source text of its module."""
+    """Return the fingerprint of the class ``agent`` for each of several source texts of its
+    module."""
     matches = []
     for source in sources:
         (folder / "own_agent.py").write_text(source)
@@ -126,7 +127,7 @@ def test_fingerprint_ignores_code_of_installed_packages(tmp_path, monkeypatch):
 
 
 class Here:
-    """A class that belongs to no package."""
+    """A class whose module belongs to no package."""
 
 
 def test_fingerprint_counts_code_of_networks(tmp_path, monkeypatch):
@@ -575,7 +576,8 @@ def _biased_planner(bias):
 
 
 def _with(owner, name, value, output):
-    """Replace an attribute of a class or module during the test, and return an agent."""
+    """Return a function that replaces an attribute of a class or module during the test and returns
+    an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)

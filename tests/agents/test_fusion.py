@@ -1,4 +1,4 @@
-"""Tests of reliability weights: only blank or inflated views lose weight."""
+"""Tests of reliability weights: only views with unusually small or large features lose weight."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tests.agents.topological.test_planner import decision
 
 
 def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
-    """Return the mean of views weighted by reliability, and the weights."""
+    """Return the mean of the views weighted by reliability, and the weights."""
     weights = reliability(views, **how)
     return (views * weights.unsqueeze(-1)).sum(-2), weights
 
@@ -22,7 +22,7 @@ def fuse(views: torch.Tensor, **how) -> tuple[torch.Tensor, torch.Tensor]:
 def views() -> torch.Tensor:
     """Twelve views of one panorama with features of about the same magnitude."""
     torch.manual_seed(0)
-    # views of the same room have much in common
+    # views of the same room have similar features
     mixed = torch.randn(64) + 0.5 * torch.randn(12, 64)
     return torch.nn.functional.normalize(mixed, dim=-1) * 8
 
@@ -36,7 +36,7 @@ def test_reliability_gives_outliers_the_smallest_weight(views, factor):
     assert torch.isclose(weights.sum(), torch.tensor(1.0))
     size = damaged.norm(dim=-1)
     deviation = (size - size.mean()).abs() / size.mean()
-    assert RATE * deviation[3] > CAP  # so different that the cap limits its weight
+    assert RATE * deviation[3] > CAP  # the view is so different that the cap limits its weight
     expected = CAP - RATE * deviation[torch.arange(12) != 3]
     assert torch.allclose(torch.log(others / weights[3]), expected, atol=1e-4)
 
@@ -89,10 +89,11 @@ def test_learned_reliability_starts_with_equal_weights(views):
 
 
 def test_learned_reliability_learns_beyond_magnitudes():
-    """If noise of equal magnitude replaces views, the rule misses this but a learned score detects
-    it."""
+    """If features of equal magnitude replace views, the magnitude rule misses it, but a learned
+    score detects it."""
     torch.manual_seed(0)
-    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)  # features of a broken view
+    # the features that broken views get
+    marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)
 
     def draw() -> tuple[torch.Tensor, torch.Tensor, torch.Tensor]:
         mixed = torch.randn(32, 1, 64) + 0.5 * torch.randn(32, 12, 64)
@@ -126,7 +127,7 @@ def test_weigher_rejects_rate_for_learned_reliability():
 
 
 def planner(fusion: dict | None) -> Planner:
-    """Return an untrained planner with fixed weights, with or without fusion."""
+    """Return an untrained planner with seeded weights, with or without fusion."""
     seeding.seed_everything(0, "planner")
     return Planner(8, 8, width=16, heads=2, text_layers=1, layers=1, fusion=fusion).eval()
 
@@ -135,7 +136,7 @@ def planner(fusion: dict | None) -> Planner:
 def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor) -> torch.Tensor:
     """Return the tokens of ghosts, which are waypoints that were seen but not visited.
 
-    The flat views ``sightings`` [G, 4] faced them.
+    ``sightings`` [G, 4] contains the flat indices of the views that faced each ghost.
     """
     model, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
@@ -147,7 +148,7 @@ def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor)
 
 @pytest.fixture
 def features() -> torch.Tensor:
-    """Return four panoramas in which every third view is inflated."""
+    """Return four panoramas in which every third view has larger features."""
     torch.manual_seed(0)
     model = torch.rand(4, VIEWS, sum(planner(None).widths))
     model[:, ::3] *= 3.0
@@ -162,7 +163,8 @@ def test_planner_with_equal_weights_takes_means(features):
 
 
 def test_planner_normalises_the_weights_of_ghosts(features):
-    """A single view determines the token; of two views, the more reliable one has more weight."""
+    """If one view saw a ghost, it alone determines the token. If two views saw it, the more
+    reliable one has more weight."""
     seen = torch.tensor([[0, -1, -1, -1], [1, -1, -1, -1], [0, 1, -1, -1]])
     plain = ghosts(None, features, seen)
     fused = ghosts({"rate": 4.0, "cap": 3.0}, features, seen)
@@ -171,7 +173,7 @@ def test_planner_normalises_the_weights_of_ghosts(features):
 
 
 def test_planner_output_is_unchanged_by_untrained_reliability(features):
-    """The other weights of the planner also have equal initial values."""
+    """The initial values of the planner's other weights are also equal."""
     seen = torch.tensor([[0, 1, -1, -1], [14, -1, -1, -1], [3, 6, 9, 13]])
     plain, learned = planner(None), planner({"learned": True})
     others = {k: v for k, v in learned.state_dict().items() if not k.startswith("fusion.")}

@@ -1,4 +1,5 @@
-"""Tests of encoder gates: frames that are classified as clean pass unchanged, bit for bit."""
+"""Tests of encoder gates: features of frames that are classified as clean do not change by a
+bit."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def gate_of(model: nn.Module) -> FrameGate:
 
 
 def centred(model: nn.Module, frames: torch.Tensor) -> torch.Tensor:
-    """Open the gate for half of the ``frames``, and return for which."""
+    """Open the gate for half of the ``frames``, and return a mask of these frames."""
     model(frames)
     gate = gate_of(model)
     with torch.no_grad():

@@ -23,8 +23,8 @@ class Expert:
 
 
 class Reusing:
-    """World whose frames show the step number and reuse the same arrays, with three steps per
-    episode."""
+    """World with three steps per episode, whose frames show the step number and reuse the same
+    arrays."""
 
     rule = "none"
 

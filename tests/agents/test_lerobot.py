@@ -1,7 +1,7 @@
-"""The examples of docs/lerobot.md, with a class that has the methods of a lerobot policy.
+"""Tests of the examples in docs/lerobot.md on a class with the methods of a lerobot policy.
 
-lerobot cannot be installed next to this project. The methods and the decorators ``no_grad`` equal
-``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
+lerobot cannot be installed next to this project. The class therefore has the methods and
+``no_grad`` decorators of ``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
 """
 
 from __future__ import annotations
@@ -37,7 +37,8 @@ def example(name: str) -> str:
 
 
 class Network(nn.Module):
-    """Returns a chunk of actions from the brightness of the frame, and None, as ACT does."""
+    """Computes a chunk of actions from the brightness of the frame; like ACT, it also returns
+    None."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -49,7 +50,8 @@ class Network(nn.Module):
 
 
 class ChunkPolicy(nn.Module):
-    """A policy with the methods of lerobot: a queue of actions, and forward as the loss."""
+    """A policy with the methods of a lerobot policy: it has a queue of actions, and ``forward``
+    returns the loss."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -76,7 +78,8 @@ class ChunkPolicy(nn.Module):
 
 
 class Reach(gymnasium.Env):
-    """The brighter half of the frame says whether the first action should be 1 or -1."""
+    """An environment in which the brighter half of the frame tells whether the first action should
+    be 1 or -1."""
 
     def __init__(self) -> None:
         self.observation_space = spaces.Box(0, 255, (32, 32, 3), np.uint8)
@@ -105,7 +108,8 @@ def world() -> GymWorld:
 
 
 def trained() -> ChunkPolicy:
-    """Return a policy that solves the task: left minus right half of the frame."""
+    """Return a policy that solves the task: its action is the left minus the right half of the
+    frame."""
     policy = ChunkPolicy()
     linear = policy.model.layers[2]
     with torch.no_grad():

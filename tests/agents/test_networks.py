@@ -1,4 +1,5 @@
-"""Networks of an agent at any place, and their mode."""
+"""Tests that an agent's networks are found wherever it stores them, and that their modes are
+kept."""
 
 from __future__ import annotations
 

@@ -92,7 +92,7 @@ def test_agents_resize_views_of_any_size():
     agent = TopologicalAgent(size=32).eval()
     rgb = torch.randint(0, 256, (1, 12, 32, 32, 3), dtype=torch.uint8)
     depth = torch.rand(1, 12, 32, 32, 1) * 5
-    depth[..., :4, :, :] = 0  # a hole keeps its sharp edge
+    depth[..., :4, :, :] = 0  # a hole in depth keeps its sharp edge
     large = [x.repeat_interleave(3, 2).repeat_interleave(3, 3) for x in (rgb, depth)]
     with torch.no_grad():
         for own_value, other in zip(

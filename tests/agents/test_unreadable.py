@@ -27,7 +27,7 @@ class Level(enum.Enum):
 
 
 class Table(dict):
-    """A user's mapping class with attributes for keys."""
+    """A user's dict class whose keys can be read as attributes."""
 
     __getattr__ = dict.get
 
@@ -44,7 +44,7 @@ class Slotted:
 
 
 class Pickled:
-    """An object whose pickles do not contain its behaviour."""
+    """An object whose pickle does not contain the value that its behaviour depends on."""
 
     def __init__(self, level: int) -> None:
         self.level = level
@@ -186,7 +186,7 @@ CONFIG: dict = {}
 
 
 class Described(nn.Module):
-    """An agent with settings() whose method names a global variable."""
+    """An agent with settings() whose method reads a global variable."""
 
     def settings(self):
         return {}

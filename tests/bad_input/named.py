@@ -1,4 +1,4 @@
-"""A check that is used by all tests of rejected files."""
+"""A check that all tests of rejected files use."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ LONGEST = 1500  # maximum length of a message (heuristic)
 
 def refused(call: Callable[[], Any], words: str = "") -> str:
     """Call ``call``; it must raise ValueError or FileNotFoundError with one paragraph that contains
-    ``words``. Any other error fails the test, because a user would see a traceback."""
+    ``words``. Any other type of error fails the test, because a user would see a traceback."""
     try:
         matches = call()
     except (ValueError, FileNotFoundError) as error:

@@ -1,5 +1,5 @@
-"""Tests of command lines: a mistake gives one paragraph and an exit status, but no traceback or
-files."""
+"""Tests that an invalid command line prints one paragraph and sets an exit status, without a
+traceback or new files."""
 
 from __future__ import annotations
 
@@ -97,7 +97,7 @@ WRONG = {
         ("launcher=nothing", "no launcher"),
     ],
 }
-# these command lines run through Hydra, which takes three times as long as only composing
+# these command lines start Hydra, which takes three times as long as composing the config
 THROUGH_HYDRA = {"trainer.lr=inf", "severity=2", "recipe=", "agent=hello", "a b", "x=[1,2"}
 LINES = [
     pytest.param(

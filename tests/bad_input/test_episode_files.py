@@ -1,5 +1,5 @@
-"""Tests of untrusted episode files: read completely, or rejected with file, entry and
-requirement."""
+"""Tests that untrusted episode files are read completely, or rejected with a message that names the
+file, the entry and the requirement."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ GOOD = {
     "reference_path": [[0.0, 0.0, 0.0], [1.0, 0.0, 1.0]],
 }
 NAN, HUGE = float("nan"), 10**400
-CHANGES = {  # maps a dotted key and value to the expected message
+CHANGES = {  # name of the test: dotted key, invalid value, and expected message
     "a huge integer": ("start_position", [HUGE, 0, 0], "'start_position'"),
     "far away": ("start_position", [1e300, 0, 0], "'start_position'"),
     "not a number": ("start_position", [NAN, 0, 0], "'start_position'"),

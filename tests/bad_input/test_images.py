@@ -1,4 +1,4 @@
-"""Tests of untrusted frames: decoded completely or skipped with a reason, without partial
+"""Tests that untrusted image files are decoded completely or skipped with a reason, without partial
 output."""
 
 from __future__ import annotations

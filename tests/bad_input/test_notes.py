@@ -1,4 +1,4 @@
-"""Tests of damaged notes next to rows: the error names the file, and the file is kept."""
+"""Tests of damaged files next to result rows: the error names the file, and the file is kept."""
 
 import pytest
 

@@ -1,4 +1,5 @@
-"""Tests of untrusted recordings: read, or rejected by name, within bounded memory and time."""
+"""Tests that untrusted recordings are read, or rejected with their name, within bounded memory and
+time."""
 
 from __future__ import annotations
 
@@ -24,8 +25,8 @@ from mitigate.worlds.recorded import messages as ros
 from mitigate.worlds.recorded.source import Lens
 
 SIZE = 16
-SLOWEST = 20.0  # maximum seconds for a rejection (on a busy machine)
-MOST = 64 << 20  # maximum bytes of Python's and NumPy's memory for a rejection
+SLOWEST = 20.0  # maximum seconds until a rejection (on a busy machine)
+MOST = 64 << 20  # maximum bytes that Python and NumPy may allocate before a rejection
 
 
 def steps(count: int = 3) -> list[dict[str, np.ndarray]]:
@@ -44,7 +45,7 @@ def read(path: Path) -> list:
 
 
 def refused(path: Path, message: str | None = None) -> None:
-    """Check that ``path`` is rejected quickly, in little memory, with one short paragraph that
+    """Check that ``path`` is rejected quickly, with little memory and one short paragraph that
     names it."""
     began = time.monotonic()
     tracemalloc.start()
@@ -124,7 +125,7 @@ def test_tum_folder_with_false_values_is_rejected(tmp_path, name, text, message)
 def test_long_list_is_rejected_before_it_is_read(tmp_path, monkeypatch):
     folder = tum(tmp_path / "drive")
     with open(folder / "rgb.txt", "wb") as file:
-        file.truncate(1 << 30)  # a sparse file with one line that never ends
+        file.truncate(1 << 30)  # a sparse file of 1 GiB without a line break
     monkeypatch.setattr("mitigate.worlds.recorded.folders.read_text.__defaults__", (1 << 20,))
     refused(folder, "must have at most 1048576 bytes")
 
@@ -220,7 +221,7 @@ def test_chunk_bomb_is_rejected(tmp_path, bombs, kind):
     (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
     if kind == "zstd":
         refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
-    else:  # lz4 compresses by at most 255 times, so reading stops half way
+    else:  # lz4 compresses by a factor of at most 255, so reading stops in the middle
         with pytest.raises(ValueError, match="unpacks to more than"):
             read(tmp_path / "robot.mcap")
 

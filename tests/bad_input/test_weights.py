@@ -1,4 +1,4 @@
-"""Tests of untrusted checkpoints, weights and folders: no code runs, and errors are clear."""
+"""Tests that untrusted checkpoints, weights and folders run no code and give clear errors."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Code:
 
 
 class Builds:
-    """Like ``Code``, but through the state that an unpickler sets."""
+    """Like ``Code``, but inside the items that an unpickler adds to a dict."""
 
     def __reduce__(self):
         return dict, (), None, None, iter([("a", Code(Path("ran")))])
@@ -73,7 +73,7 @@ NETWORK = nn.Linear(3, 2)
 
 
 def trapped(ran: Path) -> dict[str, bytes]:
-    """Write files that would run code in an unsafe reader, by ``torch.load`` and pickle."""
+    """Return the content of files that would run code if an unsafe reader opened them."""
     code = Code(ran)
     return {
         "a pickle": pickle.dumps(code),
@@ -322,7 +322,7 @@ def test_encoder_rejects_invalid_folder(tmp_path, output):
 @FAST
 @given(st.data())
 def test_flipped_and_cut_bytes_are_noticed(tmp_path, data):
-    """A file without a checksum file is checked by the checksums that it contains."""
+    """If a file has no checksum file, the checksums inside the file are checked."""
     at = data.draw(st.integers(0, len(SOUND) - 1))
     raw = SOUND[:at] + data.draw(st.binary(max_size=4)) + SOUND[at + data.draw(st.integers(0, 9)) :]
     path = tmp_path / "step-00000003.pt"
@@ -351,8 +351,7 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 
 
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
-    """The author of the card can also write its checksums, so the listed files must not run
-    code."""
+    """The author of a card can also write its checksums, so a listed file must not run code."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
     program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))

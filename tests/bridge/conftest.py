@@ -34,7 +34,7 @@ def condition(name="clean", severity=0.6, **more):
 
 
 def config(*options):
-    """Return the typed options of a run."""
+    """Return the options of ``mitigate run`` as a typed config."""
     return OmegaConf.to_object(load_config("run", [*options]))
 
 
@@ -46,7 +46,7 @@ def python(listener, code, *arguments):
 
 
 class CommandResult:
-    """The result of a command: status, output, reports, and the frames of its workers."""
+    """The result of a command: its status, output and reports, and the frames of its workers."""
 
     def __init__(self, process, folder, seen):
         self.status = process.returncode
@@ -55,7 +55,7 @@ class CommandResult:
         self._seen = seen
 
     def seen(self):
-        """Return {(episode, step number): entry} for all workers."""
+        """Return a dict {(episode, step number): entry} with the entries of all workers."""
         entries = {}
         for file in sorted(self._seen.parent.glob(f"{self._seen.name}.*")):
             steps = {}
@@ -67,7 +67,7 @@ class CommandResult:
 
 @pytest.fixture
 def command(tmp_path):
-    """Run ``lab/agent.py`` with options under a condition, as ``mitigate run`` does."""
+    """Run ``lab/agent.py`` with these options under a condition, as ``mitigate run`` does."""
 
     def run(settings, *options, python=sys.executable, patience=10.0, **environment):
         folder = tmp_path / f"{settings.corruption.name}-{len(list(tmp_path.iterdir()))}"
@@ -95,7 +95,7 @@ def command(tmp_path):
 
 @dataclass
 class RunResult:
-    """The output of a run, and its error if there is one."""
+    """The output of a command, and its error message if it failed."""
 
     stdout: str
     stderr: str = ""
@@ -105,7 +105,7 @@ class RunResult:
         return int(bool(self.stderr))
 
 
-# Tests in these modules start new interpreters, as a user's command does; other tests fork.
+# The tests in these modules start new interpreters, as a user's command does. All other tests fork.
 NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
 
 
@@ -113,8 +113,8 @@ NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
 def run(request, capsys, monkeypatch):
     """Run a command as the command line does, in this process, without drawing heat maps.
 
-    The tests of the report check heat maps. Drawing one takes a third as long as a short
-    condition.
+    Heat maps are tested by the tests of the report. Drawing a heat map takes a third as long as
+    running a short condition.
     """
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path.touch())
     monkeypatch.setattr(run_module, "PAUSE", 0.05)

@@ -1,4 +1,5 @@
-"""Tests of attempts at a condition: how they start, and errors before and at their start."""
+"""Tests of attempts to run a condition: how an attempt starts, and errors before and during its
+start."""
 
 import fcntl
 import json
@@ -34,7 +35,7 @@ for _, name in mitigate_hook.wanted([("", name) for name in "abc"]):
 
 @pytest.fixture
 def skips(tmp_path):
-    """A program that skips episodes in its own results file, and dies after its first episode."""
+    """A program that skips the episodes in its results file, and dies after its first episode."""
     file = tmp_path / "nav.py"
     file.write_text(SKIPS)
     return f"{sys.executable} {file}"
@@ -179,7 +180,7 @@ def test_watch_reads_a_file_once(tmp_path, monkeypatch):
 
 
 def test_wanted_sends_names_in_parts(tmp_path):
-    """The episode names of a train split do not fit into one message."""
+    """The names of all episodes in a train split are too long for one message."""
     code = (
         "import mitigate_hook\nmitigate_hook.KEYS_PER_MESSAGE = 7\n"
         "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"

@@ -1,5 +1,4 @@
-"""Tests of an unchanged program under the bridge: equal pixels in every process, no clean
-frames."""
+"""Tests that an unmodified program gets equal pixels in every process, and no clean frames."""
 
 import hashlib
 import os
@@ -20,7 +19,7 @@ from .conftest import LAB, condition
 
 
 def clean_frames(tmp_path):
-    """Return the frames of the first two steps of the stand-in, without the bridge."""
+    """Return the frames of the first two steps in the fake lab, without the bridge."""
     code = (
         "import sys, numpy\n"
         "from habitat.core.env import Env\n"
@@ -72,7 +71,7 @@ def test_hook_leaves_goal_pictures_clean(command):
 
 
 def test_hook_counts_one_call_per_step(command):
-    """Goal pictures and renders are not counted as calls."""
+    """Reading a goal picture or rendering a frame does not count as a call."""
     reports = command(condition("spatter"), "--steps", 3).reports
     assert [end["calls"] for end in reports.ends.values()] == [4, 4, 4, 4]
 
@@ -122,7 +121,8 @@ def test_hook_reports_an_unended_episode_at_the_next_reset(command):
     reports = command(condition(), "--no-stop").reports
     assert len(reports.ends) == 4  # the last episode ends when the Env is closed
     end = reports.ends["s0/0"]
-    assert end["distance"] == pytest.approx(0.5)  # frames at the end, not at the next start
+    # measured at the end of the episode, not at the start of the next one
+    assert end["distance"] == pytest.approx(0.5)
     assert end["stopped"] is False
 
 
@@ -185,7 +185,7 @@ def test_hook_does_nothing_outside_a_run(tmp_path):
 
 
 def test_connection_keeps_frames_of_an_episode_across_calls(tmp_path):
-    """A program may take RGB and depth in separate calls, each with its own description."""
+    """A program may read RGB and depth in separate calls, each with its own camera description."""
     condition = Condition(Corruption("frame_delay", 0.4), 3, Words())
     connection = Connection(None, condition, tmp_path, "token", tmp_path)
     described = {
@@ -204,7 +204,7 @@ def test_connection_keeps_frames_of_an_episode_across_calls(tmp_path):
         connection.on_frame({"call": call})
         return float(frame.flat[0])
 
-    for episode in ("7", "8"):  # the delay is 2 calls: the previous frame of the same sensor
+    for episode in ("7", "8"):  # the delay is 2 calls, so each sensor shows its previous frame
         connection.on_episode({"scene": "house.glb", "id": episode, "text": "Walk."})
         shown = [(take(RGB, n, 2 * n), take(DEPTH, n + 0.5, 2 * n + 1)) for n in range(1, 6)]
         assert shown == [(1, 1.5), (1, 1.5), (2, 2.5), (3, 3.5), (4, 4.5)]

@@ -24,7 +24,7 @@ def test_check_describes_and_draws_a_program(tmp_path, monkeypatch, capsys):
     assert "depth: depth, depth_30" in printed and "0 to 1 for 0 to 10 m" in printed
     assert "instruction 'Walk to the door 0.'" in printed
     assert "white_box-s0.6: not applicable" in printed and "spatter-s0.6: applies" in printed
-    # clean frames of each kind, and two corruptions
+    # four rows: clean RGB, clean depth, and two corruptions
     assert cv2.imread(str(sheet)).shape[0] == 4 * 164
 
 

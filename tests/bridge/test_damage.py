@@ -1,4 +1,4 @@
-"""Tests that damaged files of a finished run are named, and that none of its rows is lost."""
+"""Tests that an error names the damaged file of a finished run, and that no row is lost."""
 
 import json
 import os
@@ -27,7 +27,7 @@ CONDITION = "conditions/low_light-s0.6"
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory):
-    """A folder for the program and its run, used by all tests in this file."""
+    """A folder with the program and its finished run, shared by all tests in this file."""
     return tmp_path_factory.mktemp("finished")
 
 
@@ -35,7 +35,7 @@ def place(tmp_path_factory):
 def finished(run, place):
     """A finished run with two conditions: its folder, and a function that runs it again.
 
-    The first test measures the run; each test gets a copy of the folder.
+    The run is executed for the first test; each test gets a copy of its folder.
     """
     out, remaining = place / "o", place / "kept"
 
@@ -59,7 +59,7 @@ def contents(folder):
 
 
 def with_damaged_line(data, number):
-    """Return the bytes of a file with a damaged line ``number``."""
+    """Return ``data`` (the bytes of a file) with line ``number`` damaged."""
     lines = data.splitlines(keepends=True)
     lines[number - 1] = b"[" + lines[number - 1][1:]
     return b"".join(lines)

@@ -1,4 +1,5 @@
-"""Tests of the ends of episodes: which end counts, and when the instruction is restored."""
+"""Tests of the ends of episodes: which episodes count as ended, and when the instruction is
+restored."""
 
 import sys
 
@@ -26,7 +27,7 @@ def over(*some):
 
 
 def run_env(tmp_path, code, settings=None):
-    """Run a program on the stand-in lab; return its reports and its output."""
+    """Run a program on the fake lab; return its reports and its output."""
     with Listener(settings or condition(), tmp_path) as listener:
         process = python(listener, BEGIN + code)
     assert process.returncode == 0, process.stdout
@@ -45,7 +46,8 @@ b.close()
 
 
 def test_close_drops_unfinished_episodes_of_parallel_envs(tmp_path):
-    """An evaluator with parallel Envs stops after a number of episodes."""
+    """An evaluator with parallel Envs stops after a given number of episodes, while others are
+    unfinished."""
     reports, _ = run_env(tmp_path, STOPS)
     assert list(reports.ends) == ["s0/0"] and reports.lost == ["s0/2"]
 
@@ -67,7 +69,8 @@ LIMITS = ["[1, 0], [1, 1, 1], [1, 0]", "[1, 0], [1, 0], [1, 1]", "[1, 1], [1, 0]
 @pytest.mark.parametrize("acts", LIMITS)
 @pytest.mark.parametrize("each", [True, False])
 def test_close_ends_the_episode_of_a_single_env(tmp_path, acts, each):
-    """The program itself limits the steps; other episodes do not matter."""
+    """The program, and not the Env, limits the number of steps; closing a single Env ends its
+    episode."""
     new = "env = over(one); env.reset()" if each else "env.reset()"
     code = (
         "env = over(*episodes[:3])\n"

@@ -1,4 +1,5 @@
-"""Tests of faults in server and connection: an error follows soon, and no frame stays clean."""
+"""Tests of faults in the server and the connection: they soon cause an error, and no frame stays
+clean."""
 
 import os
 import signal
@@ -17,7 +18,7 @@ from .conftest import LAB, condition
 
 
 def start(listener, folder, *options):
-    """Start the stand-in's program under a listener."""
+    """Start the agent's program on the fake lab, connected to a listener."""
     environment = {**os.environ, **listener.environment()}
     environment["PYTHONPATH"] += os.pathsep + str(LAB)
     return subprocess.Popen(
@@ -30,7 +31,7 @@ def start(listener, folder, *options):
 
 
 def wait_for(folder, word, seconds=20.0):
-    """Wait until the events contain ``word``."""
+    """Wait until the event file of a condition contains ``word``."""
     until = time.monotonic() + seconds
     events = folder / "events.jsonl"
     while not (events.is_file() and word in events.read_text()):
@@ -80,7 +81,8 @@ def test_server_reports_missing_space_for_frames(command, monkeypatch):
 
 
 def test_hook_cannot_be_caught_by_the_agent(tmp_path):
-    """WMNav's loop catches every exception and continues with the next step."""
+    """An error must end the process, because WMNav's loop catches every exception and continues
+    with the next step."""
     code = (
         "import mitigate_hook, numpy\n"
         "episode = mitigate_hook.connect('7')\n"
@@ -116,7 +118,7 @@ def test_server_removes_its_folders(command):
 
 @pytest.fixture
 def pair():
-    """Return the two ends of a connection."""
+    """Return both ends of a socket connection."""
     ends = socket.socketpair()
     for end in ends:
         end.settimeout(5.0)

@@ -1,4 +1,5 @@
-"""Tests of a run's folder: complete conditions, repeated conditions, and the table."""
+"""Tests of the folder of ``mitigate run``: complete conditions, repeated conditions, and the result
+table."""
 
 import json
 import re
@@ -36,14 +37,15 @@ for name in 'abcd':
 
 @pytest.fixture
 def program(tmp_path):
-    """A loop that fails in the named episodes if a frame is corrupted."""
+    """A program whose loop fails in some episodes if a frame is corrupted."""
     file = tmp_path / "nav.py"
     file.write_text(PROGRAM)
     return f"{sys.executable} {file} x"
 
 
 def finish_again(folder):
-    """Mark a condition as finished with its current events."""
+    """Update the note of a finished condition to the number of episodes that its events now
+    report."""
     entries = json.loads((folder / "done.json").read_text())
     write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
 
@@ -110,7 +112,7 @@ def test_run_reports_the_episode_of_a_background_process(run, tmp_path, monkeypa
 
     monkeypatch.setattr(
         attempt, "DISCONNECT_TIME", 0.5
-    )  # the command waits for processes in a separate session
+    )  # the time that the command waits for processes in a separate session
     file = tmp_path / "nav.py"
     file.write_text(BACKGROUND % session)
     result = run(tmp_path / "o", "conditions=[clean]", f"{sys.executable} {file}")
@@ -318,7 +320,7 @@ def test_run_does_not_write_through_a_link(run, program, tmp_path, name):
     assert (tmp_path / "thesis.txt").read_text() == "mine"
     if name == "lock":
         assert result.returncode == 1 and "lock must be a regular file" in result.stderr
-    else:  # results of an earlier attempt are moved away
+    else:  # files of an earlier attempt are moved away, and the run succeeds
         assert result.returncode == 0 and (folder / name).is_file()
 
 

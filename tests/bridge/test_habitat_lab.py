@@ -1,4 +1,5 @@
-"""Tests of the bridge under the real habitat-lab 0.3, if an environment with it is available.
+"""Tests of the bridge with the real habitat-lab 0.3; they are skipped if no environment with it is
+available.
 
 ``tools/pythons.sh FOLDER`` creates ``FOLDER/lab``; ``MITIGATE_PYTHONS`` must name the folder.
 """
@@ -24,7 +25,7 @@ PROGRAM = Path(__file__).parent / "real" / "lab_agent.py"
 
 @pytest.fixture(scope="module")
 def lab():
-    """Return a Python with habitat-lab."""
+    """Return the path of a Python interpreter with habitat-lab."""
     matches = Path(os.environ.get("MITIGATE_PYTHONS", "")) / "lab" / "bin" / "python"
     if "MITIGATE_PYTHONS" not in os.environ or not matches.is_file():
         pytest.skip("no environment with habitat-lab: tools/pythons.sh makes one")
@@ -33,7 +34,7 @@ def lab():
 
 @pytest.fixture(scope="module")
 def episodes(tmp_path_factory):
-    """Return episodes of this project, as export_scene writes them for habitat-lab."""
+    """Return a file of this project's episodes that was exported for habitat-lab."""
     out = tmp_path_factory.mktemp("habitat")
     export(out, "val_unseen", 1, ["vln"])
     return out / "datasets" / "vln" / "val_unseen.json.gz"

@@ -1,4 +1,5 @@
-"""Tests of interrupts, threads and forks: no clean frame, and no answer to a different message."""
+"""Tests that interrupts, threads and forks cause no clean frame and no answer to the wrong
+message."""
 
 import signal
 import time
@@ -67,7 +68,7 @@ def test_hook_stops_for_the_answer_to_another_message(tmp_path):
 
 
 def test_hook_stops_for_a_nested_call(tmp_path):
-    """This happens for example with a signal handler that calls corrupt, or a greenlet."""
+    """Calls are nested if, for example, a signal handler or a greenlet calls ``corrupt``."""
     code = (
         "episode = mitigate_hook.connect('a')\nreceive = mitigate_hook.receive\n"
         "def again(channel):\n    mitigate_hook.receive = receive\n"
@@ -200,7 +201,7 @@ def test_server_drops_the_episode_of_a_dead_worker(tmp_path):
 
 
 def test_server_ends_if_its_answer_is_not_received(tmp_path, monkeypatch):
-    """The other side closed before the answer was sent."""
+    """The client closed the connection before the answer was sent."""
     output = Peer(tmp_path)
     for message in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in output.ask(message)

@@ -1,4 +1,4 @@
-"""Tests of processes that still run after their command ended, and of runs that end too early."""
+"""Tests of processes that outlive their command, and of runs that end too early."""
 
 import os
 import signal
@@ -125,7 +125,7 @@ def test_run_leaves_no_process_after_a_signal(sleeper, tmp_path, number, status)
         [*words, *command],
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
-        # tests in the background inherit an ignored SIGINT
+        # tests that run as a background job inherit an ignored SIGINT
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     events = out / "conditions/clean/events.jsonl"
@@ -136,7 +136,8 @@ def test_run_leaves_no_process_after_a_signal(sleeper, tmp_path, number, status)
     process.send_signal(number)
     assert process.wait(30) == status
     until = time.monotonic() + 10
-    while running(tmp_path) and time.monotonic() < until:  # a killed run has no time to wait
+    # a killed run cannot wait for its processes
+    while running(tmp_path) and time.monotonic() < until:
         time.sleep(0.05)
     assert not running(tmp_path)
 

@@ -1,5 +1,5 @@
-"""Tests of loops without Habitat: no frame stays clean, no episode is lost, no invalid result
-stored."""
+"""Tests of loops without Habitat: no frame stays clean, no episode is lost, and no invalid result
+is stored."""
 
 import sys
 
@@ -20,7 +20,7 @@ depth = numpy.full((16, 16, 1), 2.0, 'float32')
 
 
 def run_loop(tmp_path, code, settings=None):
-    """Run a loop, and return its process and its reports."""
+    """Run a program with a loop over episodes, and return its process and its reports."""
     with Listener(settings or condition("spatter"), tmp_path / "events", patience=5.0) as listener:
         process = python(listener, BEGIN + code)
     return process, read(tmp_path / "events")
@@ -195,7 +195,7 @@ def test_wanted_returns_the_chosen_episodes(tmp_path):
 
 @pytest.mark.parametrize("workers", [1, 5])
 def test_wanted_does_not_depend_on_the_number_of_workers(tmp_path, workers):
-    # under load, a worker may ask later than the others
+    # on a busy machine, one worker may ask later than the others
     keep = Subset(2, tmp_path, settled=0.3 if workers == 1 else 1.5).keep
     code = (
         f"for n in range({workers}):\n    if os.fork() == 0:\n"
@@ -263,7 +263,7 @@ def test_corrupt_rejects_depth_outside_its_range(tmp_path, frame, words):
 
 @pytest.mark.parametrize("name", [0, ("left", 1)])
 def test_corrupt_rejects_a_camera_name_that_is_not_text(tmp_path, name):
-    """JSON changes this name, so the frame would stay clean without special handling."""
+    """JSON converts such a name, so that without this check the frame would stay clean."""
     frame = f"{{{name!r}: rgb}}, cameras={{{name!r}: {{'type': 'rgb'}}}}"
     process, reports = run_loop(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
     assert process.returncode == 97 and "the name of a camera must be text" in "".join(

@@ -1,4 +1,4 @@
-"""Tests of messages: each is answered, rejected with an error, or ends the connection."""
+"""Tests that each message is answered, rejected with an error, or ends the connection."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ class Peer:
             served.close()
 
     def ask(self, message):
-        """Return the answer, or None if the other side closed."""
+        """Send a message; return the answer, or None if the server closed the connection."""
         try:
             if isinstance(message, bytes):
                 self.channel.sendall(message)
@@ -187,7 +187,7 @@ def test_connection_rejects_invalid_ends(peer, fields):
 
 
 def test_rows_accept_infinite_distances(peer):
-    """Infinite distances are valid; the agent's own SPL needs no start."""
+    """Infinite distances are valid, and the SPL that the agent reports needs no start distance."""
     for good in (HELLO, SPEC, EPISODE, {"kind": "frame", "call": 0}):
         assert "error" not in peer.ask(good)
     far = {"start_distance": float("inf"), "distance": float("inf"), "path": [[0, 0, 0], [1, 0, 0]]}

@@ -1,4 +1,4 @@
-"""Tests of programs without habitat-lab, loops without Habitat, and adapters in an agent's
+"""Tests of programs without habitat-lab, of loops without Habitat, and of adapters in an agent's
 encoder."""
 
 import hashlib
@@ -37,7 +37,8 @@ def test_wmnav_is_corrupted_and_measured_without_a_lab(tmp_path):
     own_rows = [row for row in result_rows if row["rule"] == OWN]
     assert [(row["success"], row["spl"]) for row in own_rows] == [(1.0, 0.75)] * 3
     common = {row["rule"] for row in result_rows} - {OWN}
-    assert common == {str(RULES["wmnav"])}  # the goals are categories, passed as words
+    # only WMNav's rule applies, because the goals are category names
+    assert common == {str(RULES["wmnav"])}
 
 
 def test_wmnav_hears_the_corrupted_category(tmp_path):

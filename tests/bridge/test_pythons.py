@@ -1,4 +1,4 @@
-"""Tests of the hook under the Python versions that agents use.
+"""Tests of the hook in all Python versions that agents use.
 
 ``tools/pythons.sh FOLDER`` creates an environment with numpy for each installed version. The
 variable ``MITIGATE_PYTHONS`` must name the folder (CI sets it). Without the variable, these tests
@@ -79,7 +79,7 @@ def test_loop_runs_and_reports_why_it_stops(python, tmp_path):
 
 
 def test_hook_loads_without_numpy(python, tmp_path):
-    """Every Python process of a command loads the hook, and most have no camera."""
+    """Every Python process of a command loads the hook, although most of them read no camera."""
     result = subprocess.run(
         [python, "-S", "-c", "import sys; sys.path.insert(0, sys.argv[1]); import sitecustomize",
          str(HOOK)],

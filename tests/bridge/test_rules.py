@@ -1,4 +1,5 @@
-"""Tests of success rules: which rule judges an episode, and messages if a rule cannot."""
+"""Tests of success rules: which rule judges an episode, and the message if a rule cannot judge
+it."""
 
 import json
 import sys
@@ -81,7 +82,7 @@ def test_run_rejects_a_rule_that_judges_only_some_episodes(run, tmp_path, first)
     file = tmp_path / "nav.py"
     known = "stopped=True if name == 'a' or 'clean' in __import__('sys').argv else None"
     file.write_text(LOOP % f"episode.finish(success=True, distance_to_goal=0.05, {known})")
-    # the condition was not measured, or measured without the rule
+    # at first the condition has no results; the second time it has results without the rule
     for options in (first, "rule=objectnav"):
         options = f"conditions=[spatter] {options}"
         result = run(tmp_path / "o", options, f"{sys.executable} {file} {{condition}}")
@@ -167,7 +168,7 @@ def test_run_warns_about_depth_and_missing_paths(run, tmp_path):
 def test_run_rejects_a_rule_without_distances(run, tmp_path, rule):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(LOOP % "episode.finish(success=True)")
-    # the condition was not measured, or measured without the rule
+    # at first the condition has no results; the second time it has results without the rule
     for before in ("", "conditions=[clean]"):
         if before:
             assert run(out, before, f"{sys.executable} {file}").returncode == 0

@@ -1,4 +1,4 @@
-"""Tests of ``mitigate run`` from the command line, with the program of the stand-in lab."""
+"""Tests of ``mitigate run`` from the command line, with an agent's program on the fake lab."""
 
 import fcntl
 import json
@@ -40,7 +40,7 @@ def test_run_measures_a_program_and_resumes(run, tmp_path):
     first = run(tmp_path / "o", "corruption=spatter name=stand split=toy")
     assert first.returncode == 0, first.stdout + first.stderr
     records = rows.read(tmp_path / "o" / "rows.jsonl")
-    assert len(records) == 2 * 4 * 2  # number of conditions x episodes x rules
+    assert len(records) == 2 * 4 * 2  # 2 conditions x 4 episodes x 2 rules
     own_rows = [row for row in records if row["rule"].startswith("own")]
     assert {row["corruption"] for row in own_rows} == {"clean", "spatter"}
     assert {row["episode_id"] for row in own_rows} == {"s0/0", "s0/2", "s1/1", "s1/3"}
@@ -206,7 +206,7 @@ def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatc
 
 
 def test_run_does_not_finish_condition_that_lost_an_episode(run, tmp_path):
-    """The command ends with status 0, but one of its workers was killed."""
+    """The agent's command ends with status 0, although one of its workers was killed."""
     out = tmp_path / "o"
     result = run(out, "conditions=[clean]", f"{AGENT} --workers 4 --die-at 1 --die-worker 2")
     assert result.returncode == 1 and "1 episode was left unfinished, such as s0/2" in result.stderr
@@ -321,7 +321,7 @@ def test_run_says_how_to_resume_after_a_signal(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
     )
     events = tmp_path / "o" / "conditions" / "clean" / "events.jsonl"
-    for _ in range(1200):  # a minute, because other work may use the cores
+    for _ in range(1200):  # wait up to a minute, because other work may use the cores
         if events.is_file():
             break
         time.sleep(0.05)

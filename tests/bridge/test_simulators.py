@@ -1,4 +1,5 @@
-"""Tests of all ways to get simulator frames: corrupted once, or the process ends with an error."""
+"""Tests of all ways to read frames from a simulator: frames are corrupted once, or the process ends
+with an error."""
 
 import pytest
 

@@ -1,10 +1,10 @@
-"""Programs as forks of a Python process that has imported NumPy already.
+"""Run programs as forks of a Python process that has already imported NumPy.
 
-A new interpreter that imports NumPy needs a third of a second of CPU time, and the tests of the
-bridge start hundreds. Each fork is set up like a new interpreter, with its own arguments,
-environment, path and output. It imports ``sitecustomize`` as an interpreter does when it starts,
-and so the hook. ``run`` starts one program. ``popen`` starts the supervisor of ``mitigate run``,
-which starts its program as a fork. Some tests start new interpreters (``conftest.py``).
+A new interpreter needs a third of a second of CPU time to import NumPy. The tests of the bridge run
+hundreds of programs. Each fork is set up like a new interpreter, with its own arguments,
+environment, path and output. Like a new interpreter, it imports ``sitecustomize``, which loads the
+hook. ``run`` starts one program. ``popen`` starts the supervisor of ``mitigate run``, which starts
+its program as a fork. Some tests start new interpreters (``conftest.py``).
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ IMPORTED = "argparse, contextlib, copy, hashlib, inspect, multiprocessing.popen_
 
 @cache
 def parent() -> socket.socket:
-    """Start the process that forks, and return the connection to it."""
+    """Start the process that is forked for each program, and return the connection to it."""
     ours, theirs = socket.socketpair()
     code = (
         f"import sys; sys.path.insert(0, {str(Path(__file__).parent)!r}); "
@@ -51,10 +51,11 @@ def parent() -> socket.socket:
 def run(
     arguments: Sequence[str], environment: Mapping[str, str], timeout: float
 ) -> subprocess.CompletedProcess[str]:
-    """Run a script, or ``-c`` and code, like ``subprocess.run`` with one pipe for all output.
+    """Run a script or ``-c CODE``, like ``subprocess.run`` with one pipe for stdout and stderr.
 
     Raises:
-        subprocess.TimeoutExpired: the program, or a process that holds its output, runs longer.
+        subprocess.TimeoutExpired: the program, or a process that keeps its output open, runs longer
+        than the timeout.
     """
     connection = parent()
     reader, writer = os.pipe()
@@ -78,7 +79,7 @@ def run(
 def _fork(
     kind: str, arguments: Sequence[str], environment: Mapping[str, str], files: list[int]
 ) -> int:
-    """Let ``serve`` fork; return the pid of the fork."""
+    """Ask the process that runs ``serve`` to fork; return the process id of the fork."""
     connection = parent()
     request = json.dumps([kind, list(arguments), dict(environment), os.getcwd()]).encode()
     socket.send_fds(connection, [len(request).to_bytes(4, "big")], files)
@@ -87,14 +88,15 @@ def _fork(
 
 
 def popen(words: Sequence[str], **options: Any) -> subprocess.Popen[bytes] | Supervisor:
-    """Start the supervisor of ``mitigate run`` as a fork, in place of ``subprocess.Popen``."""
+    """Replace ``subprocess.Popen``: start the supervisor of ``mitigate run`` as a fork."""
     if sys.platform != "linux" or list(words[:3]) != [sys.executable, "-I", "-S"]:
         return subprocess.Popen(words, **options)
     return Supervisor(words[3:], options["env"], options["stdout"], options["pass_fds"][0])
 
 
 class Supervisor:
-    """The part of ``subprocess.Popen`` that ``bridge/program.py`` uses; its status is unknown."""
+    """A forked supervisor with the methods of ``subprocess.Popen`` that are needed here; its exit
+    status is unknown."""
 
     def __init__(
         self, words: Sequence[str], environment: Mapping[str, str], log: IO[str], pipe: int
@@ -119,7 +121,7 @@ class Supervisor:
 
 
 def _line(connection: socket.socket) -> str:
-    """Return the next line that ``serve`` sent."""
+    """Read the next line that ``serve`` sent."""
     line = b""
     while not line.endswith(b"\n"):
         part = connection.recv(1)
@@ -130,7 +132,8 @@ def _line(connection: socket.socket) -> str:
 
 
 def serve(descriptor: int) -> None:
-    """Fork for each request, until the tests end; in a fork, run its program and return."""
+    """Fork for each request until the tests end. In a fork, run the requested program and
+    return."""
     connection = socket.socket(fileno=descriptor)
     while True:
         size, files, _, _ = socket.recv_fds(connection, 4, 2)
@@ -165,7 +168,8 @@ def serve(descriptor: int) -> None:
 
 
 def supervise(arguments: list[str], pipe: int) -> None:
-    """Run ``bridge/program.py`` in this fork; it starts its program by ``Fork``."""
+    """Run ``bridge/program.py`` in this fork; it starts the user's program with
+    ``start_program``."""
     spec = spec_from_file_location("program", arguments[0])
     assert spec is not None and spec.loader is not None
     program: Any = module_from_spec(spec)
@@ -183,7 +187,7 @@ class Fork:
         if self.pid:
             return
         os.setsid()
-        os.close(int(sys.argv[2]))  # the pipe of the supervisor
+        os.close(int(sys.argv[2]))  # close the supervisor's pipe
         signal.signal(signal.SIGINT, signal.default_int_handler)
         for number in (signal.SIGHUP, signal.SIGTERM):
             signal.signal(number, signal.SIG_DFL)
@@ -195,7 +199,7 @@ class Fork:
 
 
 def start_program(words: list[str], start_new_session: bool) -> Fork | subprocess.Popen[bytes]:
-    """Fork to run a Python script or ``-c`` code; start other commands as new processes."""
+    """Fork to run a Python script or ``-c CODE``; start any other command as a new process."""
     is_python = len(words) > 1 and words[0] == sys.executable
     if is_python and (words[1] == "-c" or Path(words[1]).is_file()):
         return Fork(words[1:])
@@ -211,7 +215,7 @@ def start(arguments: list[str]) -> None:
         code, name = Path(arguments[0]).read_text("utf-8"), arguments[0]
         first = os.path.dirname(os.path.abspath(name))
     sys.argv = ["-c", *arguments[2:]] if arguments[0] == "-c" else arguments
-    # without the folder of this file and the empty entry of ``-c``
+    # removes the folder of this file and the empty entry that ``-c`` adds
     sys.path[:] = [*os.environ["PYTHONPATH"].split(os.pathsep), *sys.path[2:]]
     sys.path_importer_cache.clear()
     sys.modules.pop("sitecustomize", None)

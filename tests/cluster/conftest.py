@@ -9,11 +9,11 @@ import pytest
 
 from mitigate.cluster.launcher import RayConfig, SlurmConfig
 
-# a worker that dies at its start is noticed after this time (Ray's default is a minute)
+# Ray notices after 15 seconds that a worker died at its start (Ray's default is a minute).
 HEAD = {
     "num_cpus": 1,
     "include_dashboard": False,
-    # workers need processor time on a busy machine (Ray's default niceness is 15)
+    # With Ray's default niceness of 15, workers get too little CPU time on a busy machine.
     "_system_config": {"worker_register_timeout_seconds": 15, "worker_niceness": 0},
 }
 

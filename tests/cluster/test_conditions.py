@@ -1,4 +1,4 @@
-"""Tests of ``mitigate run`` on a cluster: if a worker dies, its condition is run again."""
+"""Tests of ``mitigate run`` on a cluster: if a worker dies, its condition runs again."""
 
 from __future__ import annotations
 
@@ -13,7 +13,8 @@ from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# An agent that runs two episodes and, under spatter, once kills its worker in the first episode.
+# An agent that runs two episodes. Under spatter, it kills its worker in the first episode, but only
+# once.
 AGENT = """
 import os, pathlib, signal, sys, time
 import mitigate_hook, numpy

@@ -1,4 +1,5 @@
-"""Tests of workers on Ray and as SLURM jobs: each result occurs once, whatever process dies."""
+"""Tests of workers on Ray and as SLURM jobs: no matter which process dies, each result occurs
+once."""
 
 from __future__ import annotations
 
@@ -23,8 +24,9 @@ GROUPS = [[(g, i) for i in range(3)] for g in range(6)]
 
 
 class Squares:
-    """A task whose job (g, i) returns 10 g + i after a while. Jobs in ``deadly`` kill their process
-    the first time and leave a note in ``folder``; jobs in ``always`` kill it every time."""
+    """A task whose job (g, i) returns 10 * g + i after some time. A job in ``deadly`` kills its
+    process the first time, and leaves a file in ``folder``. A job in ``always`` kills its process
+    every time."""
 
     preload: ClassVar[str] = "mitigate.core.workers"
 
@@ -54,7 +56,7 @@ pytestmark = pytest.mark.xdist_group("launchers")  # one cluster is enough
 
 
 def run(launcher, task, workers=2):
-    """Return the results by number, and the process ids of the workers."""
+    """Return the results by job number, and the process ids of the workers."""
     output = {}
     with Progress("jobs", 18, unit="job") as progress:
         for item in results(launcher, task, GROUPS, workers, progress):
@@ -125,11 +127,12 @@ def test_slurm_raises_a_value_error_at_once(slurm_launcher, tmp_path):
     with pytest.raises(ValueError, match="makes no sense"):
         run(slurm_launcher(attempts=2), Squares(tmp_path, wrong=[(0, 1)]), workers=1)
     left = [path.name for path in (tmp_path / "slurm").rglob("*")]
-    assert slurm_jobs.TASK not in left and "logs" in left  # kept to see what went wrong
+    # logs are kept, so that a user can see what went wrong
+    assert slurm_jobs.TASK not in left and "logs" in left
 
 
 def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
-    """A process takes one group at a time, so the rest must stay several groups."""
+    """A process takes one group of jobs at a time, so unfinished groups must not be merged."""
     options, cancelled = [], []
 
     class Job:
@@ -139,7 +142,7 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
             self.lines, self.groups = lines, groups
 
         def done(self):
-            if len(options) == 1:  # the first job ends early, with one result
+            if len(options) == 1:  # the first SLURM job ends early, with only one result
                 self.lines.write_text('{"job": 0, "result": [0, 0]}\n')
             else:
                 output = [n for group in self.groups for n, _ in group]
@@ -172,7 +175,7 @@ def test_slurm_resubmits_the_rest_of_a_share(tmp_path, monkeypatch):
     with pytest.raises(OSError, match="submit limit"):
         run(launcher, Squares(tmp_path), workers=2)
     assert len(cancelled) == 1
-    # the task, with the agent's weights, is also removed
+    # the file of the task, which contains the agent's weights, is also removed
     assert not [*(tmp_path / "slurm").iterdir()]
 
 

@@ -1,4 +1,5 @@
-"""Tests of chains of programs on this machine, on Ray and as SLURM jobs, as in table cells."""
+"""Tests of chains of programs, which compute the cells of tables, on this machine, on Ray and as
+SLURM jobs."""
 
 from __future__ import annotations
 
@@ -18,7 +19,8 @@ from mitigate.core.signals import Ended, raise_ended
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# Appends missing rows to a file; if the name of a note is given, kills the worker after two rows.
+# This program appends missing rows to a file. If the second file does not exist and is not called
+# "none", the program creates it and kills its worker after two rows.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])
@@ -54,7 +56,7 @@ def chain(folder: Path, name: str, deadly: bool = False, code: str = ROWS) -> pr
 
 
 def run(chains, launcher, jobs=2) -> dict[int, str]:
-    """Return the outcome of each chain, and check that each is reported once."""
+    """Return the outcome of each chain, and check that each outcome is reported once."""
     results: dict[int, str] = {}
 
     def reported(number, outcome):
@@ -84,7 +86,8 @@ def test_chain_resumes_after_its_worker_is_killed(kind, request, tmp_path):
     results = run(result, launcher() if kind == "slurm" else launcher)
     assert results == {0: "", 1: ""}
     assert (tmp_path / "died").exists()
-    assert (tmp_path / "one").read_text().split() == [*"abcd"]  # the first program has also ended
+    # the first program of the chain has also ended
+    assert (tmp_path / "one").read_text().split() == [*"abcd"]
 
 
 def test_failed_program_ends_only_its_chain(tmp_path):

@@ -1,4 +1,5 @@
-"""Tests that a password in ``safeguard=`` is never printed, whatever surrounds it."""
+"""Tests that a password in a ``safeguard=`` address is never printed, whatever characters surround
+it."""
 
 from __future__ import annotations
 
@@ -82,7 +83,7 @@ def test_command_line_never_repeats_a_password(tmp_path, monkeypatch, capfd, wor
     words = word.split(" ") if " = " in word or word.startswith("-") else [word]
     text = output(monkeypatch, capfd, [*flags, *words, "checkpoint=nowhere"])
     assert "PW" not in text and "endpoint" in text
-    assert not list(tmp_path.iterdir())  # neither multirun.yaml nor a result folder is written
+    assert not list(tmp_path.iterdir())  # no multirun.yaml and no result folder has been written
 
 
 @pytest.mark.parametrize("url", URLS)

@@ -1,4 +1,4 @@
-"""Tests of objects that are built from a config, and of how often they are built."""
+"""Tests of objects that are built from a config: their values, and how often they are built."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def test_build_names_unimportable_targets(target):
 
 
 class Gained(torch.nn.Module):
-    """An agent with settings that the weights do not contain, one of them without a default."""
+    """An agent with two settings that the weights do not contain; one of them has no default."""
 
     def __init__(self, gain: float, width: int = 2) -> None:
         super().__init__()
@@ -74,8 +74,8 @@ class Gained(torch.nn.Module):
     ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
 )
 def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
-    """``agent=mine`` names a class in a config, but the values in the config belong to another
-    agent."""
+    """``agent=mine`` selects a config with the right class, but its values are not those of the
+    loaded agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)
     settings = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}

@@ -1,4 +1,5 @@
-"""Tests of checkpoints: they are complete or rejected, they rotate, and they contain no code."""
+"""Tests that checkpoints are complete or rejected, that old ones are deleted, and that they contain
+no code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of the sha256 of training states, weight files and older folders."""
+"""Tests of the sha256 checksums of training states, weight files and older folders."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ STATE = {
 
 
 class Killed(BaseException):
-    """Simulated kill, after which only ``finally`` blocks run."""
+    """Raised to simulate a kill; only ``finally`` blocks run after it."""
 
 
 def state(step: int) -> dict:
@@ -69,8 +69,8 @@ def test_checkpoint_detects_every_flipped_bit(tmp_path):
 
 
 def test_load_detects_flipped_bits_without_a_sidecar(tmp_path):
-    """The zip file contains checksums of its contents, so a flip outside the contents is
-    harmless."""
+    """The zip file contains checksums of its entries, so a flipped bit is either detected or
+    changes no entry."""
     path = states.save(tmp_path, state(1))
     note_of(path).unlink()
     expected, sound, refused = states.load(path), path.read_bytes(), 0

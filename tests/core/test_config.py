@@ -1,4 +1,4 @@
-"""Tests that every YAML in conf/ composes with existing targets, and that wrong options are
+"""Tests that every YAML file in conf/ composes, that its targets exist, and that wrong options are
 explained."""
 
 from __future__ import annotations
@@ -179,8 +179,8 @@ def test_frozen_fits_only_recipes_with_its_stages():
 
 
 def test_evaluate_takes_agent_settings_from_the_command_line(monkeypatch, tmp_path):
-    """The settings come from the weights, and the command line overrides them. The column name
-    states this, because the hash of the weights does not change."""
+    """The agent's settings are loaded with the weights, and the command line overrides them. The
+    column name shows such a change, because the hash of the weights stays the same."""
     met = {}
 
     def meet(agent, world, episodes, conditions, *, name, out, **others):
@@ -218,7 +218,7 @@ def test_rows_of_an_edited_episode_list_are_not_resumed(monkeypatch, tmp_path):
     evaluate.run(cfg)
     evaluate.run(cfg)
     seen = conf.load_config("evaluate", ["split=val_seen", f"out={tmp_path}"])
-    # a different list in the same folder is valid, because rows contain their split
+    # the list of a different split may use the same folder, because rows contain their split
     evaluate.run(seen)
     shutil.copy(cfg.env.episodes.val_unseen, mine)
     with pytest.raises(ValueError, match="rows of another"):
@@ -327,7 +327,7 @@ def test_nested_program_ends_in_one_paragraph(monkeypatch, tmp_path, capsys):
 def test_help_says_what_every_option_and_group_means(primary):
     printed, cfg = conf.options_text(primary), conf.load_config(primary)
     settings = {"name", "report", "init", "init_parts", "rollouts"} if primary == "train" else set()
-    # the recipe sets the option ``own``
+    # these options are set by the recipe
     plain = {name for name in cfg if not isinstance(cfg[name], DictConfig)}
     assert plain - settings <= {line.partition(":")[0] for line in printed.splitlines()}
     for group in ("suite", "launcher"):

@@ -1,4 +1,5 @@
-"""Tests that the doctor reports processor features and whether there is a compiler."""
+"""Tests that ``mitigate doctor`` reports the processor's features and whether there is a
+compiler."""
 
 from __future__ import annotations
 

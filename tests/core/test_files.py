@@ -45,7 +45,8 @@ def test_damaged_gzip_gives_one_named_error(packed):
     for data in damaged:
         packed.write_bytes(data)
         with pytest.raises(gzip.BadGzipFile):
-            assert read(packed) == TEXT  # a flipped bit may keep the text, but not the checksum
+            # a flipped bit may leave the text unchanged, but the checksum detects it
+            assert read(packed) == TEXT
 
 
 def bomb(path, size):
@@ -110,7 +111,7 @@ def test_folder_replaces_another_or_the_old_one_stays(tmp_path):
     target.mkdir()
     (target / "a").write_text("before")
     with pytest.raises(FileNotFoundError):
-        files.put_folder(draft, target, old)  # there is no unfinished file
+        files.put_folder(draft, target, old)  # there is no draft folder
     assert (target / "a").read_text() == "before" and not old.exists()
     draft.mkdir()
     (draft / "a").write_text("behind")
@@ -125,7 +126,7 @@ def text_to(path):
 
 
 def private(path):
-    """As safetensors does, the writer replaces the existing file by one of mode 0600."""
+    """Like safetensors, replace the file by a new one with mode 0600."""
     path.unlink(missing_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
 

@@ -1,4 +1,4 @@
-"""Tests that a folder is completely old or completely new, and that changes are detected."""
+"""Tests that a folder contains only old or only new files, and that changes are detected."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FLIPS = 50
 
 
 class Killed(BaseException):
-    """Simulated kill, after which only ``finally`` blocks run."""
+    """Raised to simulate a kill; only ``finally`` blocks run after it."""
 
 
 def flipped(data: bytes, bit: int) -> bytes:
@@ -105,8 +105,8 @@ def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
 @pytest.mark.parametrize("earlier", ["manifest", "sidecar", "nothing"])
 @pytest.mark.parametrize("when", range(4))
 def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlier):
-    """A file is replaced in three steps: the manifest with both files, the file, the final
-    manifest."""
+    """A file is replaced in three writes: a manifest with the old and the new checksum, the file,
+    and the final manifest."""
     old = nn.Linear(3, 2)
     new = nn.Linear(3, 2)
     if earlier == "manifest":
@@ -258,7 +258,8 @@ def test_replace_folder_replaces_the_whole_folder_or_nothing(tmp_path, name):
 
 
 def test_replace_folder_restores_the_old_folder_after_a_kill(tmp_path):
-    """The process was killed between the two renames, and a different process still runs."""
+    """A process was killed between the two renames of a folder, while another process is still
+    writing."""
     target = tmp_path / "agent"
     killed = tmp_path / ".agent.01234567.999999999.tmp"
     (killed / "old").mkdir(parents=True)

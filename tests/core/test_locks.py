@@ -1,5 +1,5 @@
-"""Tests that one process at a time uses a folder, and that files of killed processes are
-deleted."""
+"""Tests that only one process at a time uses a folder, and that temporary files of killed processes
+are deleted."""
 
 from __future__ import annotations
 
@@ -59,7 +59,8 @@ def test_damaged_lock_note_does_not_block(tmp_path, note):
     with FolderLock(tmp_path):
         with pytest.raises(ValueError, match=f"process {os.getpid()} on"):
             FolderLock(tmp_path).__enter__()
-        with pytest.raises(ValueError, match="is in use"):  # the lock is still held
+        # the failed attempt did not release the lock
+        with pytest.raises(ValueError, match="is in use"):
             FolderLock(tmp_path).__enter__()
 
 
@@ -168,7 +169,7 @@ def test_rejected_second_lock_keeps_the_first(tmp_path):
 
 
 def test_cleanup_deletes_files_of_a_reused_process_id(tmp_path):
-    """In a restarted container, every process has the same number as before."""
+    """In a restarted container, every process has the same process id as before."""
     (tmp_path / "walks").mkdir()
     settings, other = (tmp_path / f".{n}.pt.{n}.tmp" for n in (os.getpid(), os.getppid()))
     dead = tmp_path / "walks" / ".x.pt.4194300.tmp"

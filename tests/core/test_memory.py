@@ -1,4 +1,4 @@
-"""Tests that results are cached up to a limit, and that freed memory is returned."""
+"""Tests that results are cached up to a limit, and that freed memory is returned to the system."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ def test_cache_keeps_a_single_large_result():
 
 @pytest.mark.skipif("glibc" not in platform.libc_ver(), reason="of glibc alone")
 def test_freed_memory_returns_to_the_system():
-    # smaller than the size at which malloc maps memory separately
+    # each piece is too small for malloc to map it separately
     pieces = [bytearray(60_000) for _ in range(3000)]
     remaining = pieces[::100]
     del pieces

@@ -1,7 +1,6 @@
-"""Tests that a user's mistake gives one paragraph with cause, allowed values and fix.
+"""Tests that a user's mistake gives one paragraph with the cause, the allowed values and the fix.
 
-``test_config.py`` checks option values and unknown recipes; the mistakes here need files or
-weights.
+``test_config.py`` tests option values and unknown recipes; the tests here need files or weights.
 """
 
 from __future__ import annotations

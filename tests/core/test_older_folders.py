@@ -35,7 +35,8 @@ READERS = {
 
 
 def as_before(folder: Path) -> Path:
-    """Convert a folder to the format before manifests: one sidecar per weight file."""
+    """Convert a folder to the format without a manifest, in which each weight file has a
+    sidecar."""
     (folder / folders.MANIFEST).unlink()
     for file in folder.glob("*.safetensors"):
         file.with_name(f"{file.name}.sha256").write_text(f"{sha256(file)}  {file.name}\n")
@@ -50,7 +51,8 @@ def flip(file: Path) -> None:
 
 @pytest.mark.parametrize("name", SHIPPED)
 def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
-    monkeypatch.chdir(ROOT)  # the path of the adapters' base is relative to this folder
+    # the settings of adapters name the folder of their base agent relative to ROOT
+    monkeypatch.chdir(ROOT)
     folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
     assert not (folder / folders.MANIFEST).exists()
     assert READERS[SHIPPED[name]](folder) is not None

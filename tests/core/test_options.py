@@ -1,4 +1,4 @@
-"""Tests of parsing the words of a command line: paths, options and flags."""
+"""Tests of parsing the arguments of a command line: paths, options and flags."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_multirun_flag_may_follow_other_options(flag):
         (["++checkpoint=a", "seed=1", "checkpoint='b c'"], ["b c"]),
         ([r"checkpoint=my\=base"], ["my=base"]),
         (["checkpoint=a,b"], ["a", "b"]),
-        # the last option cannot be parsed
+        # only the last option sets a checkpoint, and it cannot be parsed
         (["checkpointer=a", "name=checkpoint=b", "checkpoint=~/x"], []),
     ],
 )

@@ -212,7 +212,8 @@ def test_writes_notice_a_lost_inner_folder(tmp_path, write):
         shutil.rmtree(tmp_path / "out" / "in")
         with pytest.raises(FolderLostError, match="in was removed or replaced"):
             write(tmp_path / "out" / "in" / "other", "new")
-        output.forget(tmp_path / "out" / "in")  # for a caller that deleted the folder itself
+        # a caller that deletes the folder itself must call this
+        output.forget(tmp_path / "out" / "in")
         files.write_text(tmp_path / "out" / "in" / "other", "new")
 
 
@@ -258,7 +259,7 @@ def test_folder_lock_keeps_the_first_error(tmp_path):
     with pytest.raises(KeyError), FolderLock(tmp_path / "out"):
         shutil.rmtree(tmp_path / "out")
         raise KeyError
-    with FolderLock(tmp_path / "out"):  # the lock is free again
+    with FolderLock(tmp_path / "out"):  # the lock has been released
         pass
 
 

@@ -1,4 +1,4 @@
-"""Tests of the places that are searched for shipped weights."""
+"""Tests of the folders that are searched for shipped weights."""
 
 import sys
 from pathlib import Path
@@ -10,7 +10,7 @@ from mitigate.core import files
 
 @pytest.fixture
 def nowhere(tmp_path, monkeypatch):
-    """An empty folder, without a checkout, the weights package or the environment variable."""
+    """An empty folder. There is no checkout, no package of weights and no environment variable."""
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr(files, "ROOT", tmp_path / "site-packages")
     monkeypatch.setattr(files, "PACKAGE", tmp_path / "site-packages" / "mitigate")

@@ -18,7 +18,7 @@ CPU = torch.device("cpu")
     ("capabilities", "cap", "expected"),
     [
         ({"avx2": True}, "", False),
-        ({"avx512_f": True}, "", False),  # with AVX-512 only, bf16 would be emulated
+        ({"avx512_f": True}, "", False),  # without AVX512-BF16, bf16 would be emulated
         ({"avx512_bf16": True}, "", True),
         ({"amx_bf16": True}, "", True),
         ({"bf16": True}, "", True),  # Arm

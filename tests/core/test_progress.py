@@ -1,4 +1,4 @@
-"""Tests of the progress of a long job, in a terminal and elsewhere."""
+"""Tests of the progress display of a long job, in a terminal and without one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of keyed seeds: equal keys give equal numbers, in later versions too."""
+"""Tests of keyed seeds: equal keys give equal random numbers, also in later versions."""
 
 from __future__ import annotations
 

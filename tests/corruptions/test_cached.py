@@ -1,4 +1,5 @@
-"""Tests that the cache of masks is bounded in bytes, and that a recomputed mask is equal."""
+"""Tests that the cache of masks has a maximum size in bytes, and that a recomputed mask is
+equal."""
 
 from __future__ import annotations
 

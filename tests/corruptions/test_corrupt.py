@@ -74,7 +74,8 @@ def summary(folder: Path) -> dict:
 def test_every_frame_equals_the_suites_output(run, walk):
     status, out, err = run("corruption=low_light_noise", "severity=0.7", "seed=3")
     assert status == 0 and "13 frames written" in out
-    for number in range(12):  # frame10 has number 10 rather than number 2
+    # frames are numbered in natural order, so frame10 is number 10 and not 2
+    for number in range(12):
         key = Key(3, "a", number)
         expected = corrupt(RGB[number], "low_light_noise", 0.7, key=key)
         assert np.array_equal(read(walk / f"out/a/frame{number}.png"), expected)
@@ -408,7 +409,7 @@ def contents(folder: Path) -> dict[str, bytes]:
 def test_corrupt_writes_changed_output_frames_again(run, walk, damage, earlier):
     run(*SPATTER)
     whole = contents(walk / "out")
-    if earlier == "without checksums":  # as in summaries of earlier versions
+    if earlier == "without checksums":  # earlier versions wrote summaries like this
         content = summary(walk / "out")
         del content["checksums"], content["replaced"]
         (walk / "out/corrupt.json").write_text(json.dumps(content))

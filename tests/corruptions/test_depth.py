@@ -59,7 +59,7 @@ def test_holes_are_blobs_that_move_every_five_frames():
     views = frames[0] != 4
     assert (views[0] != views[1]).any()
     rolls = {np.sort(view.sum(0)).tobytes() for view in views}
-    assert len(rolls) == 1  # one random field per episode, at a different position in each view
+    assert len(rolls) == 1  # all views show parts of the same random field of the episode
 
 
 def test_sentinel_of_the_sensor_is_written():
@@ -82,7 +82,8 @@ def test_multipath_overestimates_beside_a_farther_surface_only():
     beta, scale = 0.9 * 0.6, 299792458 / (4 * np.pi * 20e6)
     phase = 1.0 / scale
     expected = scale * np.arctan2(beta * np.sin(phase), 1 + beta * np.cos(phase))
-    assert (out[:, 97:100] - 2.0) == pytest.approx(expected, abs=1e-4)  # 0.03 * 100 = 3 px
+    # the range is 0.03 * 100 = 3 px
+    assert (out[:, 97:100] - 2.0) == pytest.approx(expected, abs=1e-4)
     assert (out[:, :97] == 2.0).all() and (out[:, 100:] == 3.0).all()
     assert 0.2 < expected < 1.0
 
@@ -185,7 +186,7 @@ def test_normalised_sensor_is_converted_to_metres_and_back():
     assert sensor.to_metres(unit).tolist() == pytest.approx([0.0, 1.4, 5.0])
     assert sensor.from_metres(sensor.to_metres(unit)) == pytest.approx(unit)
     near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
-    assert near[0] == 0 and (near[1:] > 0).all()  # a valid pixel is not a hole
+    assert near[0] == 0 and (near[1:] > 0).all()  # a valid pixel must not become a hole (0)
     assert sensor.to_metres(unit).dtype == np.float32
 
 

@@ -1,4 +1,4 @@
-"""Tests of the sensor model against published constants and a slow direct sampler."""
+"""Tests that compare the sensor model with published constants and with a slow direct sampler."""
 
 import numpy as np
 import pytest
@@ -37,7 +37,8 @@ def test_tukey_lambda_passes_through_the_logistic():
 
 
 def slow_sample(levels, gain, severity, rng):
-    """Implement the documented model directly, for uint8 [V, H, W, 3] and a mask [H, W]."""
+    """Sample from the documented model directly, for uint8 levels [V, H, W, 3] and a gain mask [H,
+    W]."""
     noise = noise_at(severity)
     light = (levels / 255 * gain[..., None]) ** 2.2
     electrons = rng.poisson(light * 15583 / noise.ratio / noise.gain)
@@ -83,7 +84,7 @@ def test_distribution_matches_the_slow_sampler(severity, level):
     fast = low_light_noise(views, severity, key).ravel()
     distance = stats.ks_2samp(fast, slow).statistic
     by_chance = stats.ks_2samp(other, slow).statistic
-    # grey levels are coarse, so a single level has up to 0.1 of the probability
+    # one grey level contains up to 10 % of the pixels, so two samples also differ by chance
     assert distance < 0.02 + by_chance
 
 
@@ -100,7 +101,8 @@ def test_noise_has_the_strength_of_the_suite(severity, decibel, scene):
         fast.append(scene.psnr(dark, noisy))
         slow.append(scene.psnr(dark, direct))
     assert np.mean(fast) == pytest.approx(np.mean(slow), abs=0.2)
-    assert np.mean(fast) == pytest.approx(decibel, abs=1.0)  # the level depends on the image
+    # the expected PSNR depends on the image
+    assert np.mean(fast) == pytest.approx(decibel, abs=1.0)
 
 
 def test_low_light_differs_from_low_light_noise_by_noise_only(scene):

@@ -60,7 +60,7 @@ def test_bad_files_are_named(tmp_path, scene):
     with pytest.raises(FileNotFoundError, match=r"no file .*rgb\.png"):
         gallery.read_frame(tmp_path / "rgb.png", tmp_path / "depth.npy")
     rgb, depth = scene.draw(24, 32)
-    with pytest.raises(ValueError, match="not of the same instant"):
+    with pytest.raises(ValueError, match="must have the same number of views"):
         gallery.contact_sheet(rgb, depth[:-1], tmp_path / "sheet.png")
     with pytest.raises(SystemExit):
         gallery.main(["--out", "x.png", "--rgb", "only.png"])

@@ -1,8 +1,8 @@
 """Tests that pixels do not change without a new SUITE_VERSION or a new corruption version.
 
-To accept new pixels, increase ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (of an unseen
-or a broad one: ``version`` in its record), look at the
-contact sheet (``python -m tools.pages.gallery --out sheet.png``), then run
+To accept new pixels, increase ``SUITE_VERSION`` in ``mitigate/corruptions/suite.py`` (for an unseen
+or broad corruption, increase ``version`` in its record), look at the contact sheet (``python -m
+tools.pages.gallery --out sheet.png``), then run
 
     python tests/corruptions/test_golden.py --write
 
@@ -48,8 +48,8 @@ def fingerprint(name: str, severity: float) -> str:
 
 
 def levels(name: str) -> list[float]:
-    """Return the mean of each of 24 compositions, because OpenCV gives different bits on different
-    machines."""
+    """Return the mean pixel value of each of 24 compositions. Means are compared instead of hashes,
+    because OpenCV gives different bits on different machines."""
     frame = frames()[modality(name) != "rgb"]
     drawn = [corrupt(frame, name, 0.6, key=Key(2024, f"golden {i}", 13)) for i in range(24)]
     return [round(float(output.mean(dtype=np.float64)), 3) for output in drawn]

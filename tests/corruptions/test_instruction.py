@@ -1,4 +1,5 @@
-"""Tests of instruction families: no change at s = 0, growing with s, keyed, and protected words."""
+"""Tests of instruction corruptions: no change at s = 0, more changes at higher s, random keys, and
+protected words."""
 
 from __future__ import annotations
 
@@ -115,7 +116,7 @@ def test_prefixes_stack_in_front_and_leave_the_instruction_alone(split):
         assert front.startswith(before) and any(front.endswith(s) for s in bank)
         before = front
     used = [s for s in bank if s in before]
-    assert len(used) == len(prefixes(split))  # one corruption of each family
+    assert len(used) == len(prefixes(split))  # one injected prefix of each family
     least = corrupt_instruction(TEXT, "black_box", 1e-9, KEY, split=split)
     assert sum(s in least for s in bank) == 1
 
@@ -269,7 +270,7 @@ def test_suite_lists_the_families():
 
 
 def test_words_match_the_suite_version():
-    """A change of these texts changes results and needs a new SUITE_VERSION."""
+    """If the corrupted texts change, results change, and SUITE_VERSION must be increased."""
     path = Path(__file__).parents[1] / "guards/text/handwritten.txt"
     texts = [line for line in path.read_text().splitlines() if not line.startswith("#")]
     lines_of_text = [

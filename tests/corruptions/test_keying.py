@@ -114,7 +114,8 @@ def test_field_has_unit_spread_and_the_requested_correlation():
     fields = [keying.field(keying.digest(Key(i, "f"), "x"), 96, 128, 0.025)[0] for i in range(12)]
     cells = np.stack(fields)
     assert abs(cells.mean()) < 0.1 and abs(cells.std() - 1) < 0.05
-    lag = round(0.025 * 96 * 2)  # two sigmas of the blur kernel: correlation exp(-4 / 4)
+    # a lag of two sigmas of the blur kernel, at which the correlation is exp(-4 / 4)
+    lag = round(0.025 * 96 * 2)
     shifted = np.roll(cells, lag, axis=2)
     assert np.mean(cells * shifted) / cells.var() == pytest.approx(np.exp(-1), abs=0.08)
 

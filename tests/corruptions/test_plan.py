@@ -1,4 +1,4 @@
-"""Tests of the files in a folder that count as frames: links to files and folders are followed."""
+"""Tests of which files in a folder count as frames: links to files and folders are followed."""
 
 import os
 import shutil
@@ -35,7 +35,8 @@ def walk(tmp_path):
 
 
 def test_links_are_followed_except_cycles_and_results(walk):
-    for saved in (7, 0):  # the second run finds the results of the first through a link
+    # the second run finds the output of the first run, which a link in the input folder points to
+    for saved in (7, 0):
         matches = run(walk / "in", walk / "out", Settings("spatter", 0.6))
         assert matches["written"] == saved and matches["there"] == 7 - saved
         assert {name: e["frames"] for name, e in matches["episodes"].items()} == {

@@ -21,7 +21,7 @@ quick = settings(max_examples=40, deadline=None, derandomize=True)
 def instants(draw, fewest=1):
     """Generate RGB uint8 [V, H, W, 3] and depth float32 [V, H, W, 1] with some invalid pixels.
 
-    (Depth [V, H, W] of width 1 would be read as one view [H, W, 1].)
+    Depth has a channel axis, because depth [V, H, 1] would be read as one view [H, W, 1].
     """
     shape = draw(st.integers(fewest, 5)), draw(st.integers(1, 23)), draw(st.integers(1, 23))
     rng = np.random.default_rng(draw(st.integers(0, 2**32)))
@@ -100,7 +100,8 @@ def test_torch_tensor_as_numpy_gives_the_same_pixels(name, instant, severity, ke
     tensor = torch.from_numpy(frame.copy())
     out = corrupt(frame, name, severity, key=key)
     assert same(corrupt(tensor.numpy(), name, severity, key=key), out)
-    assert same(corrupt(tensor, name, severity, key=key), out)  # passed through the array protocol
+    # a tensor is read through numpy's array protocol
+    assert same(corrupt(tensor, name, severity, key=key), out)
 
 
 @quick

@@ -1,4 +1,5 @@
-"""Tests of one record per corruption, and of a corruption from another package in a suite."""
+"""Tests that each corruption has one record, and that a suite can contain a corruption from another
+package."""
 
 from __future__ import annotations
 
@@ -57,7 +58,7 @@ def test_wrong_record_is_rejected():
 
 @pytest.fixture
 def package(tmp_path) -> Path:
-    """The folder with the installed package from the documentation page."""
+    """A folder in which the package from the documentation page is installed."""
     (tmp_path / "rain.py").write_text(MINE)
     group, line = POINT.strip().splitlines()
     folder = tmp_path / "rain-1.0.dist-info"
@@ -73,13 +74,13 @@ def package(tmp_path) -> Path:
 
 @pytest.fixture
 def installed(package) -> dict[str, str]:
-    """Return the environment of a process that can import the package."""
+    """Return environment variables with which a process can import the package."""
     return {**os.environ, "PYTHONPATH": f"{package}{os.pathsep}{ROOT}"}
 
 
 @pytest.fixture
 def add_to_path(package, monkeypatch):
-    """Return a function that makes this process import the package in its current state."""
+    """Return a function that makes this process import the package again after a change."""
 
     def forget():
         registry.plugin_records.cache_clear()
@@ -87,7 +88,7 @@ def add_to_path(package, monkeypatch):
         importlib.invalidate_caches()
 
     monkeypatch.syspath_prepend(package)
-    # a change within a second is also noticed
+    # without bytecode files, Python also notices a change within the same second
     monkeypatch.setattr(sys, "dont_write_bytecode", True)
     forget()
     yield forget

@@ -88,7 +88,7 @@ def test_low_light_leaves_the_stated_share_of_light(episode):
     out = corrupt(WHITE, "low_light", 0.5, key=Key(0, episode)) / 255
     low, high = 1 - 0.5 * 0.97, 1 - 0.5 * 0.60
     assert out.min() >= low - 0.003 and out.max() <= high + 0.003
-    assert out.max() - out.min() > 0.1  # the darkness is a gradient and not uniform
+    assert out.max() - out.min() > 0.1  # the darkening is a gradient and not uniform
 
 
 def test_low_light_uses_ramps_and_lights():
@@ -131,7 +131,8 @@ def flared(key, heading):
 def test_only_views_facing_the_light_flare(episode):
     for heading in np.linspace(-3, 7, 9):
         _, views = flared(Key(0, episode), heading)
-        assert len(views) == 3  # cameras with 90 degrees of view, every 30 degrees
+        # the views are 90 degrees wide and 30 degrees apart, so three show the light
+        assert len(views) == 3
         steps = {(b - a) % 12 for a, b in zip(views, views[1:], strict=False)}
         assert steps <= {1, 10}
 
@@ -139,7 +140,7 @@ def test_only_views_facing_the_light_flare(episode):
 def test_light_stays_in_the_world_when_the_agent_turns():
     key = Key(0, "a")
     before, _ = flared(key, 0.2)
-    # after a turn to the left, the scene moves one view to the right
+    # if the agent turns left by one view, the scene moves one view to the right
     left, _ = flared(key, 0.2 + TURN)
     assert np.abs(np.roll(left, -1, axis=0).astype(int) - before).max() <= 1
     around, _ = flared(key, 0.2 + 2 * np.pi)
@@ -222,7 +223,8 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 
 @pytest.mark.parametrize("heading", [float("nan"), float("inf")])
 def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
-    """A light outside all views would leave the frame clean."""
+    """With an invalid heading, the light would be outside all views, and the frame would stay
+    clean."""
     rgb, _ = scene.draw(24, 32)
     with pytest.raises(ValueError, match="heading must be in finite radians"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

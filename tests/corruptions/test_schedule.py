@@ -1,4 +1,4 @@
-"""Tests of schedules: which corruption a frame gets."""
+"""Tests of schedules, which choose the corruption of each frame."""
 
 import json
 from collections import Counter

@@ -1,4 +1,4 @@
-"""Tests of the depth errors of named cameras."""
+"""Tests of the corruptions that model the depth errors of specific cameras."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ from mitigate.corruptions import DepthSensor, Key, corrupt, registry
 
 NAMES = tuple(registry.SENSORS)
 KEY = Key(0, "episode", 3)
-STEP = 9 / 351.3  # metres between two depths of a Kinect v1 at 3 m
-# standard deviation in metres at a depth of 3 m, and the largest depth, from the sources
+STEP = 9 / 351.3  # metres between two neighbouring depth values of a Kinect v1 at 3 m
+# published standard deviation in metres at a depth of 3 m, and largest depth in metres
 PUBLISHED = {
     "kinect_v1": (np.hypot(0.0012 + 0.0019 * 2.6**2, STEP / 12**0.5), 4.0),
     "realsense_d435": (9 * 0.08 / (424 * 0.05), 10.0),
@@ -34,7 +34,7 @@ def test_noise_has_the_published_size_at_half_severity(name):
     out = corrupt(plane(3.0), name, 0.5, key=KEY)
     assert out.std() == pytest.approx(PUBLISHED[name][0], rel=0.12)
     twice = corrupt(plane(3.0), name, 1.0, key=KEY)
-    if (twice > 0).all():  # otherwise 3 m is beyond the reduced range
+    if (twice > 0).all():  # otherwise a depth of 3 m is beyond the range at this severity
         assert twice.std() == pytest.approx(2 * out.std(), rel=0.15)
     assert abs(out.mean() - 3.0) < 0.015, "the systematic error is at most 14 mm"
 

@@ -1,4 +1,5 @@
-"""Tests of our tagger on hand-labelled words, and of spaCy if an English pipeline is installed."""
+"""Tests of this project's part-of-speech tagger on hand-labelled words, and of spaCy if an English
+pipeline is installed."""
 
 from __future__ import annotations
 
@@ -14,7 +15,7 @@ CONTENT = {"NOUN", "PROPN", "VERB", "ADP"}
 
 
 def pairs(text: str, tag) -> list[tuple[str, str, str]]:
-    """Return (word, label, tag) for every word, without punctuation."""
+    """Return (word, hand-made label, predicted tag) for every word, without punctuation."""
     matches = []
     for line in text.splitlines():
         if "/" not in line:

@@ -1,4 +1,4 @@
-"""Temporal faults: their defining properties, and equal frames in all entry points."""
+"""Tests of temporal faults: their defining properties, and equal frames in all entry points."""
 
 from __future__ import annotations
 
@@ -35,7 +35,8 @@ SUITE = list(conf.load_config("evaluate", ["suite=temporal"]).suite.conditions)[
 
 
 def instant(number: int) -> dict[str, np.ndarray]:
-    """Return frames that name their instant: every pixel is the number, or metres above it."""
+    """Return frames that contain their time step: RGB pixels equal ``number``, and depth is 1 +
+    ``number`` / 16 metres."""
     depth = np.full((2, 6, 8, 1), 1.0 + number / 16, np.float32)
     depth[:, 0] = 0.0  # no reading
     pose = np.array([0.0, 0.0, 0.1 * number], np.float32)
@@ -110,7 +111,8 @@ def test_frozen_frames_repeat_the_last_one_and_recover(name, period, longest):
         numbers = shown(name, severity)
         frozen = {i for i in range(1, STEPS) if numbers[i] != i}
         assert all(numbers[i] == numbers[i - 1] for i in frozen)
-        assert previous <= frozen  # a longer interval contains the shorter one
+        # the freeze at a higher severity contains the freeze at the lower severity
+        assert previous <= frozen
         previous = frozen
     share = np.mean([len({*range(STEPS)} - {*shown(name, 1.0, seed=s)}) for s in range(20)]) / STEPS
     assert share == pytest.approx(longest / period, abs=0.1)
@@ -120,7 +122,7 @@ def test_dropped_frames_are_black_in_the_bursts_of_repeated_frames():
     repeated = [i for i, number in enumerate(shown("repeated_frames")) if number != i]
     for number, frames in enumerate(run("dropped_frames")):
         lost = number in repeated
-        if number:  # frame 0 can be lost, but has no earlier frame to repeat
+        if number:  # frame 0 can be lost, but there is no earlier frame that could be repeated
             assert lost == (not frames[RGB].any()) == (not frames[DEPTH].any())
 
 
@@ -287,7 +289,7 @@ def in_the_bridge(name):
             "dtype": "uint8" if kind == RGB else "float32",
         }
         for kind in (RGB, DEPTH)
-        for suffix in ("", "_330")  # Habitat's yaw 330 is view 1
+        for suffix in ("", "_330")  # the camera at Habitat's yaw 330 is view 1
     ]
     rig = Rig(described)
     offsets, size = rig.lay_out((RGB, DEPTH))

@@ -27,11 +27,12 @@ from mitigate.corruptions.registry import modality, unseen_names
 from mitigate.corruptions.tensors import FUNCTIONS, corrupt_observations, corrupt_tensors, draws
 from mitigate.corruptions.tensors import suite as tensor_suite
 
-GREY, METRES = 1, 1e-4  # largest difference of equal pixels
-DIFFERENT = 0.001  # largest fraction of pixels whose difference is larger
+# maximum difference at which two pixels count as equal: grey levels, and metres
+GREY, METRES = 1, 1e-4
+DIFFERENT = 0.001  # maximum fraction of pixels whose difference is above GREY or METRES
 SHAPES = ((2, 33, 47), (1, 64, 48), (3, 21, 90))  # views, height, width
 SENSOR = DepthSensor(0.5, 5.0, missing=-1.0)
-ROWS = (  # severity, key and heading of each row
+ROWS = (  # severity, key and heading of each row of a batch
     (0.6, Key(0, "kitchen", 3), None),
     (1.0, Key(7, "hall", 12), 0.4),
     (0.0, Key(7, "hall", 13), 0.4),
@@ -55,7 +56,7 @@ def batch_of(name: str, scene, shape: tuple[int, int, int], rows: int = len(ROWS
 
 
 def different(actual: np.ndarray, expected: np.ndarray) -> int:
-    """Return the number of pixels whose difference is larger than allowed."""
+    """Return the number of pixels whose difference is above GREY or METRES."""
     assert actual.dtype == expected.dtype and actual.shape == expected.shape
     if actual.dtype == np.uint8:
         return int((np.abs(actual.astype(int) - expected) > GREY).any(-1).sum())
@@ -94,7 +95,8 @@ def test_torch_equals_numpy(name, scene):
 
 @st.composite
 def batches(draw):
-    """Generate a corruption, frames of random pixels or of a scene, and rows."""
+    """Generate a corruption, frames (random pixels or a scene), and the severity, key and heading
+    of each row."""
     name = draw(st.sampled_from(sorted(FUNCTIONS)))
     shape = draw(st.integers(1, 4)), draw(st.integers(1, 70)), draw(st.integers(1, 70))
     keys = st.builds(Key, st.integers(-(2**70), 2**70), st.text(max_size=8), st.integers(0, 10**9))

@@ -1,4 +1,5 @@
-"""Tests of unseen corruptions: the suite's rules, their halves, and no use in training."""
+"""Tests that unseen corruptions follow the suite's rules, are split into two halves, and are not
+used in training."""
 
 from __future__ import annotations
 
@@ -17,7 +18,7 @@ from tools.pages.descriptions import DESCRIPTIONS
 KEY = Key(3, "episode-7", 4)
 RGB, DEPTH = unseen_names("rgb"), unseen_names("depth")
 UNSEEN_NAMES = RGB + DEPTH
-LOSE = ("edge_shadow", "range_limit")  # removes depth values, as missing_data does
+LOSE = ("edge_shadow", "range_limit")  # these corruptions remove depth values, as missing_data does
 TENTHS = np.linspace(0.0, 1.0, 11)
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").glob("*.yaml"))
 SCHEDULES = sorted(path.stem for path in (conf.CONF / "schedule").glob("*.yaml"))
@@ -31,8 +32,7 @@ def same(a, b):
     return a.dtype == b.dtype and a.shape == b.shape and a.tobytes() == b.tobytes()
 
 
-# --------------------------------------------------------------------- definition of the unseen
-# corruptions
+# definition of the unseen corruptions ---------------------------------------------------------
 
 
 def test_unseen_halves_are_separate_from_the_suite():
@@ -73,8 +73,7 @@ def test_unseen_corruptions_are_in_their_suites_only():
             assert not set(suite(path.stem)) & set(UNSEEN_NAMES), path
 
 
-# ------------------------------------------------------------------------------ no recipe trains on
-# unseen corruptions
+# no recipe trains on unseen corruptions -------------------------------------------------------
 
 
 def schedules(node) -> list[dict]:
@@ -125,7 +124,7 @@ def test_python_schedule_draws_unseen_corruptions_only_by_name():
     assert Schedule.always("haze", 0.6).draw(0, "e", 1)[0] == Corruption("haze", 0.6)
 
 
-# ----------------------------------------------------------------------------- the suite's rules
+# the suite's rules ----------------------------------------------------------------------------
 
 
 @pytest.mark.parametrize("name", UNSEEN_NAMES)
@@ -137,7 +136,7 @@ def test_severity_zero_changes_no_bit_and_the_input_stays(name, panorama):
         out = corrupt(frame, name, severity, key=KEY, heading=0.3)
         assert frame.tobytes() == before and not np.shares_memory(out, frame)
         assert out.shape == frame.shape and out.dtype == frame.dtype
-    assert not same(out, frame) or name == "glossy_floor"  # that scene has no floor
+    assert not same(out, frame) or name == "glossy_floor"  # the generated scene has no floor
 
 
 @pytest.mark.parametrize("name", RGB)
@@ -227,12 +226,12 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
     assert np.abs(full - small).mean() < 0.15 * np.abs(small - half).mean() + 0.6
 
 
-# ------------------------------------------------------------------------- the effect of each
-# corruption
+# the effect of each corruption ----------------------------------------------------------------
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:
-    """Return the depth [H, W] of a wall, with the floor ``tall`` metres under a level camera."""
+    """Return the depth [H, W] of a wall and of the floor, which is ``tall`` metres below a level
+    camera."""
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     floor = np.where(down > 0, tall / np.maximum(down, 1e-6), np.inf)
     return np.repeat(np.minimum(floor, wall)[:, None], width, axis=1).astype(np.float32)

@@ -1,4 +1,5 @@
-"""Encoders with the module structure of those in navigation agents, but fewer channels."""
+"""Encoders with the same module structure as the encoders of navigation agents, but fewer
+channels."""
 
 from __future__ import annotations
 
@@ -28,7 +29,7 @@ class TinyNet(nn.Module):
 
 
 def tiny(channels: int = 3, width: int = 8) -> nn.Module:
-    """Return an encoder with fixed weights, as if they came from a file."""
+    """Return an encoder with seeded weights, which stand for weights from a file."""
     with torch.random.fork_rng(devices=[]):
         torch.manual_seed(0)
         return TinyNet(channels, width)
@@ -62,8 +63,8 @@ class Bottleneck(nn.Module):
 
 
 class DdppoDepth(nn.Module):
-    """DDPPO's depth encoder: DDPPO's ResNet-50 with GroupNorm and base 32, from 1x256x256 to
-    128x4x4."""
+    """DDPPO's depth encoder: a ResNet-50 with GroupNorm and 32 base channels, which maps 1x256x256
+    to 128x4x4."""
 
     def __init__(self, base: int = 32, blocks: tuple[int, ...] = (3, 4, 6, 3)) -> None:
         super().__init__()
@@ -95,7 +96,7 @@ class DdppoDepth(nn.Module):
 
 
 class ResidualAttentionBlock(nn.Module):
-    """The block of OpenAI's CLIP, for tokens ``[T, n, C]``."""
+    """The residual block of OpenAI's CLIP, which processes tokens ``[T, n, C]``."""
 
     def __init__(self, width: int, heads: int) -> None:
         super().__init__()
@@ -112,8 +113,8 @@ class ResidualAttentionBlock(nn.Module):
 
 
 class OpenAIClip(nn.Module):
-    """OpenAI's VisionTransformer: It has ``transformer.resblocks``, the class token first, and a
-    projected output."""
+    """OpenAI's VisionTransformer: it has ``transformer.resblocks``, its class token comes first,
+    and its output is projected."""
 
     def __init__(self, width: int = 24, layers: int = 4, patch: int = 8, size: int = 32) -> None:
         super().__init__()
@@ -135,7 +136,7 @@ class OpenAIClip(nn.Module):
 
 
 class ListBlock(nn.Module):
-    """A block that returns a list whose first item is tokens ``[n, T, C]``."""
+    """A block that returns a list; its first item contains tokens ``[n, T, C]``."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -146,7 +147,7 @@ class ListBlock(nn.Module):
 
 
 class ListNet(nn.Module):
-    """An encoder with four :class:`ListBlock` modules on rows of pixels."""
+    """An encoder with four :class:`ListBlock` modules, for which rows of pixels are tokens."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -165,14 +166,14 @@ def _seeded(make: Callable[[], nn.Module]) -> nn.Module:
         return make()
 
 
-BRANCH = 0.2  # weight of the last normalisation of a residual branch (heuristic)
+BRANCH = 0.2  # scale of the last normalisation layer in each residual branch (heuristic)
 
 
 def ddppo() -> nn.Module:
     """Return DDPPO's depth encoder at full size with random weights.
 
-    Residual branches are scaled down, as in trained networks. Otherwise such a deep random network
-    would convert any change to noise.
+    Residual branches are scaled down, as in trained networks. Without this, such a deep random
+    network would turn any change of its input into noise.
     """
     model = _seeded(DdppoDepth)
     for block in model.modules():
@@ -182,9 +183,9 @@ def ddppo() -> nn.Module:
 
 
 def resnet50() -> nn.Module:
-    """Return the ResNet-50 of transformers with random weights and branches as in :func:`ddppo`.
-    Its BatchNorm statistics are computed on noise, so that features of all layers have similar
-    sizes."""
+    """Return the ResNet-50 of transformers with random weights; residual branches are scaled as in
+    :func:`ddppo`. Its BatchNorm statistics are computed on noise, so that features of all layers
+    have similar sizes."""
     from transformers import ResNetConfig, ResNetModel
 
     def make() -> nn.Module:

@@ -1,4 +1,4 @@
-"""Frames of a LeRobot dataset for recipes that need frames alone."""
+"""Tests of frames from a LeRobot dataset for recipes that need only frames."""
 
 from __future__ import annotations
 

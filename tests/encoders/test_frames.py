@@ -1,4 +1,4 @@
-"""Tests of frames from a world and from a folder: reproducible, in two disjoint splits."""
+"""Tests that frames from a world or a folder are reproducible and form two disjoint splits."""
 
 from __future__ import annotations
 
@@ -91,7 +91,7 @@ def test_folder_frames_split_a_single_folder(tmp_path):
     assert len(source.scenes(TRAIN)) == 27 and len(source.scenes(UNSEEN)) == 7
     first = list(source.shots(source.scenes(TRAIN)[0], 3, 0))
     assert len(first) == 3
-    few = FolderFrames(str(tmp_path))  # with blocks of 50, only one would be unseen
+    few = FolderFrames(str(tmp_path))  # with blocks of 50 frames, only one block would be held out
     assert len(few.scenes(TRAIN)) == 20 and len(few.scenes(UNSEEN)) == 5
 
 
@@ -135,7 +135,7 @@ def test_folder_frames_reject_too_small_units(tmp_path):
     with pytest.raises(ValueError, match=r"0\.png must hold depth in metres.*nearer.*env\.unit"):
         collect(FolderFrames(str(tmp_path), "depth", unit=1e-6), TRAIN, 1, 0)
     near = FolderFrames(str(tmp_path), "depth", unit=1e-4)
-    # a wall at a distance of 15 cm
+    # the frames show a wall at a distance of 15 cm
     assert collect(near, TRAIN, 1, 0).frames.max() == np.float32(0.15)
 
 

@@ -30,7 +30,7 @@ def encoder(**options) -> Encoder:
 
 
 def numbered() -> torch.nn.Module:
-    """Return an encoder with modules called 0, 1 and 2."""
+    """Return an encoder whose modules have the names 0, 1 and 2."""
     return torch.nn.Sequential(torch.nn.Conv2d(3, 4, 3, 2, 1), torch.nn.ReLU(), torch.nn.Flatten())
 
 
@@ -57,14 +57,15 @@ def test_load_model_explains_an_invalid_model(model, kwargs, says, monkeypatch):
 
 
 def drawn(width: int = 8) -> torch.nn.Module:
-    """Return an encoder with random weights, except its classifier."""
+    """Return an encoder with random weights, except for the classifier's weights."""
     result = TinyNet(width=width)
     torch.nn.init.zeros_(result.fc.weight)
     return result
 
 
 def test_encoder_rejects_random_weights_with_adapters(tmp_path):
-    """Random weights are lost when the process ends, and adapters fit no other weights."""
+    """Adapters fit only the weights they were trained with, and random weights are lost when the
+    process ends."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
         ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights="
@@ -73,7 +74,7 @@ def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     file = tmp_path / "weights.safetensors"
     save_file(drawn().state_dict(), file)
     assert encoder(model=path, weights=str(file))
-    assert encoder(model=path, tune="all")  # the folder contains all weights
+    assert encoder(model=path, tune="all")  # allowed, because the folder then contains all weights
     torch.random.set_rng_state(state)
     encoder()
     after = torch.random.get_rng_state()
@@ -113,7 +114,7 @@ class Spoiled(TinyNet):
 
 
 class Centred(TinyNet):
-    """An encoder that divides by the variation of a frame, which is 0 for constant frames."""
+    """An encoder that divides a frame by its standard deviation, which is 0 for constant frames."""
 
     def forward(self, x: torch.Tensor) -> torch.Tensor:
         return super().forward(x / x.std((1, 2, 3), keepdim=True))
@@ -295,7 +296,7 @@ def test_load_weights_unpickles_nothing(tmp_path, capsys):
 
 
 class Commands:
-    """A class whose pickle calls the shell; torch never allows that function."""
+    """A class whose pickle calls ``os.system``, which torch never allows."""
 
     def __reduce__(self):
         return (os.system, ("exit",))

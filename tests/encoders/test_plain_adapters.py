@@ -1,5 +1,5 @@
-"""Tests that ``plain_adapters.py`` equals ``load_adapters``, runs no code, and works when
-copied."""
+"""Tests that ``plain_adapters.py`` gives the same results as ``load_adapters``, runs no stored
+code, and works as a copy."""
 
 from __future__ import annotations
 
@@ -155,7 +155,7 @@ def test_module_imports_only_numpy_and_torch():
 
 @pytest.mark.slow
 def test_module_works_as_a_copy(tmp_path):
-    """The check runs in a separate process that cannot import this project."""
+    """The copy runs in a separate process that cannot import this project."""
     saved(tmp_path)
     (tmp_path / "plain_adapters.py").write_text(FILE.read_text(encoding="utf-8"))
     code = (

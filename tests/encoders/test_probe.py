@@ -1,4 +1,4 @@
-"""Tests of the measures in the report on known values."""
+"""Tests of the report's measures on inputs with known results."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def test_cosine_subtracts_the_mean():
     centre = clean.mean(0)
     assert np.allclose(cosine(clean, clean, centre), 1)
     assert abs(cosine(other, clean, centre).mean()) < 0.2
-    # without centring, all have the same similarity
+    # without centring, all features are similar
     assert cosine(other, clean, 0 * centre).mean() > 0.99
     assert retrieval(clean, clean, centre).all() and retrieval(other, clean, centre).mean() < 0.2
 
@@ -85,7 +85,8 @@ def test_report_pairs_before_and_after(tmp_path, capsys):
     }
     report.write(report.with_mean(scores), tmp_path, "made")
     text = (tmp_path / "features.md").read_text()
-    assert "| Spatter | 0.40" in text and "+0.30 [–] |" in text  # the noise is common to both
+    # both measures contain the same noise
+    assert "| Spatter | 0.40" in text and "+0.30 [–] |" in text
     rows = [json.loads(line) for line in (tmp_path / "features.jsonl").read_text().splitlines()]
     assert [row["condition"] for row in rows] == ["clean", "spatter", report.MEAN]
     assert rows[1]["gain"] == [0.3, 0.3, 0.3]

@@ -145,7 +145,7 @@ def test_training_of_an_exported_program(tmp_path, pictures, tune):
 @pytest.mark.slow
 def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     own_value = ["agent=encoder", "agent.model=tests.encoders.shapes:TinyNet", "agent.output=pool"]
-    # the weights start random and are trained for a few steps only
+    # the initial weights are random, and at this learning rate training hardly changes them
     own_value += ["agent.tune=all", "trainer.lr=1e-9"]
     out = train.run(config(tmp_path, pictures, *own_value))
     rows = [json.loads(line) for line in (out / "features.jsonl").read_text().splitlines()]
@@ -153,7 +153,8 @@ def test_report_compares_with_the_initial_encoder(tmp_path, pictures):
     assert clean["before"][0] == pytest.approx(1) and clean["after"][0] == pytest.approx(
         1, abs=0.01
     )
-    assert clean["before"][1:] == [None, None]  # one of the six folders is held out
+    # no intervals, because only one of the six folders is held out
+    assert clean["before"][1:] == [None, None]
     assert "[–] |" in (out / "features.md").read_text()
 
 
@@ -226,7 +227,7 @@ def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):
         result().load(tmp_path)
-    (tmp_path / MANIFEST).unlink()  # in the form that earlier versions wrote
+    (tmp_path / MANIFEST).unlink()  # earlier versions wrote no manifest
     with pytest.raises(ValueError, match="sensor must not be"):
         result().load(tmp_path)
 
@@ -239,7 +240,7 @@ def test_card_contains_no_import_path(tmp_path):
 
 
 def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
-    """No import path is written, and an import path in the folder is ignored."""
+    """The folder contains no import path, and an import path that is added to it is rejected."""
     cfg = config(tmp_path, pictures, *TINY, "evaluation.enabled=false", "agent.tune=all")
     out = train.run(cfg) / "agent"
     assert "tests.encoders" not in (out / "config.yaml").read_text()

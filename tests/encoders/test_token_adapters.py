@@ -1,4 +1,5 @@
-"""Tests of adapters for blocks that return maps, tokens in either order, tuples or vectors."""
+"""Tests of adapters for blocks that return feature maps, tokens ([n, T, C] or [T, n, C]), tuples or
+vectors."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ CLIP = {"hidden_size": 24, "intermediate_size": 48, "num_hidden_layers": 4}
 CLIP |= {"num_attention_heads": 4, "image_size": 32, "patch_size": 8}
 RESNET = {"embedding_size": 8, "hidden_sizes": [8, 16, 24, 32], "depths": [1, 1, 2, 1]}
 
-ENCODERS = {  # constructor, shape of a frame, target, kind of adapter, and axis of the frames
+# constructor, shape of a frame, names of adapted modules, class of adapter, and axis of the frames
+ENCODERS = {
     "cnn": (TinyNet, (3, 32, 32), r"blocks\.\d", ConvAdapter, None),
     "ddppo": (lambda: DdppoDepth(8, (1, 1, 1, 1)), (1, 64, 64), r"layer\d", ConvAdapter, None),
     "hf-resnet": (
@@ -76,7 +78,7 @@ def test_new_adapter_changes_nothing(encoder, gate):
 
 @pytest.mark.parametrize("gate", [False, True])
 def test_adapter_corrects_each_frame_separately(encoder, gate):
-    """This is also true if frames are not on the first axis."""
+    """Frames do not influence each other, even if they are not on the first axis."""
     model, frames, target, _, _ = encoder
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     shaken(model)
@@ -121,7 +123,8 @@ def test_insert_adapters_names_an_unsupported_target():
 
 
 def test_full_size_shapes_match_the_agents():
-    """The architecture is ResNet-50 with GroupNorm and base 32, from 1x256x256 depth to 128x4x4."""
+    """A ResNet-50 with GroupNorm and 32 base channels maps depth of 1x256x256 to features of
+    128x4x4."""
     model = shapes.ddppo().eval()
     with torch.no_grad():
         assert model(torch.rand(1, 1, 256, 256)).shape == (1, 128, 4, 4)

@@ -7,7 +7,7 @@ from typing import Any
 
 
 def row(episode: int | str, success: float, **changes: Any) -> dict[str, Any]:
-    """Return a clean row of the agent ``base``, in which SPL is half the success."""
+    """Return a clean row of the agent ``base``; its SPL is half of ``success``."""
     output = {
         "agent": "0123456789ab",
         "name": "base",
@@ -30,7 +30,7 @@ def cell(wins: int, count: int = 10, **changes: Any) -> list[dict[str, Any]]:
 
 
 def column(clean: int, corrupted: dict[str, int], severity: float = 0.6, **changes: Any) -> list:
-    """Return a clean cell and one cell per corruption, ten episodes each."""
+    """Return the rows of a clean cell and of one cell per corruption, with ten episodes each."""
     cells: Iterable = (
         cell(wins, corruption=name, severity=severity, **changes)
         for name, wins in corrupted.items()

@@ -1,4 +1,5 @@
-"""Tests that the bootstrap is paired and seeded, with intervals of the theoretical width."""
+"""Tests that the bootstrap is paired and seeded, and that its intervals have the theoretical
+width."""
 
 from __future__ import annotations
 
@@ -20,7 +21,8 @@ from mitigate.evaluation.bootstrap import (
 
 @pytest.fixture
 def results():
-    """Return clean [300] and corrupted [8, 300] successes with a common difficulty per episode."""
+    """Return successes on clean [300] and corrupted frames [8, 300]; all conditions share the
+    difficulty of an episode."""
     generator = np.random.default_rng(1)
     hard = generator.random(300)
     return (hard < 0.65).astype(float), (hard < generator.normal(0.4, 0.03, (8, 1))).astype(float)
@@ -75,7 +77,7 @@ def test_interval_of_a_rate_is_binomial():
 
 @pytest.mark.parametrize(("value", "low", "high"), [(0.0, 0.0, 0.30), (1.0, 0.70, 1.0)])
 def test_nine_equal_outcomes_are_no_certainty(value, low, high):
-    result = share(np.full(9, value))  # Wilson: 3.84 / (9 + 3.84) = 0.30
+    result = share(np.full(9, value))  # the width of Wilson's interval is 3.84 / (9 + 3.84) = 0.30
     assert (result.value, result.low, result.high) == pytest.approx((value, low, high), abs=0.001)
     varied = np.repeat([1.0, 0.0], [240, 160])
     assert share(varied) == mean(varied)
@@ -115,7 +117,7 @@ def test_pairing_narrows_the_interval_of_a_difference(results):
     clean, corrupted = results
     better = np.maximum(corrupted, (np.arange(300) % 10 == 0) * clean)
     paired = prs_difference((clean, better), (clean, corrupted))
-    # with different episodes, the difficulty does not cancel
+    # in unpaired episodes, the difficulty does not cancel
     order = np.random.default_rng(3).permutation(300)
     unpaired = prs_difference((clean[order], better[:, order]), (clean, corrupted))
     assert paired.value == pytest.approx(unpaired.value)

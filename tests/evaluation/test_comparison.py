@@ -1,4 +1,4 @@
-"""Tests of comparisons: the formula of retention, paired intervals, and errors."""
+"""Tests of comparisons: the formula of retention, paired intervals, and error messages."""
 
 import numpy as np
 import pytest

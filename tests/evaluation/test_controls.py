@@ -1,4 +1,4 @@
-"""Tests of the oracle and the random agent, which bound every result."""
+"""Tests of the oracle and the random agent, which give upper and lower bounds for all results."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path
 
 @pytest.fixture
 def walked(monkeypatch):
-    """Return the ids of the episodes of a run; every episode must be a success."""
+    """Return a list to which the ids of all run episodes are added; every episode is a success."""
     ids: list[str] = []
 
     def walk(agent, world, episode, *others):

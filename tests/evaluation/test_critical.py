@@ -39,7 +39,8 @@ LOSS = 0.5
 def measured(limits: np.ndarray, severities, corruption="spatter", noise=None, **changes) -> list:
     """Return rows of episodes that succeed at severities below their limit.
 
-    ``noise``: [episodes, severities], successes that replace the others where they are not NaN.
+    ``noise``: successes [episodes, severities] that replace the computed ones, except where they
+    are NaN.
     """
     result = []
     for column, severity in enumerate(severities):
@@ -71,7 +72,7 @@ def test_decreasing_pools_values_that_increase(values, fit):
 
 
 def test_decreasing_is_the_least_squares_fit():
-    """Compare with random decreasing vectors, none of which is closer."""
+    """Compare the fit with random decreasing vectors: none of them has a smaller error."""
     random = np.random.default_rng(0)
     values = random.random(6)
     error = ((decreasing(values) - values) ** 2).sum()
@@ -109,7 +110,8 @@ def test_next_severities_halves_the_interval_of_each_crossing():
 
 
 def simulate(limits: np.ndarray, requests: list):
-    """Return a function that measures episodes with these limits and records the requests."""
+    """Return a function that simulates measuring episodes with these limits, and records which
+    conditions were requested."""
 
     def measure(conditions):
         requests.append(conditions)
@@ -122,7 +124,8 @@ def simulate(limits: np.ndarray, requests: list):
 
 
 def test_search_finds_the_critical_severities_of_a_known_agent():
-    """The limits are uniform from 0 to 1, so that a loss of x happens at severity x."""
+    """The limits are uniform from 0 to 1, so the agent has lost a fraction x of its success at
+    severity x."""
     limits = (np.arange(100) + 0.5) / 100
     start = first_conditions([CLEAN, Corruption("spatter", 0.6)], "a rule")
     records = search(simulate(limits, []), start, [0.1, 0.5])
@@ -148,10 +151,10 @@ def test_search_stops_after_severity_one_if_nothing_is_lost():
 
 
 def noisy_agent(random, count: int) -> tuple[np.ndarray, np.ndarray, list[float]]:
-    """Return limits and noise of an agent, with the severities of a typical search."""
+    """Return the limits and the noise of an agent, and the severities of a typical search."""
     severities = [0.0, 0.3, 0.375, 0.45, 0.525, 0.6, 1.0]
     limits = random.normal(0.5, 0.2, count)
-    limits[random.random(count) < 0.1] = -1.0  # these episodes also fail on clean frames
+    limits[random.random(count) < 0.1] = -1.0  # episodes that also fail on clean frames
     flips = random.random((count, len(severities))) < 0.1
     noise = np.where(flips, random.random(flips.shape) < 0.5, np.nan)
     return limits, noise, severities
@@ -159,7 +162,8 @@ def noisy_agent(random, count: int) -> tuple[np.ndarray, np.ndarray, list[float]
 
 @pytest.mark.slow
 def test_intervals_cover_the_true_critical_severity(monkeypatch):
-    """SR at s > 0 is 0.81 P(limit > s) + 0.05 and clean SR is 0.894, so half is lost at 0.5048."""
+    """The clean SR is 0.894, and the SR at s > 0 is 0.81 * P(limit > s) + 0.05, so half of the
+    clean SR is lost at s = 0.5048."""
     fewer = partial(resampled_means, resamples=500)
     monkeypatch.setattr("mitigate.evaluation.critical.resampled_means", fewer)
     random = np.random.default_rng(1)
@@ -169,7 +173,8 @@ def test_intervals_cover_the_true_critical_severity(monkeypatch):
         part = only(measured(limits, severities, noise=noise))
         estimate = part.score(("base",), ("spatter",), LOSS).estimate
         covered += estimate.low <= 0.5048 <= estimate.high
-    # if the coverage is 0.95, 106 to 119 of 120 agents have a probability above 0.99
+    # at a coverage of 0.95, 106 to 119 of the 120 intervals are correct with a probability above
+    # 0.99
     assert 106 <= covered <= 119
 
 
@@ -212,7 +217,8 @@ def test_difference_of_two_censored_agents_is_unknown():
 
 
 def test_differences_are_paired():
-    """Both agents depend on the same limits, so their difference is known better than either."""
+    """The limits of both agents differ by a constant, so their difference is known more precisely
+    than either result."""
     limits = np.random.default_rng(0).uniform(0.2, 0.8, 60)
     severities = np.linspace(0, 1, 11).round(2).tolist()
     first = measured(limits, severities)
@@ -350,7 +356,7 @@ def run_benchmark(out: Path):
 
 
 def test_benchmark_continues_an_interrupted_search(tmp_path, capsys):
-    """A kill in the second round leaves the first rows, of which the last is incomplete."""
+    """A kill in the second round leaves only the first rows, and the last of them is incomplete."""
     entry = run_benchmark(tmp_path / "whole")
     assert entry.severity == 0.6 and entry.SR["clean"][0] == 1.0
     printed = capsys.readouterr().out

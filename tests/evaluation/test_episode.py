@@ -48,7 +48,8 @@ class Cell:
 
 
 class Answers:
-    """An agent that returns ``answers`` one after the other; callables are called."""
+    """An agent that returns ``answers`` one after the other; if an answer is callable, it returns
+    the result."""
 
     together = 1
 
@@ -146,7 +147,7 @@ def test_run_episode_error_names_line_and_episode():
         run_episode(Answers(1, broken), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match="matmul") as caught:
         broken()
-    error, _ = portable(caught.value)  # as returned by a worker process
+    error, _ = portable(caught.value)  # in the form in which a worker process returns it
     assert error_message(pickle.loads(pickle.dumps(error))).endswith("broken())")
 
 

@@ -1,4 +1,4 @@
-"""Tests of the command that evaluates an agent, without long episodes."""
+"""Tests of ``mitigate evaluate`` that run no long episodes."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.evaluation.straight import Straight
 
 
 def test_evaluate_prints_the_requested_rows(tmp_path, capsys):
-    """The list has three episodes; two of them are requested."""
+    """The file has rows of three episodes, and two of them are requested."""
 
     all_rows = cell(2, 3)
     rows.write(tmp_path / "rows.jsonl", all_rows)
@@ -56,7 +56,7 @@ def test_evaluate_rejects_options_of_trainings(tmp_path, option):
 
 @pytest.fixture
 def policies(tmp_path):
-    """Return options for a user's agent of the named class."""
+    """Return a function that gives the options for a user's agent of a named class."""
 
     def options(target, *more, settings=""):
         folder = tmp_path / "mine" / "agent"
@@ -91,7 +91,7 @@ def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
 
 
 class Slots:
-    """An agent that accepts no additional attributes."""
+    """An agent whose object accepts no new attributes."""
 
     __slots__ = ()
 
@@ -112,12 +112,12 @@ def remote() -> Straight:
 
 
 def make_network() -> nn.Module:
-    """A function that a config may name instead of a class."""
+    """A function that returns a network; a config may name it instead of a class."""
     return Net()
 
 
 class Net(nn.Linear):
-    """A policy that was trained with a different program."""
+    """A policy that was trained outside this project."""
 
     def __init__(self) -> None:
         super().__init__(1, 4)

@@ -1,4 +1,5 @@
-"""Tests that rows do not depend on the number of processes, and that evaluations resume."""
+"""Tests that rows do not depend on the number of processes, and that an evaluation can be
+resumed."""
 
 from __future__ import annotations
 
@@ -125,11 +126,12 @@ def test_row_identifies_its_measurement(finished):
         assert row["success"] in (0, 1) and 0 <= row["spl"] <= row["success"]
         assert 0 <= row["ndtw"] <= 1 and row["decisions"] <= 15 and row["steps"] <= 500
         assert "STOP" in row["rule"] and "2.0 m" in row["rule"]
-        assert row["scene"] == row["episode_id"].partition("-")[0]  # with the text of older rows
+        # the scene names equal those in older rows
+        assert row["scene"] == row["episode_id"].partition("-")[0]
 
 
 class Won(ApartmentsWorld):
-    """A world that reports success as the boolean true."""
+    """A world that reports success as True instead of a number."""
 
     def measures(self) -> dict:
         return super().measures() | {"success": True, "spl": 1.0}

@@ -13,12 +13,13 @@ from mitigate.evaluation import evaluate, evaluator, rows
 from mitigate.evaluation.rows import ROWS
 from tests.evaluation.straight import Straight
 
-OUT: list[Path] = []  # the folder of the evaluation, for agents that are built from a config
+# the output folder; a global, because agents that are built from a config need it
+OUT: list[Path] = []
 EPISODES = 3
 
 
 class Breaking(Straight):
-    """Break the output folder at the start of the last episode."""
+    """An agent that damages the output folder at the start of the last episode."""
 
     resets = 0
 
@@ -70,7 +71,8 @@ BREAK = {
 
 @pytest.fixture
 def config(tmp_path, monkeypatch):
-    """Return the config for evaluating one of the classes above, which writes one row at a time."""
+    """Return a function that composes the config for evaluating one of the classes above. Rows are
+    written one at a time."""
     monkeypatch.setattr(evaluator, "_PAUSE", 0.0)
 
     def compose(agent, *options):

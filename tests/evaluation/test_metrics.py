@@ -1,4 +1,5 @@
-"""Tests that metrics equal VLN-CE's numbers, and PRS the numbers in the paper's table."""
+"""Tests that the metrics equal those of VLN-CE, and that PRS equals the numbers in the paper's
+table."""
 
 from __future__ import annotations
 
@@ -22,7 +23,8 @@ LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
 
 
 def recursive_dtw(path, reference):
-    """Compute the definition of DTW recursively, from the cheapest of three predecessors."""
+    """Compute DTW recursively by its definition: add each distance to the cheapest of three
+    predecessors."""
 
     @cache
     def cost(i, j):
@@ -35,7 +37,7 @@ def recursive_dtw(path, reference):
 
 
 def every_alignment(path, reference, i=0, j=0):
-    """Return the costs of all monotone alignments."""
+    """Yield the cost of each monotone alignment of two paths."""
     here = math.dist(path[i], reference[j])
     if (i, j) == (len(path) - 1, len(reference) - 1):
         yield here
@@ -45,7 +47,7 @@ def every_alignment(path, reference, i=0, j=0):
 
 
 def vlnce_ndtw(path, reference, threshold=3.0):
-    """Compute VLN-CE's measure, in which a repeated position is not recorded again."""
+    """Compute nDTW as VLN-CE does, without recording repeated positions."""
     recorded = [path[0]] + [b for a, b in pairwise(path) if tuple(a) != tuple(b)]
     recorded, reference = [tuple(map(tuple, points)) for points in (recorded, reference)]
     return math.exp(-recursive_dtw(recorded, reference) / (len(reference) * threshold))
@@ -72,7 +74,7 @@ def test_ndtw_threshold_scales():
 
 def test_spl_divides_by_the_longer_length():
     assert spl(True, 10.0, 12.5) == pytest.approx(0.8)
-    # a lattice path may be shorter than the stored geodesic distance
+    # a path on the grid may be shorter than the stored geodesic distance
     assert spl(True, 10.0, 9.0) == 1.0
     assert spl(False, 10.0, 10.0) == 0.0
     assert spl(True, 0.0, 0.0) == 1.0
@@ -126,7 +128,7 @@ def test_paths_that_cannot_be_compared_are_refused():
         path_length([(0, math.nan)])
 
 
-# Table II of the paper: SR (%) of the mitigation strategies, and their printed PRS-SR.
+# Table II of the paper: success rates (%) of the mitigation strategies, and their published PRS-SR
 TABLE_II = {
     "Adap.": ((16, 22, 30, 16, 24, 14, 21, 26), 0.33, (55, 54, 62, 60), 0.89),
     "DA PF (0.6)": ((52, 62, 58, 59, 62, 51, 59, 58), 0.89, (33, 51, 31, 59), 0.67),
@@ -135,7 +137,7 @@ TABLE_II = {
     "DA PE (0.9/0.8)": ((66, 62, 60, 55, 63, 62, 62, 57), 0.94, (42, 29, 62, 63), 0.75),
     "T-S distil.": ((62, 61, 55, 66, 56, 59, 61, 61), 0.93, (42, 66, 61, 52), 0.85),
 }
-CLEAN_SR = 65  # SR of ETPNav on R2R without corruption (in the paper's results on quantization)
+CLEAN_SR = 65  # SR of ETPNav on R2R without corruption, from the paper's results on quantization
 
 
 @pytest.mark.parametrize("strategy", TABLE_II)
@@ -166,7 +168,7 @@ def real_paths():
 def test_real_ground_truth_paths_score_as_vlnce_defines(real_paths):
     for episode, path in real_paths:
         assert ndtw(path, path) == 1.0
-        # episodes without stairs within the last 0.5 m
+        # these episodes have no stairs within the last 0.5 m
         left = math.dist(path[-1], episode.goals[0].position)
         won = success(left, True)
         assert won and not success(left, False)
@@ -177,7 +179,7 @@ def test_real_ground_truth_paths_score_as_vlnce_defines(real_paths):
 
 
 def perturbed(path, kind, generator):
-    """Return a path that an agent might take, and whether it still ends at the goal."""
+    """Return a variant of ``path`` that an agent might take, such as a noisy one."""
     if kind == "noisy":
         return path + generator.normal(0, 0.3, path.shape) * (1, 0, 1)
     if kind == "turning":

@@ -15,8 +15,8 @@ NAMES = ("one", "two", "three")
 
 
 def grid(*falls: tuple[int, int]):
-    """Return one column for each of ``falls``, in which 8 of 10 clean episodes succeed, and the
-    given numbers succeed under missing data at 0.3 and 0.6."""
+    """Return one column for each pair in ``falls``. In each column, 8 of 10 clean episodes succeed;
+    the pair gives the numbers of successes under missing data at 0.3 and 0.6."""
     output = []
     for name, at in zip(NAMES, falls, strict=False):
         settings = {"name": name, "agent": name.ljust(12, "0")}
@@ -26,7 +26,7 @@ def grid(*falls: tuple[int, int]):
 
 
 def seen(picture: np.ndarray, index: int) -> int:
-    """Return how many pixels above the legend have the colour of a column's line."""
+    """Return the number of pixels above the legend that have the colour of a column's line."""
     colour = np.round(255 * np.array(plots.LINES[index][2::-1]))
     above = picture[: int(0.8 * len(picture))].astype(int)
     return int((np.abs(above - colour).max(axis=2) < 12).sum())

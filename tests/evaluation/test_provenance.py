@@ -140,7 +140,7 @@ def test_first_world_accepts_values_that_change(tmp_path):
 
     for _ in range(3):
         keep(tmp_path, make)
-        make()  # as running an episode does
+        make()  # running an episode also makes a world
     keep(tmp_path / "other", lambda: [Maze(), numbers, circle, odd][0])
     assert (tmp_path / provenance.NOTE).stat().st_size < 3000
 
@@ -156,7 +156,8 @@ def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
 
 
 def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
-    """The rows record this, so agents with one camera and with twelve can be in one folder."""
+    """The rows contain sensors and rule, so a folder may contain rows of agents with one camera and
+    with twelve."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
     with pytest.raises(ValueError, match=r"env\.world\.cells"):
@@ -165,7 +166,7 @@ def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
 
 @pytest.mark.parametrize("wrapped", [False, True])
 def test_keep_rejects_an_edited_world(tmp_path, monkeypatch, wrapped):
-    """This includes a world inside the wrappers of an environment."""
+    """The edit is also detected if the world is inside wrappers."""
     monkeypatch.syspath_prepend(tmp_path)
     source = "class Edited:\n    rule, sensors = 'there', {}\n    won = True\n"
     for text in (source, source, source.replace("True", "False")):
@@ -194,7 +195,7 @@ FACTOR = 1
 
 
 class Counted(Maze):
-    """A world whose episodes change its class, and whose code reads a global variable."""
+    """A world whose class changes during episodes, and whose code reads a global variable."""
 
     count = 0
     depth = 3

@@ -1,4 +1,4 @@
-"""Tests that the table has the paper's numbers for known rows, and marks missing values."""
+"""Tests that the table computes the paper's numbers from known rows, and marks missing values."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ HARD = {"agent": "ffff00000000", "name": "da_per_episode"}
 
 
 def lines(output) -> dict[str, list[str]]:
-    """Return the cells of the table by the first cell of their line; only the first such line is
-    used."""
+    """Return a dict from the first cell of each table line to its other cells. If two lines have
+    the same first cell, the first line is used."""
     text = markdown(sections(output))
     table_lines = [line for line in text.splitlines() if line.startswith("| ")]
     matches: dict[str, list[str]] = {}
@@ -48,7 +48,7 @@ def test_table_has_the_rows_of_the_paper():
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
     assert (
         len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12
-    )  # lines for the head, the rule, clean, the mean and the suite
+    )  # lines for the header, the rule, clean, the means and the suite
 
 
 def test_heading_states_the_conditions():
@@ -62,7 +62,8 @@ def test_heading_states_the_conditions():
 
 @pytest.mark.parametrize("says", [True, False])
 def test_intervals_may_be_of_scenes(says):
-    """Return rows of two scenes with five episodes, named in the rows or by the apartments' ids."""
+    """The rows belong to two scenes with five episodes each; a row names its scene, or the episode
+    id contains it."""
 
     def placed(output: dict) -> dict:
         scene, number = divmod(int(output["episode_id"]), 5)
@@ -126,7 +127,7 @@ def test_clean_differences_are_paired_and_against_base():
 
 
 def test_mean_sr_covers_all_blocks():
-    """PRS divides by an agent's own clean SR, but this line does not."""
+    """Unlike PRS, the mean SR is not divided by the clean SR of the agent."""
     matches = lines(column(8, ALL) + column(5, dict.fromkeys(NAMES, 6), **HARD))
     assert [cell.split(" ")[0] for cell in matches["Mean SR of 12 corruptions"]] == ["40.0", "60.0"]
     assert matches["Mean SR against base"][1].strip("*").startswith("+20.0")
@@ -147,7 +148,8 @@ def test_partial_table_lists_its_gaps():
 
 
 def test_unfinished_episode_is_left_out():
-    """The evaluator runs one episode after the other, so the last one may lack some conditions."""
+    """The evaluator runs one episode after another, so some conditions of the last episode may be
+    missing."""
     records = column(8, ALL)
     cut = [r for r in records if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
     (section,) = sections(cut)
@@ -168,7 +170,8 @@ def test_columns_are_compared_on_common_episodes():
 def test_prs_near_the_floor_is_marked():
     records = column(1, dict.fromkeys(NAMES, 1), **HARD) + column(0, dict.fromkeys(NAMES, 0))
     matches = lines(records)
-    assert matches["**PRS-SR (RGB)**"][1].endswith("]")  # 0.10 is not below the floor
+    # a clean SR of 0.10 is not below the performance floor
+    assert matches["**PRS-SR (RGB)**"][1].endswith("]")
     assert "‡" in matches["**PRS-SR (RGB)**"][0]
     assert matches["**PRS-SR (RGB)**"][0].startswith("undefined")
     assert "performance floor" in markdown(sections(records))
@@ -195,7 +198,7 @@ def test_agents_of_one_name_are_distinguished():
 
 
 def test_agents_with_distinct_seeds_share_a_column():
-    """The columns are the training seeds of one recipe."""
+    """The agents are training seeds of one recipe, so they form one column."""
     records = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
     (section,) = sections(records)
     assert section.columns == ("base",)
@@ -227,7 +230,8 @@ def test_table_lists_values_seed_by_seed():
 
 
 def test_columns_are_compared_over_common_seeds():
-    """Only rows of common seeds used the same corruption keys."""
+    """Two columns are compared only over seeds that both have, because these used the same
+    corruption keys."""
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     matches = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]
@@ -239,7 +243,8 @@ def test_columns_are_compared_over_common_seeds():
 
 
 def test_unfinished_seed_is_left_out_with_a_note():
-    """A complete seed must not be reduced to the episodes that a new seed has so far."""
+    """If a new seed has only a few episodes so far, the other episodes of a complete seed must
+    still count."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
     (section,) = sections(column(8, ALL) + part)
     assert section.value("base", "clean") == pytest.approx(0.8)
@@ -250,7 +255,7 @@ def test_unfinished_seed_is_left_out_with_a_note():
 def test_seed_counts_only_at_its_severities():
     records = column(8, ALL, 0.2) + column(8, ALL, 0.6) + column(4, ALL, 0.6, seed=1)
     mild, strong = sections(records)
-    # only seed 0, as in its corrupted cells
+    # only seed 0 counts, because only seed 0 has corrupted cells at this severity
     assert mild.value("base", "clean") == pytest.approx(0.8)
     assert mild.retained["base", "RGB", "SR"].estimate.value == pytest.approx(0.5)
     assert strong.value("base", "clean") == pytest.approx(0.6)
@@ -259,7 +264,8 @@ def test_seed_counts_only_at_its_severities():
 
 
 def test_heading_names_the_agents():
-    """A second training run is included only at the severities at which it was measured."""
+    """A table contains a second training run only if that run was measured at the table's
+    severity."""
     other = column(4, ALL, 0.6, seed=1, agent="eeee00000000")
     mild, strong = sections(column(8, ALL, 0.2) + column(8, ALL, 0.6) + other)
     assert "eeee00000000" not in markdown([mild]) and "eeee00000000" in markdown([strong])
@@ -371,7 +377,7 @@ def test_unseen_corruptions_have_a_table_of_their_own():
 
 
 def test_suite_figures_ignore_other_corruptions():
-    """This covers other seeds, gaps and agents in the unseen rows."""
+    """The rows of unseen corruptions have fewer seeds, missing cells and an additional agent."""
     suite = column(8, ALL) + column(6, ALL, seed=1) + column(5, ALL, **HARD)
     other = column(8, dict.fromkeys(UNSEEN, 2)) + column(5, {"spatter+haze": 1}, **HARD)
     other += column(3, {"haze": 1}, agent="eeee00000000", name="third")
@@ -391,7 +397,7 @@ def test_halves_of_unseen_corruptions_have_a_prs():
     assert matches["PRS-SR (unseen RGB, validation)"][0].startswith("**1.00**")
     assert matches["PRS-SR (unseen RGB, test)"][0].startswith("**0.50**")
     half = lines(column(8, dict.fromkeys(test, 4)))
-    # all corruptions of one half of the unseen suite are present
+    # all corruptions of the validation or test half of the unseen suite are present
     assert half["**PRS-SR (unseen RGB)**"][0].endswith("]")
     assert "PRS-SR (unseen RGB, test)" not in half
     part = lines(column(8, dict.fromkeys(test[1:], 4)))
@@ -457,8 +463,8 @@ def test_lists_with_common_episodes_share_a_table():
 
 
 def test_rows_at_severity_zero_are_not_clean_rows():
-    """If a corruption also ran at severity 0, the shown severity once depended on the order of a
-    set."""
+    """If a corruption was also run at severity 0, the displayed severity once depended on the order
+    of a set."""
     rows = column(8, {"flare": 0}) + [
         output | {"corruption": "flare", "severity": 0.0} for output in cell(8)
     ]

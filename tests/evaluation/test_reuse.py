@@ -1,4 +1,5 @@
-"""Tests that frames are rendered and encoded once per episode, without changing rows."""
+"""Tests that each frame of an episode is rendered and encoded once, and that this does not change
+rows."""
 
 from __future__ import annotations
 
@@ -64,7 +65,7 @@ def test_agent_cannot_change_cached_frames():
 
 
 def encoded(agent):
-    """Return a list to which all later input frames of the RGB encoder are added."""
+    """Return a list that gets a new element for each call of the RGB encoder."""
     calls = []
     agent.rgb_encoder.register_forward_hook(lambda *_: calls.append(1))
     return calls
@@ -101,10 +102,11 @@ def test_cache_is_cleared_when_weights_change():
 
 
 class Mortal(torch.nn.Module):
-    """An agent that stops at once. In its third episode it kills its process, until ``deaths``
-    processes were killed."""
+    """An agent that stops at once. In its third episode it kills its process, unless ``deaths``
+    processes have been killed already."""
 
-    settings = dict  # the episode in which the process dies is not part of the agent's fingerprint
+    # defined, so that the fingerprint does not depend on the episode in which the process dies
+    settings = dict
 
     def __init__(self, folder, deaths=1):
         super().__init__()

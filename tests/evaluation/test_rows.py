@@ -1,4 +1,5 @@
-"""Tests that row files survive kills and join by identity, and that errors are clear."""
+"""Tests that row files survive kills and are merged without duplicates, and that errors are
+clear."""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ def test_append_repairs_an_interrupted_first_write(tmp_path):
 
 def test_append_keeps_a_last_line_without_newline(tmp_path):
     path = tmp_path / "rows.jsonl"
-    # longer than a block of the reader
+    # the line is longer than the blocks that the reader reads
     path.write_text(json.dumps(row(0, True) | {"note": "x" * 9000}))
     rows.append(path, [row(1, False)])
     assert [r["episode_id"] for r in rows.read(path)] == ["0", "1"]
@@ -151,7 +152,7 @@ def test_read_rejects_booleans_as_numbers(tmp_path):
     (tmp_path / "rows.jsonl").write_text(json.dumps(row(0, True) | {"success": True}))
     with pytest.raises(ValueError, match=r"wrong 'success': True \(a number: 1 for true, 0 for f"):
         rows.read(tmp_path / "rows.jsonl")
-    assert rows._line(row(0, True, fell=True))  # a user's entry may have such a name
+    assert rows._line(row(0, True, fell=True))  # a user's entry may have any name
 
 
 BAD_LINES = {
@@ -224,7 +225,7 @@ def test_gather_reads_files_with_a_damaged_first_line(tmp_path):
     file.write_bytes(b"\0\0" + file.read_bytes()[2:])
     with pytest.raises(ValueError, match=r"b/rows\.jsonl, line 1 is not a JSON object"):
         rows.gather([tmp_path])
-    file.write_bytes(b"")  # an evaluation that has no rows so far
+    file.write_bytes(b"")  # like an evaluation that has written no rows so far
     assert rows.gather([tmp_path]) == cell(5)
 
 

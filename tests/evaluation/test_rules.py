@@ -1,4 +1,5 @@
-"""Tests of success rules: the rule of each paper by name, and the rule in every row."""
+"""Tests of success rules: a name selects the rule of each paper, and every row contains its
+rule."""
 
 from __future__ import annotations
 
@@ -93,13 +94,13 @@ def test_ndtw_threshold_follows_the_rule():
         world.reset(episode)
         loaded[rule] = -math.log(world.measures()["ndtw"]) * metres
     assert loaded["vln_ce"] == pytest.approx(loaded["apartments"], rel=1e-4)
-    # the threshold of VLN-CE, because view points do not lie on a path
+    # these rules use the threshold of VLN-CE, because view points do not lie on a path
     for rule in ("wmnav", "objectnav"):
         assert loaded[rule] == pytest.approx(loaded["apartments"], rel=1e-4)
 
 
 def test_expert_of_the_default_rule_is_unchanged():
-    """Shipped rows and weights belong to these episodes."""
+    """The shipped rows and weights were made with these actions of the expert."""
     world, message = ApartmentsWorld(), []
     for episode in load_episodes("val_seen")[::60]:
         world.reset(episode)

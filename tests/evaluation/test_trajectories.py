@@ -1,4 +1,4 @@
-"""Tests that pictures of episodes agree with their rows, and how episodes are chosen."""
+"""Tests that pictures of episodes agree with their rows, and of the choice of episodes."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch,
 
 
 class Shows(ApartmentsWorld):
-    """An apartment world with only one kind of frame, or with none."""
+    """An apartment world that shows only RGB, only depth, or no frames."""
 
     only: tuple[str, ...] = ()
 

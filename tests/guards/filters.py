@@ -22,7 +22,7 @@ median.version = "3 pixels"
 
 
 class Brighter:
-    """A class that is constructed once and counts its calls."""
+    """A frame filter that is constructed once and counts its calls."""
 
     frames = "rgb"
 
@@ -35,7 +35,7 @@ class Brighter:
 
 
 def guided(frames):
-    """A stand-in for depth completion: it needs RGB and depth of the same view."""
+    """A fake depth completion, which needs RGB and depth of the same view."""
     rgb, depth = frames["rgb"], frames["depth"]
     assert rgb.shape[:-1] == depth.shape[:-1]
     return {"depth": np.where(depth == 0, rgb.mean(), depth).astype(np.float32)}
@@ -56,7 +56,7 @@ def broken(frames):
 
 
 class Returns:
-    """Return an entry in the form that the constructor receives."""
+    """A frame filter that returns the arguments of its constructor."""
 
     def __init__(self, **output):
         self.made = output

@@ -40,7 +40,7 @@ class Dark(Guard):
 
 
 class Room:
-    """A world of four steps with frames."""
+    """A world with episodes of four steps, which shows frames."""
 
     rule, sensors, done = "STOP", {}, False
 
@@ -69,7 +69,7 @@ def test_guard_defaults_change_nothing():
     guard, observation = Guard(), {RGB: np.zeros((2, 2, 3), np.uint8)}
     assert guard.begin(START) == "Go ahead." and guard.begin_all([START]) == ["Go ahead."]
     assert guard.observe(observation) is observation
-    assert guard.observe_all([observation]) == [observation]
+    assert guard.for_episode() is guard and not Guards([guard]).remembers
     assert guard.prepared([START]) is guard
     guard.check_shown([], "nothing")
     with guard.attach("agent"):
@@ -83,7 +83,6 @@ def test_guards_apply_each_in_turn():
     assert chain.begin(START) == "please GO AHEAD." == chain.begin_all([START])[0]
     observed = chain.observe({RGB: np.full((2, 2, 3), 200), "pose": 1})
     assert observed[RGB].max() == 50 and observed["pose"] == 1
-    assert chain.observe_all([observed])[0][RGB].max() == 12
     assert chain.label == "shouts+dark+dark" and chain.frames == (RGB,) and chain.adapts
     assert chain.prepared([START]).begin(START) == chain.begin(START)
 
@@ -134,7 +133,7 @@ def test_guarded_world_changes_frames_when_they_are_read():
 
 
 class Lower:
-    """A stand-in for the safeguard."""
+    """A fake safeguard."""
 
     identity = "lower 1"
 
@@ -220,7 +219,7 @@ def test_callable_changes_only_what_it_returns():
 
 def test_callable_that_changes_nothing_leaves_the_same_objects():
     observed = frames()
-    observed[DEPTH][0, 0] = np.nan  # as in a hole of a real sensor
+    observed[DEPTH][0, 0] = np.nan  # real sensors return this value for holes
     assert open_callable(f"{FILTERS}:unchanged").observe(observed)[RGB] is observed[RGB]
     before = {name: np.array(frame) for name, frame in observed.items()}
     output = open_callable(f"{FILTERS}:in_place").observe(observed)

@@ -1,5 +1,5 @@
-"""Tests that DAgger learns from new and stored rollouts, and that a resumed run samples the
-same."""
+"""Tests that DAgger learns from new and stored rollouts, and that a resumed run samples the same
+rollouts."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ def recipe(folder, **settings) -> Dagger:
 
 
 def walks(batch: dict) -> list[str]:
-    """Return the episodes of a batch, one per rollout."""
+    """Return the episode id of each rollout in a batch."""
     ids, rows = batch["episode_ids"], batch["decisions"].walk.tolist()
     return [ids[rows.index(walk)] for walk in range(max(rows) + 1)]
 
@@ -45,7 +45,7 @@ def walks(batch: dict) -> list[str]:
 def test_step_learns_from_fresh_and_stored_rollouts(tmp_path):
     objective = recipe(tmp_path)
     assert [len(walks(objective.batch(step))) for step in range(5)] == [2, 2, 3, 3, 3]
-    assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps with 2 pieces each
+    assert len(list(tmp_path.glob("*.pt"))) == 6  # 3 steps stored 2 rollouts each
 
 
 @pytest.mark.slow

@@ -1,4 +1,5 @@
-"""Tests that distillation trains only the student and gives both the same observations."""
+"""Tests that distillation trains only the student, and that student and teacher get the same
+observations."""
 
 from __future__ import annotations
 
@@ -71,7 +72,8 @@ def batch(recipe) -> dict:
 
 
 def gradients(recipe: Distil, loss: torch.Tensor) -> set[str]:
-    """Return the parts that get a gradient from ``loss``, and check that the teacher gets none."""
+    """Return the names of the agent's parts that get a gradient from ``loss``; check that the
+    teacher gets none."""
     recipe.zero_grad()
     loss.backward(retain_graph=True)
     assert all(p.grad is None for p in recipe.teacher.parameters())
@@ -106,7 +108,8 @@ def test_loss_is_the_sum_of_its_terms(recipe, batch):
 
 
 def test_matched_features_count_in_units_of_the_teachers_variance():
-    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])  # its variance is 20 / 3
+    # the variance of the teacher's features is 20 / 3
+    teacher = torch.tensor([[0.0, 2.0], [4.0, 6.0]])
     student = teacher + torch.tensor([[1.0, -1.0], [2.0, 0.0]])
     assert float(feature_loss(student, teacher)) == pytest.approx(1.5 / (20 / 3))
     assert float(feature_loss(10 * student, 10 * teacher)) == pytest.approx(1.5 / (20 / 3))
@@ -121,7 +124,8 @@ def test_policy_kl_is_that_of_softened_policies():
 
 
 def test_teacher_and_student_answer_over_the_same_candidates(recipe, batch):
-    """The teacher's own waypoints, from clean depth, would differ."""
+    """The teacher uses the student's waypoints; its own waypoints, from clean depth, would
+    differ."""
     decisions = batch["decisions"]
     student = recipe.agent.decide(decisions).logits
     with torch.no_grad():
@@ -270,8 +274,8 @@ def test_gate_threshold_is_set_on_held_out_clean_views():
 
 
 def with_statistics(**options) -> TopologicalAgent:
-    """An agent whose encoders have normalisations with running statistics, with and without
-    weights."""
+    """An agent whose encoders have normalisation layers with running statistics, some with weights
+    and some without."""
     agent = small(**options)
     for encoder, affine in ((agent.rgb_encoder, True), (agent.depth_encoder, False)):
         block = encoder.stages[0]

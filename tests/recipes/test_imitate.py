@@ -42,7 +42,8 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
 
 
 def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
-    """The rows of a run contain two agents (before and after), so their mean belongs to neither."""
+    """The rows of a training run contain two agents (before and after training), and a mean over
+    both describes neither."""
     schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
     hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
     rows.write(tmp_path / "one.jsonl", cell(8) + hard)
@@ -123,7 +124,7 @@ def test_rollouts_measure_missing_success_rates_once():
 
 
 def test_measuring_success_leaves_the_agent_in_training_mode():
-    """Otherwise all later steps would train without dropout."""
+    """If the agent stayed in eval mode, all later steps would train without dropout."""
     schedule = Schedule("success_distributed", 0.6, names=("flare",))
     objective = assemble(
         Imitate,
@@ -140,7 +141,7 @@ def test_measuring_success_leaves_the_agent_in_training_mode():
 
 
 def test_nan_logits_give_nan_loss():
-    """Otherwise the loss would be 0, and only the norm of the gradient would show the error."""
+    """If NaN logits gave a loss of 0, only the norm of the gradient would show the error."""
     target, weight = torch.tensor([[0.0, 1.0, 0.0]]), torch.ones(1)
     decisions = SimpleNamespace(target=target, weight=weight)
 
@@ -155,7 +156,8 @@ def test_nan_logits_give_nan_loss():
 
 
 def test_imitation_adds_weighted_auxiliary_losses():
-    """Two decisions with two choices, where the correct one has probability 0.8 and 0.4."""
+    """There are two decisions with two choices each; the correct choices have the probabilities 0.8
+    and 0.4."""
     logits = torch.tensor([[0.8, 0.2], [0.6, 0.4]]).log()
     decisions = SimpleNamespace(
         target=torch.tensor([[1.0, 0.0], [0.0, 1.0]]), weight=torch.tensor([1.0, 3.0])
@@ -169,7 +171,7 @@ def test_imitation_adds_weighted_auxiliary_losses():
 
 
 def test_every_step_and_piece_draws_other_episodes_and_keys():
-    """The random numbers of training must not repeat."""
+    """Steps and pieces must not reuse the random numbers of earlier ones."""
     drawn, keys = [], []
 
     class Listed(DrawnEpisodes):

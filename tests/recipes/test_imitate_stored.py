@@ -1,4 +1,5 @@
-"""Tests of training on stored features. The features do not change if a sensor is blanked."""
+"""Tests of training on stored features. The stored features must be the same whether or not the run
+blanks a sensor."""
 
 from __future__ import annotations
 
@@ -41,7 +42,7 @@ def recipe(
 
 @pytest.fixture(autouse=True, scope="module")
 def few_poses():
-    """A world with a sixteenth of the poses that training stores."""
+    """Store features at only a sixteenth of the poses."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(stored, "SPACING", 2.0)
         yield
@@ -53,7 +54,8 @@ def folder(tmp_path_factory):
 
 
 def spread(output: ImitateStored) -> tuple[float, float]:
-    """Return how much the stored RGB and depth features differ."""
+    """Return the standard deviation over poses of the stored RGB features and of the stored depth
+    features."""
     views, depth = (
         output.rollouts.store.features(SCENE).views.astype(np.float32),
         output.agent.planner.widths[-1],
@@ -62,7 +64,7 @@ def spread(output: ImitateStored) -> tuple[float, float]:
 
 
 def test_blind_run_stores_whole_features_for_the_next(folder):
-    """The run with a blind sensor comes first and fills the cache."""
+    """The run that blanks a sensor comes first and fills the cache."""
     assert spread(recipe(folder, ("rgb",)))[0] == 0.0
     seeing, deaf = recipe(folder), recipe(folder, ("instruction",))
     assert seeing.rollouts.store.folder == deaf.rollouts.store.folder and min(spread(seeing)) > 0
@@ -90,8 +92,8 @@ def test_batch_trains_the_planner_only(folder):
 
 @pytest.mark.slow
 def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
-    """Each variant is stored once with one corruption, and the schedule sets the fraction of clean
-    rollouts."""
+    """Each corrupted variant of a scene is stored once, with one corruption. The schedule sets the
+    fraction of clean rollouts."""
     seeding.seed_everything(0, "agent")
     agent = TopologicalAgent(16, SMALL)
     schedule = Schedule("per_episode", 0.9, names=("low_light", "missing_data"), clean_share=0.5)
@@ -106,7 +108,7 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     output = [path for path in tmp_path.rglob("*") if path.is_dir()]
     assert (
         len({path.stat().st_mode for path in output}) == 1
-    )  # the cached features can be used for all sensors
+    )  # all cached files have the same permissions
     variants = [stores[1].features(SCENE, v) for v in (1, 2)]
     assert all(not np.array_equal(v.views, clean) for v in variants)
     assert not np.array_equal(variants[0].views, variants[1].views)

@@ -1,4 +1,5 @@
-"""PPO under corruption: its first loss, the targets of its critic, and that it learns."""
+"""Tests of PPO under corruption: its first loss, the targets of its critic, and that the policy
+improves."""
 
 import numpy as np
 import pytest
@@ -58,13 +59,13 @@ def test_ppo_targets_are_discounted_returns_without_bootstrapping():
     task.batch(0)
     steps = task._rollouts
     rewards = steps["value_target"].view(-1, 5) * task.scale
-    decoded = rewards[:, :-1] - 0.5 * rewards[:, 1:]  # an episode has five rewards of 0 or 1
+    decoded = rewards[:, :-1] - 0.5 * rewards[:, 1:]  # an episode has five rewards, each 0 or 1
     torch.testing.assert_close(decoded, decoded.round(), atol=1e-5, rtol=0)
     torch.testing.assert_close(rewards[:, -1], rewards[:, -1].round(), atol=1e-5, rtol=0)
 
 
 class Truncated(Lights):
-    """Lights in which a limit of time ends the episode."""
+    """The environment ``Lights``, but a time limit ends (truncates) the episode."""
 
     def step(self, action):
         observation, reward, terminated, _, info = super().step(action)
@@ -131,7 +132,8 @@ def test_ppo_raises_the_return():
         optimizer.zero_grad()
         task(batch)["loss"].backward()
         optimizer.step()
-    assert returns[0] < 3.5 and returns[-1] > 4.4  # of 5; random actions return 2.5
+    # the maximum return is 5, and random actions get 2.5
+    assert returns[0] < 3.5 and returns[-1] > 4.4
 
 
 @pytest.mark.parametrize("entropy", [0.0, 0.01])

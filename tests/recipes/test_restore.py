@@ -1,4 +1,5 @@
-"""Tests that restorers are trained on random poses or a folder, and that thresholds are set."""
+"""Tests that restorers are trained on random poses or on the frames in a folder, and that
+thresholds are set."""
 
 from __future__ import annotations
 
@@ -124,7 +125,7 @@ def test_folder_of_frames_can_be_the_source(tmp_path):
     assert batch["frames"].shape == batch["clean"].shape == (1, 12, 24, 24, 3)
     there = pickle.loads(
         pickle.dumps(recipe)
-    )  # in a worker, which receives only the frames of its jobs
+    )  # like in a worker, which receives only the frames of its jobs
     assert there.pairs.frames is None
     sent = pickle.loads(pickle.dumps(recipe.jobs(0)))
     again = there.collate(0, [there.work(job) for job in sent])
@@ -148,7 +149,8 @@ def _of_folder(path) -> Restore:
 
 
 def test_folder_depth_uses_the_range_of_the_restorer(tmp_path):
-    """Otherwise all depth beyond ten metres would become ten metres in the training targets."""
+    """With the default range, all depth beyond ten metres would become ten metres in the training
+    targets."""
     for scene in range(3):
         (tmp_path / f"s{scene}").mkdir()
         metres = np.full((24, 24), 21 + scene, np.float32)

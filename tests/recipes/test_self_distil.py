@@ -1,5 +1,5 @@
-"""Tests of self-distillation: the loss is zero for equal answers, and the operations of a step run
-in the right order."""
+"""Tests of self-distillation: the loss is zero if the answers are equal, and the operations of a
+training step have the right order."""
 
 import numpy as np
 import pytest
@@ -26,7 +26,8 @@ def objective(tmp_path, schedule=None, net=None, recurrent=False, **options):
 def test_self_distil_loss_is_zero_for_clean_frames(tmp_path):
     task = objective(tmp_path, Schedule("clean", 0.0), curriculum=False)
     values = task(task.batch(0))
-    imitation = values.pop("imitation").item()  # cross-entropy of the policy with its own actions
+    # cross-entropy between the policy and its own actions
+    imitation = values.pop("imitation").item()
     assert values.pop("loss").item() == pytest.approx(imitation)
     assert {name: value.item() for name, value in values.items()} == dict.fromkeys(values, 0.0)
 
@@ -60,7 +61,7 @@ def test_self_distil_trains_the_student_only(tmp_path):
 
 
 class Counting(nn.Module):
-    """A policy that counts its frames, so that its memory is visible."""
+    """A recurrent policy that counts its frames, so that its output shows its memory."""
 
     def __init__(self):
         super().__init__()
@@ -74,7 +75,7 @@ class Counting(nn.Module):
 def test_self_distil_gives_a_recurrent_policy_windows(tmp_path):
     task = objective(tmp_path, net=Counting(), recurrent=True, window=4, module="scale")
     batch = task.batch(0)
-    assert batch["clean"]["rgb"].shape == (8, 16, 16, 3)  # two windows with four frames each
+    assert batch["clean"]["rgb"].shape == (8, 16, 16, 3)  # two windows of four frames
     answers = task.agent.answers(batch["clean"], 4)
     expected = task.agent.network.scale(torch.arange(4.0)[:, None]).log_softmax(-1)
     for place, (distribution,) in enumerate(answers):

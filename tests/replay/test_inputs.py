@@ -1,4 +1,5 @@
-"""Tests of the agents and drives of a replay: own agents, missing inputs, and what was read."""
+"""Tests of the inputs of a replay: users' agents, missing inputs, and the report of what was
+read."""
 
 from __future__ import annotations
 
@@ -25,7 +26,7 @@ COUNT = 4
 
 
 class Careful:
-    """An agent that turns left while something is close, and otherwise drives forward."""
+    """An agent that turns left while an obstacle is close, and otherwise drives forward."""
 
     sensors = (DEPTH,)
 

@@ -1,4 +1,5 @@
-"""Tests of ``mitigate replay``: decisions of agents on a drive, and how corruptions change them."""
+"""Tests of ``mitigate replay``: the decisions of agents on a recorded drive, and how corruptions
+change them."""
 
 from __future__ import annotations
 
@@ -129,7 +130,8 @@ def answers(actions, aims=None) -> Answers:
 
 
 def test_share_weights_blocks_by_length():
-    """Short drives form blocks of few steps, which must have less weight than full blocks."""
+    """The blocks of short drives contain few steps, so they must have less weight than full
+    blocks."""
     drives = [np.zeros(14, bool)] * 40 + [np.ones(1, bool)] * 20
     estimate = _share(drives)
     assert estimate.value == pytest.approx(20 / 580)
@@ -193,13 +195,13 @@ def mitigate(monkeypatch, capsys):
     """Run ``mitigate`` with arguments, and return its exit status, stdout and stderr."""
 
     def run(*words: str) -> tuple[int, str, str]:
-        # restored afterwards, because the command replaces it
+        # makes pytest restore sys.argv, because the command replaces it
         monkeypatch.setattr(sys, "argv", sys.argv)
         with pytest.raises(SystemExit) as ended:
             cli.main(words)
         output = capsys.readouterr()
         status = ended.value.code or 0
-        if isinstance(status, str):  # a message that the interpreter prints at exit
+        if isinstance(status, str):  # the message that the interpreter prints at exit
             return 1, output.out, output.err + status
         return status, output.out, output.err
 
@@ -388,7 +390,7 @@ def test_report_raises_if_a_picture_cannot_be_written(tmp_path):
         report.heatmap(changes, 0.6, tmp_path / "a.png")
     assert [path.name for path in tmp_path.iterdir()] == ["a.png"]
     assert "| a\\|b$" in report.table(changes, 0.6, T, 1)
-    # Matplotlib must not read the name as a formula
+    # Matplotlib must not parse the name as a formula
     assert report.heatmap(changes, 0.6, tmp_path / "b.png").is_file()
 
 

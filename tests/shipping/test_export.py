@@ -1,6 +1,6 @@
 """Tests that a hardened checkpoint reloads to the same outputs.
 
-Otherwise it is not written, or loading rejects it.
+If the outputs differ, the folder is not written, or loading rejects it.
 """
 
 from __future__ import annotations
@@ -35,13 +35,13 @@ from mitigate.shipping import card as cards
 from mitigate.shipping import export, export_command, programs
 from mitigate.shipping.card import metrics
 
-# only one worker of pytest exports, instead of each
+# one pytest worker exports for all workers
 pytestmark = pytest.mark.xdist_group("export")
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs/deployment.md"
 SIZE = 64
-ROWS = "ab" * 6  # the agent of the rows of `whole`
+ROWS = "ab" * 6  # the agent's hash in the rows of `whole`
 TINY = {"width": 16, "planner": {"heads": 2, "text_layers": 1, "layers": 1}}
 ADAPTERS = {
     "target_modules": [r"depth_encoder\.stages\.0"],
@@ -51,7 +51,7 @@ ADAPTERS = {
 
 
 def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:
-    """Write a run folder as `make train` does."""
+    """Write a run folder like the one that `make train` writes."""
     checkpoint.save_weights(agent, folder / "agent")
     node = {"_target_": loading.TARGET, **settings}
     cfg = {
@@ -107,7 +107,8 @@ def python(code: str, *arguments: object, cwd: Path = ROOT) -> str:
 
 
 class StandIn(torch.nn.Module):
-    """A network that is traced quickly, because tracing an agent's networks takes half a minute."""
+    """A simple network that replaces an agent's networks, because tracing those takes half a
+    minute."""
 
     def __init__(self, names: tuple[str, ...]) -> None:
         super().__init__()
@@ -138,8 +139,8 @@ def check_here(draft: Path, outputs: dict) -> None:
 
 
 def copy_programs(whole: Path, draft: Path) -> tuple[dict, dict]:
-    """Replacement for ``export._programs`` that gives a folder of adapters the programs of
-    ``whole``."""
+    """Replacement for ``export._programs`` that copies the programs of ``whole`` into a folder of
+    adapters."""
     for name in (loading.PROGRAM, loading.INPUTS):
         shutil.copy(whole / name, draft)
     card = loading.read_card(whole)
@@ -148,7 +149,8 @@ def copy_programs(whole: Path, draft: Path) -> tuple[dict, dict]:
 
 @pytest.fixture(scope="module")
 def place(tmp_path_factory) -> Path:
-    """Two exported agents with stand-in programs, `whole` and `adapted`, and their runs."""
+    """A folder with two exported agents, `whole` and `adapted`, and their runs. The programs are
+    simple networks."""
     place = tmp_path_factory.mktemp("export")
     torch.manual_seed(0)
     agent = TopologicalAgent(**TINY)
@@ -189,18 +191,18 @@ def traced(place) -> Path:
 
 @pytest.fixture(scope="module")
 def exported(place) -> dict:
-    """The stand-in programs of `whole`."""
+    """The exported programs of `whole`, which are simple networks."""
     return load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
 
 
 @pytest.fixture
 def copied(place, tmp_path) -> Path:
-    """A copy of the folder `whole`, for tests that damage it."""
+    """A copy of the folder `whole`, for tests that change files in it."""
     return Path(shutil.copytree(place / "hardened/whole", tmp_path / "whole"))
 
 
 def resign(folder: Path, **changes) -> None:
-    """Change the card, and update its sha256 in the manifest."""
+    """Change entries of the card, and update the card's sha256 in the manifest."""
     card = json.loads((folder / "card.json").read_text())
     (folder / "card.json").write_text(json.dumps({**card, **changes}))
     folders.seal(folder, "hardened")
@@ -264,7 +266,8 @@ def test_adapter_folder_holds_no_backbone_and_needs_its_base(place, tmp_path):
     folder = place / "hardened/adapted"
     assert loading.check_hardened(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
-    assert not list((place / "hardened").rglob("*.sha256"))  # the cards contain the checksums
+    # no sidecars, because the cards contain the checksums
+    assert not list((place / "hardened").rglob("*.sha256"))
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="another"):
         loading.load_hardened(folder, base=other)
@@ -325,7 +328,7 @@ print(json.dumps([waypoints.sum().item(), logits[0].tolist()]))
 
     agent = loading.load_hardened(traced)
     value = programs.probe(agent, SIZE)
-    first = {  # the first decision of an episode: one panorama, one node, two ghosts
+    first = {  # inputs of the first decision in an episode: one panorama, one node, two ghosts
         **{name: value[name][:1] for name in ("rgb", "depth", "tokens", "episode")},
         "panorama": torch.tensor([0]),
         "nodes": torch.tensor([[0]]),
@@ -417,7 +420,7 @@ def test_other_vocabulary_is_rejected(copied):
 @pytest.mark.parametrize("name", ["adapters.safetensors", "adapters.json", "decide.onnx"])
 def test_known_file_missing_from_the_card_is_rejected(copied, name):
     (copied / name).write_bytes(b"x")
-    (copied / ".gitattributes").touch()  # added in this form by the hub
+    (copied / ".gitattributes").touch()  # the Hugging Face hub adds this file
     for read in (
         lambda: loading.load_hardened(copied),
         lambda: loading.fill(TopologicalAgent(**TINY), copied),
@@ -427,7 +430,8 @@ def test_known_file_missing_from_the_card_is_rejected(copied, name):
 
 
 def test_adapters_missing_from_the_card_are_ignored(place, copied):
-    """The weights differ from the checksums in the card."""
+    """A folder has full weights according to its card, and also contains adapters that the card
+    does not list."""
     resign(copied, base=None)
     for name in (adapters.WEIGHTS, adapters.SETTINGS):
         shutil.copy(place / "hardened/adapted" / name, copied)
@@ -452,7 +456,7 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
-    # set for training, because adapters would change it
+    # fill does not compare the hash of the agent, because adapters for training would change it
     assert loading.fill(own_value, copied) is own_value
 
 
@@ -548,7 +552,7 @@ def test_export_writes_nothing_if_reload_differs(place, exported, tmp_path, monk
 
 
 def test_check_detects_other_outputs(place, tmp_path):
-    """The fixture exported ``whole`` with the same outputs and passed the check."""
+    """When the fixture exported ``whole``, the outputs were equal and the check passed."""
     agent = loading.load_hardened(place / "hardened/whole")
     expected = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
     expected["logits"] = expected["logits"] + 0.01
@@ -603,12 +607,13 @@ def test_commit_is_of_this_checkout_or_not_stated(monkeypatch, tmp_path):
     assert cards.commit() is None  # no git
     monkeypatch.undo()
     monkeypatch.setattr(cards, "ROOT", tmp_path)
-    assert cards.commit() is None  # installed inside the repository of a different project
+    # no commit is named if the package is installed inside the repository of another project
+    assert cards.commit() is None
 
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """Limit the files of this process to ``size`` bytes."""
+    """Limit the size of files that this process writes to ``size`` bytes."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     resource.setrlimit(resource.RLIMIT_FSIZE, (size, hard))
     try:
@@ -621,7 +626,7 @@ def files_of_at_most(size: int) -> Iterator[None]:
 def test_full_disk_is_reported_and_leaves_nothing(
     place, exported, tmp_path, monkeypatch, capfd, full
 ):
-    """Return the error that ``export`` raises if the size of weights and programs is limited."""
+    """An error is reported if the weights or the programs do not fit on the disk."""
     weights = (place / "hardened/whole" / checkpoint.WEIGHTS).stat().st_size
     most = weights // 2 if full == "weights" else weights + 1000
     command = ["export", str(place / "runs/whole"), "mine", "--out", str(tmp_path)]
@@ -714,7 +719,7 @@ def test_deployment_page_examples_run(traced, tmp_path, monkeypatch):
 
 
 def places_in(file: Path) -> list[str]:
-    """Return the paths of the checkout and the environment that occur in ``file``."""
+    """Return the paths of the checkout and of the Python environment that occur in ``file``."""
     parts = [file.read_bytes()]
     if file.suffix == ".pt2":
         with zipfile.ZipFile(file) as archive:
@@ -731,7 +736,7 @@ def test_export_writes_no_path_of_this_machine(place, name):
 
 @pytest.mark.slow
 def test_programs_hold_no_path_of_this_machine(traced):
-    """The traces of programs once contained such paths."""
+    """The traces in programs once contained paths of the checkout."""
     assert places_in(traced / loading.PROGRAM) == []
 
 

@@ -17,7 +17,8 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Lights(gymnasium.Env):
-    """An environment in which a light on the left or right shows the side to choose, five times."""
+    """An environment of five steps; in each step, the policy must choose the side on which a light
+    is."""
 
     def __init__(self, continuous=False, size=16):
         self.observation_space = spaces.Box(0, 255, (size, size, 3), np.uint8)
@@ -75,7 +76,7 @@ def trained(continuous=False):
 
 
 def imitate(policy, env):
-    """Train a stable-baselines3 policy to choose the side on which the light is."""
+    """Train a stable-baselines3 policy to choose the side of the light."""
     optimizer = torch.optim.Adam(policy.parameters(), 1e-3)
     env.reset(seed=7)
     for _ in range(40):

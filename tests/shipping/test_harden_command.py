@@ -1,4 +1,5 @@
-"""``mitigate harden``: the options of conf/harden.yaml become the arguments of mitigate.harden."""
+"""``mitigate harden``: the options in conf/harden.yaml are passed to mitigate.harden as
+arguments."""
 
 import sys
 from inspect import signature

@@ -21,7 +21,7 @@ KINDS = {
 }
 
 
-@pytest.mark.slow  # the frontier agent is exported in tests/test_methods.py, which is quick
+@pytest.mark.slow  # tests/test_methods.py has a quicker test, which exports the frontier agent
 @pytest.mark.parametrize("kind", KINDS)
 def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)

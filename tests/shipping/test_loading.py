@@ -1,4 +1,4 @@
-"""Tests that one call loads an agent from any folder, and that its kind is inferred."""
+"""Tests that one function loads an agent from any folder and infers the kind of agent."""
 
 from __future__ import annotations
 
@@ -33,6 +33,13 @@ def test_own_agent_loads_from_its_folder_only(folder, tmp_path, monkeypatch):
     assert type(agent).__name__ == SHIPPED[folder] and not agent.training
     assert torch.equal(state, torch.random.get_rng_state())
     agent.reset("walk past the red sofa")
+
+
+def test_load_suggests_the_nearest_shipped_weights():
+    with pytest.raises(FileNotFoundError, match="Did you mean checkpoints/hardened/harden?"):
+        mitigate.load("checkpoints/harden")
+    with pytest.raises(FileNotFoundError, match="but in its folders conv_adapter, harden,"):
+        mitigate.load("checkpoints/hardened")
 
 
 def test_load_rejects_unnamed_or_different_agent(tmp_path):

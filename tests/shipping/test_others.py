@@ -1,4 +1,5 @@
-"""Tests that a card contains rows of one agent, and that a folder loads only into a like agent."""
+"""Tests that a card contains rows of one agent, and that a folder loads only into an agent of the
+same kind."""
 
 from __future__ import annotations
 
@@ -75,15 +76,15 @@ def test_values_that_cannot_be_loaded_are_named(filled):
 
 
 class Silent:
-    """An agent without settings(), whose ``net`` is not a plain value."""
+    """An agent without settings(); its attribute ``net`` is an object and not plain data."""
 
     def __init__(self, gain: float) -> None:
         self.gain, self.net = gain, object()
 
 
 def test_attributes_are_compared_without_settings(tmp_path):
-    """Then an evaluation and ``benchmark(load_hardened(...))`` compute the same hash for the
-    agent."""
+    """Attributes are compared so that an evaluation and ``benchmark(load_hardened(...))`` compute
+    the same hash."""
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
     with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):

@@ -1,4 +1,4 @@
-"""Validation episodes choose between the given, the trained and the averaged weights."""
+"""Tests that validation episodes select the given, the trained or the averaged weights."""
 
 from functools import partial
 
@@ -21,7 +21,7 @@ EPISODES = seeded_episodes(range(100, 106))
 
 
 def chosen(tmp_path, given, trained_net) -> tuple[str, nn.Module]:
-    """Return the name of the chosen weights and a network with them."""
+    """Return the name of the chosen weights, and a network with these weights."""
     policy = as_policy(given, world())
     start = {name: value.clone() for name, value in policy.network.state_dict().items()}
     policy = copied(policy)

@@ -17,7 +17,7 @@ from tools.faults import commands, evaluation, processes, training
 
 @pytest.fixture
 def run_tool(tmp_path, monkeypatch):
-    """Run the tool with given outcomes of training or evaluation."""
+    """Return a function that runs the tool with made-up outcomes of training and evaluation."""
 
     def run(outcomes, *arguments):
         monkeypatch.setattr(training, "break_training", lambda *_: dict(outcomes))
@@ -32,7 +32,8 @@ def test_main_fails_if_nothing_was_tried(run_tool):
     assert run_tool({"SIGTERM": "survived", "SIGINT": "other bits"}, "--recipes", "ts_distill") == 1
     assert run_tool({}, "--recipes", "ts_distill", "--faults") == 1
     assert run_tool({"full disk": "not run: no file system"}, "--recipes", "ts_distill") == 1
-    assert run_tool({}, "--recipes") == 0  # this writes the table of stored outcomes
+    # without faults, the tool only writes the table of stored outcomes
+    assert run_tool({}, "--recipes") == 0
 
 
 def test_main_replaces_stored_outcomes(run_tool, tmp_path):

@@ -1,4 +1,4 @@
-"""Tests of the hashes with which environments are compared."""
+"""Tests of the hashes that are used to compare environments."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of the count of lines of code."""
+"""Tests of the tool that counts lines of code."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Tests that workers compute the same batches, survive deaths, and pass errors on."""
+"""Tests that workers compute the same batches, are replaced if they die, and report errors."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from tests.tiny import TinyRecipe
 
 
 class Shared(TinyRecipe):
-    """An objective whose batches consist of three pieces that depend on the seed and the
+    """An objective whose batches have three pieces; each piece depends on the seed and the
     weights."""
 
     def __init__(self, ahead: bool = False, fatal: str = "") -> None:
@@ -38,7 +38,7 @@ class Shared(TinyRecipe):
         if job == (2, 1) and self.fatal == "raise":
             raise ValueError("no such pose")
         if job == (2, 1) and os.path.exists(self.fatal):
-            os.unlink(self.fatal)  # the next process that reaches this line survives
+            os.unlink(self.fatal)  # the next process that runs this job survives
             if self.fatal.endswith("message"):
                 die_in_a_message()
             os.kill(os.getpid(), signal.SIGKILL)
@@ -57,7 +57,7 @@ class Shared(TinyRecipe):
 
 
 class Bulky(Shared):
-    """An objective whose weights and pieces are larger than the buffer of a pipe."""
+    """An objective whose weights and pieces are too large for the buffer of a pipe."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -213,7 +213,7 @@ def _no_job():
     ],
 )
 def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):
-    """The error must not mention memory, and no process may wait for the job."""
+    """The error must not suggest a lack of memory, and no process may wait for the job's result."""
     with Workers(1) as workers, pytest.raises(kind, match=message) as raised:
         Trainer(Unpackable(fatal=fatal), steps=2, folder=tmp_path, workers=workers).fit()
     assert not isinstance(raised.value, WorkersDied)
@@ -229,7 +229,7 @@ def test_workers_reject_torchscript_objectives(two, tmp_path):
 
 def test_unpicklable_recipe_is_rejected_with_a_way_out(two, tmp_path):
     class Local(Shared):
-        """Return an objective of a class inside a function, which cannot be pickled."""
+        """An objective that cannot be pickled, because its class is defined in a function."""
 
     with pytest.raises(ValueError, match="workers=0"):
         Trainer(Local(), steps=1, folder=tmp_path, workers=two).fit()

@@ -1,4 +1,4 @@
-"""Tests that the duration of training is estimated within the error of measurement."""
+"""Tests that estimates of the training time are as accurate as the measured times."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from mitigate.evaluation.config import CostConfig
 from mitigate.training import estimate, plan
 from mitigate.training.config import TrainConfig, read
 
-# Minutes of training runs on 2 cores limited to AVX2, with evaluation and without the set-up
-# of the environment (recipes/README.md, "How long they take").
+# Measured minutes of training runs on 2 cores that are limited to AVX2. They include the evaluation
+# but not the set-up of the environment (recipes/README.md, "How long they take").
 TIMED = [
     ("da_per_episode", "topological", 8.5),
     ("conv_adapter", "topological", 8.5),
@@ -29,7 +29,7 @@ TIMED = [
 
 @pytest.fixture
 def reference(monkeypatch):
-    """The machine on which the costs were measured."""
+    """Simulate the machine on which the costs were measured."""
     monkeypatch.setattr(precision, "probe", lambda: precision.REFERENCE)
     monkeypatch.setattr(estimate, "cores", lambda: 2)
 
@@ -87,7 +87,7 @@ def test_estimate_scales_by_the_machines_probe(monkeypatch, reference, tmp_path)
 
 
 def test_estimate_of_a_faster_machine_is_that_of_the_reference(monkeypatch, reference, tmp_path):
-    """Rendering takes as long on a machine with faster matrix products."""
+    """On a machine with faster matrix products, rendering still takes the same time."""
     cfg = training("conv_adapter", "recurrent")
     here = estimate.estimate(cfg, tmp_path)
     monkeypatch.setattr(precision, "probe", lambda: 0.5 * precision.REFERENCE)
@@ -95,7 +95,8 @@ def test_estimate_of_a_faster_machine_is_that_of_the_reference(monkeypatch, refe
 
 
 def test_base_without_evaluation_is_not_counted(tmp_path):
-    """swap_encoder starts from parts of an agent, which are not a complete agent."""
+    """swap_encoder starts from parts of an agent. These are not a complete agent that could be
+    evaluated."""
     cfg = read(conf.load_config("train", ["recipe=swap_encoder"]))
     assert ", 1 x 40 episodes x 13 conditions: about " in estimate.describe(cfg, tmp_path)
     assert ", 2 x 40 episodes x 13 conditions: about " in estimate.describe(

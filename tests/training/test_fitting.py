@@ -1,4 +1,5 @@
-"""Tests that invalid combinations are rejected before the first step, in one paragraph."""
+"""Tests that an invalid combination of agent, world and recipe is rejected before the first step,
+in one paragraph."""
 
 from __future__ import annotations
 
@@ -150,7 +151,7 @@ def test_plan_rejects_runs_without_stages(tmp_path, options):
 
 
 class Walker(StepwiseAgent):
-    """An agent that is trained on episodes and has no encoders."""
+    """An agent that can only be trained on episodes, because it has no encoders."""
 
     def __init__(self):
         super().__init__()
@@ -175,8 +176,9 @@ def test_agent_without_encoders_trains_on_episodes_only(recipe, stage, capsys):
 def test_plan_drops_view_stages_without_random_poses(monkeypatch, capsys):
     cfg = load("recipe=imitation")
     plan.leave_out_stages(cfg, TopologicalAgent(16))
-    assert len(left(cfg)) == 3  # the apartments have such episodes
-    monkeypatch.setattr(plan, "maker", lambda node: Walker)  # any class without these members
+    assert len(left(cfg)) == 3  # no stage is left out, because the apartments support all of them
+    # a world class without the members that other stages need
+    monkeypatch.setattr(plan, "maker", lambda node: Walker)
     plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert left(cfg) == ["imitation"] and "no random poses" in capsys.readouterr().out
 
@@ -325,7 +327,7 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """Return the stages of a training run of ``agent``, by name."""
+    """Return the stages of a training run after and before they are adapted to ``agent``."""
     cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
     plan.drop_unread_corruptions(cfg, agent)
@@ -337,7 +339,7 @@ def fitted(agent, *options: str):
     [
         (RecurrentAgent(["rgb"]), RGB),
         (RecurrentAgent(["depth"]), DEPTH),
-        (StepwiseAgent(), RGB),  # whose ``needs`` contain only rgb
+        (StepwiseAgent(), RGB),  # its ``needs`` contain only rgb
     ],
 )
 @pytest.mark.parametrize("recipe", ["da_per_frame", "da_per_episode", "da_success", "ts_distill"])
@@ -347,7 +349,8 @@ def test_agent_gets_corruptions_of_its_sensors_only(recipe, agent, read, capsys)
         schedule = build(stage.recipe["schedule"])
         met = Counter(schedule.draw(0, f"e{i}", 0)[0].name for i in range(2000))
         assert set(met) == {"clean", *read}
-        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)  # only the clean share differs
+        # the fraction of clean frames is as configured
+        assert met["clean"] / 2000 == pytest.approx(0.25, abs=0.03)
     lost = ", ".join(DEPTH if read is RGB else RGB)
     printed = capsys.readouterr().out
     assert printed.count("reads no") == 1 and printed.endswith(f"the schedule leaves out {lost}\n")
@@ -362,7 +365,7 @@ def test_unread_corruptions_are_dropped_from_a_list():
     "agent", [TopologicalAgent(16), RecurrentAgent(), FrontierAgent(), TinyAgent()]
 )
 def test_agent_with_both_sensors_draws_the_whole_schedule(agent, capsys):
-    """They are compared as text, because training corruptions are part of a run's fingerprint."""
+    """The schedules must not change at all, because they are part of a run's fingerprint."""
     for recipe in ("da_per_episode", "stacked"):
         stages, before = fitted(agent, f"recipe={recipe}")
         assert stages == before

@@ -1,4 +1,5 @@
-"""Tests on a GPU: losses as on the CPU, weights that load on both devices, and equal actions."""
+"""Tests on a GPU: losses equal those on the CPU, weights load on both devices, and actions are
+equal."""
 
 from __future__ import annotations
 
@@ -23,7 +24,7 @@ pytestmark = [
     pytest.mark.skipif(not torch.cuda.is_available(), reason="no CUDA here"),
 ]
 GPU = "cuda"
-DROPOUT = 0.1  # each device has different random numbers, so losses of such stages differed by 7 %
+DROPOUT = 0.1  # dropout uses different random numbers on each device, so losses differed by 7 %
 KINDS = [
     (agent, recipe)
     for agent in ("topological", "recurrent", "recurrent_rgb", "frontier")
@@ -59,7 +60,8 @@ def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
 @pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
 def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
     matches = []
-    for count in (0, 2):  # CUDA must not start in the process that forks the second stage's workers
+    # CUDA must not be initialised in the process that forks the workers of the second stage
+    for count in (0, 2):
         options = [f"recipe={recipe}", f"workers={count}"]
         trained(tmp_path / str(count), GPU, *options)
         matches.append(losses("".join(capfd.readouterr())))
@@ -106,4 +108,4 @@ def test_shipped_agent_acts_as_on_cpu(tmp_path):
         )
         rows.append(walked)
     same = [a["success"] == b["success"] for a, b in zip(*rows, strict=True)]
-    assert sum(same) >= len(same) - 1  # ties may be resolved differently on a GPU
+    assert sum(same) >= len(same) - 1  # a GPU may resolve ties differently

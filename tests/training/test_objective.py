@@ -1,4 +1,4 @@
-"""Tests that a recipe's flat arguments are split between an objective and its source."""
+"""Tests that a recipe's flat arguments are split between an objective and its data source."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Tests of views at random poses: the training targets, and the input of corruptions."""
+"""Tests of views at random poses: their training targets, and the frames that corruptions
+receive."""
 
 from __future__ import annotations
 
@@ -55,7 +56,7 @@ def test_camera_share_is_the_fraction_of_displaced_panoramas():
     source = poses.Poses(None, world, None, "depth", schedule, 40, camera_share=0.3)
     rows = source.work((0, 0, 1, 40, schedule.state_dict()))
     displaced = sum(not np.array_equal(frames, clean) for frames, clean, _ in rows)
-    assert 3 <= displaced <= 21  # 12 expected, 2.9 is the standard deviation
+    assert 3 <= displaced <= 21  # the expected count is 12, and its standard deviation is 2.9
 
 
 def test_camera_share_needs_a_world_that_renders_displaced_cameras():

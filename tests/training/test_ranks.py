@@ -21,8 +21,8 @@ PIECES = 4
 
 
 class Regression(Objective):
-    """An objective with pieces of different lengths, a weight that only the first rank's pieces
-    use, and an unused weight, which must not decay."""
+    """An objective with pieces of different lengths. One weight is used only by the pieces of the
+    first rank, and one weight is unused and must not decay."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -45,7 +45,8 @@ class Regression(Objective):
     def forward(self, batch):
         inputs = batch["inputs"]
         guess = self.line(inputs)
-        if len(inputs) in (14, 34):  # the pieces of the first rank, or all pieces
+        # number of inputs in the pieces of the first rank, or in all pieces
+        if len(inputs) in (14, 34):
             guess = guess + torch.cat([self.first(inputs[:4]), torch.zeros(len(inputs) - 4, 1)])
         values = {"loss": (guess - inputs.sum(1, keepdim=True)).square().mean()}
         if len(inputs) in (14, 34):
@@ -66,7 +67,8 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # bf16 may be faster on only one rank, so all ranks use the choice of the first
+        # bf16 may be faster on only one rank, so all ranks use the precision that the first rank
+        # chose
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"

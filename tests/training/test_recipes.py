@@ -18,13 +18,13 @@ from mitigate.worlds.apartments import simulator
 from tests.guards.text.conftest import write_tiny_model
 
 TINY_ENCODER = {"model": "tests.encoders.shapes:tiny", "weights": None, "output": "pool"}
-OTHERS = (  # kinds of agent with shipped weights, each with one recipe
+OTHERS = (  # other kinds of agent: kind, recipe, and shipped weights
     ("recurrent", "da_per_episode", "recurrent/base"),
     ("recurrent_rgb", "ts_distill", "recurrent_rgb/base"),
     ("frontier", "conv_adapter", "frontier/base"),
     ("topological", "da_per_episode", "hardened/harden"),
 )
-LITTLE = {  # training data of a stage's recipe, in addition to two rollouts per step
+LITTLE = {  # sizes that make the training data of a stage small
     "batch": 8,
     "frames": 48,
     "held": 2,
@@ -36,7 +36,7 @@ LITTLE = {  # training data of a stage's recipe, in addition to two rollouts per
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
-QUICK = ("ts_distill",)  # the other recipes are slow one after the other
+QUICK = ("ts_distill",)  # testing all other recipes takes long
 
 
 def some_slow(names, quick):
@@ -45,17 +45,17 @@ def some_slow(names, quick):
 
 @pytest.mark.parametrize("name", some_slow(RECIPES, QUICK))
 def test_every_recipe_trains_two_steps(tmp_path, name, monkeypatch):
-    monkeypatch.setattr(stored, "SPACING", 2.0)  # few poses, so that few features are stored
+    monkeypatch.setattr(stored, "SPACING", 2.0)  # fewer poses, so that fewer features are stored
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)  # episodes for measuring success
     options = [f"recipe={name}", "debug=smoke", "evaluation.enabled=false", f"runs={tmp_path}"]
-    options.append("workers=0")  # two workers per stage take longer to start than to compute
+    options.append("workers=0")  # starting two workers per stage takes longer than the computation
     cfg = conf.load_config("train", options)
     # a tiny language model, because the real one takes half a minute to load
     if "base" in cfg.agent:
         cfg.agent.base = str(write_tiny_model(tmp_path / "tiny-llama"))
-    if cfg.agent.get("encoder", "own") != "own":  # needs an extra, and is slow
+    if cfg.agent.get("encoder", "own") != "own":  # other encoders need an extra and are slow
         cfg.agent.encoder, cfg.agent.size, cfg.env.size = "own", 64, 64
-    if "adapters" in cfg.agent and "model" in cfg.agent:  # uses an encoder that needs an extra
+    if "adapters" in cfg.agent and "model" in cfg.agent:  # the default encoder needs an extra
         cfg.agent = OmegaConf.merge(cfg.agent, TINY_ENCODER)
         cfg.agent.kwargs = {}
     if "size" in cfg.agent and "size" in cfg.env:

@@ -35,7 +35,7 @@ conf.main(program, "train")
 
 
 class Slow(Objective):
-    """An objective that fits a line and, at step 3, once sends a signal to its process."""
+    """An objective that fits a line. At step 3 it sends a signal to its process, but only once."""
 
     def __init__(self, folder: Path, number: int) -> None:
         super().__init__()
@@ -55,8 +55,8 @@ class Slow(Objective):
 
 
 class Calibrated(Slow):
-    """An objective whose ``finish`` sets a threshold from the weights and may call ``before``
-    first."""
+    """An objective whose ``finish`` first calls ``before`` and then sets a threshold from the
+    weights."""
 
     def __init__(self, folder: Path, before=lambda: None) -> None:
         super().__init__(folder, 0)
@@ -73,7 +73,7 @@ class Calibrated(Slow):
 
 
 def end_within_another_block():
-    """Simulate a signal that arrives while worker processes evaluate during training."""
+    """Simulate a signal that arrives during training while worker processes run an evaluation."""
     with delay_signals():
         os.kill(os.getpid(), signal.SIGTERM)
         time.sleep(0.01)
@@ -215,7 +215,7 @@ def test_second_signal_ends_at_once(tmp_path):
 
 
 def test_signal_during_success_measurement_keeps_earlier_steps(tmp_path):
-    """An objective whose success rates are measured during a step, by workers that end at once."""
+    """A signal arrives in step 3 while workers measure success rates; these workers end at once."""
 
     class Measured(Slow):
         def batch(self, step):

@@ -1,4 +1,4 @@
-"""Tests that success rates for a schedule are equal for any number of processes."""
+"""Tests that the success rates for a schedule do not depend on the number of processes."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from tests.agents.rooms import wanderer
 
 
 class Grey:
-    """A world with one grey view that ends after a step, and in which STOP is correct."""
+    """A world with one grey view. An episode has one step, and STOP is correct."""
 
     rule, sensors, done = "STOP", cameras(16, views=1), True
 
@@ -43,7 +43,7 @@ class Grey:
 
 
 class Careful(nn.Module):
-    """An agent that stops where RGB is grey."""
+    """An agent that stops if the RGB frame is grey."""
 
     def reset(self, instruction):
         pass
@@ -64,7 +64,7 @@ def test_rates_do_not_depend_on_the_number_of_processes(capsys):
 
 
 def test_rollouts_use_fp32_inside_a_bf16_training():
-    """Otherwise rates would depend on whether this process or new workers measure them."""
+    """With bf16, success rates would depend on whether this process or new workers measure them."""
     cpu = torch.device("cpu")
     with computing("bf16", cpu), EpisodeTask(wanderer(), partial(ApartmentsWorld, 16)).ready():
         assert not torch.is_autocast_enabled("cpu")

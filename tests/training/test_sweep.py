@@ -19,8 +19,8 @@ def config(runs, *options):
 
 @pytest.fixture
 def fake(monkeypatch):
-    """Stand-in runs that take no time; each writes rows, except those with ``seed=1``, which
-    fail."""
+    """Replace training runs by fakes that take no time. Runs with ``seed=1`` fail, and all others
+    write rows."""
     ran = []
 
     def run(chains, jobs, launcher, progress, reported):
@@ -52,7 +52,7 @@ def test_list_is_one_value_and_not_a_sweep():
 
 @pytest.mark.parametrize("value", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
 def test_sweep_without_combinations_shows_help_and_runs_nothing(value, monkeypatch, fake, capsys):
-    """Only ``make sweep`` passes ``runs=``."""
+    """The option ``runs=`` alone is no combination; ``make sweep`` always passes it."""
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", *value])
     assert sweep.main() == 2 and not fake
     printed = capsys.readouterr()
@@ -145,7 +145,7 @@ def test_impossible_options_are_reported_before_any_run(
 
 
 def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
-    """``rgb_width`` is a setting of the recurrent agent but not of the default agent."""
+    """The recurrent agent has the setting ``rgb_width``, and the default agent does not."""
     cfg = config(tmp_path, "command=evaluate")
     options = ["checkpoint=checkpoints/recurrent/base", "agent.rgb_width=1,2"]
     sweep.run_all(cfg, options)

@@ -1,4 +1,4 @@
-"""Tests that the table of all methods runs cell by cell, resumes, and counts its cost."""
+"""Tests that a table of all methods is computed cell by cell, resumes, and reports its cost."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mitigate.training import cells, tables
 from tests.evaluation.made_rows import column, row
 
 ALL = dict.fromkeys((*RGB, *DEPTH), 4)
-# columns of Table I that are tested; more columns would test the same behaviour
+# the columns of Table I that are tested; other columns behave in the same way
 KEPT = ("topological", "recurrent")
 
 
@@ -37,7 +37,7 @@ def config(out: Path, **changes) -> cells.TablesConfig:
 
 
 def finished(cfg) -> None:
-    """Write rows of every cell as an evaluation does, with lower success for seed 1 than for seed
+    """Write rows of every cell as an evaluation would; seed 1 has a lower success rate than seed
     0."""
     for cell in tables.cells(cfg):
         agent = "base" if not cell.options else f"{cell.column}{cell.seed}"
@@ -47,15 +47,15 @@ def finished(cfg) -> None:
 
 @pytest.fixture(autouse=True)
 def no_plots(monkeypatch):
-    """Omit the pictures, which take most of a report's time (tests/evaluation/test_report.py tests
-    them)."""
+    """Draw no pictures, because these take most of a report's time; tests/evaluation/test_report.py
+    tests them."""
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path)
     monkeypatch.setattr(plots, "severity_curves", lambda grid, path: path)
 
 
 @pytest.fixture
 def quick(monkeypatch):
-    """Replace the programs of cells by processes that do nothing."""
+    """Replace the programs that compute cells by processes that do nothing."""
     monkeypatch.setattr(
         tables.Cell, "commands", lambda self, cfg: [("train", ["timeit", "-n", "1", "pass"])]
     )
@@ -122,7 +122,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
         ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
         (
             '+columns.mine=["restore=checkpoints/restorer:pose"]',
-            "Column mine: There are no weights at",
+            "Column mine: There is no weights folder .*Did you mean checkpoints/restorer?",
         ),
         ('+columns.mine=["safeguard=clasifier"]', "Column mine: .*Did you mean classifier?"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),
@@ -211,7 +211,7 @@ def test_report_has_pooled_seeds_and_paper_figures(tmp_path, quick):
     report = tables.make_table(cfg).read_text(encoding="utf-8")
     lines = {line.split(" | ")[0].strip("| "): line for line in report.splitlines()}
     assert lines["Corruption"] == "| Corruption | base | da_per_frame |"
-    assert "40.0 (52)" in lines["Motion blur"]  # the paper's 52 for per-frame augmentation
+    assert "40.0 (52)" in lines["Motion blur"]  # the paper reports 52 for per-frame augmentation
     assert lines["Seeds"] == "| Seeds | 0 1 | 0 1 |"
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
 
@@ -228,7 +228,7 @@ def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
 
 @pytest.mark.slow
 def test_further_evaluations_are_measured_and_reported_apart(tmp_path, quick, monkeypatch):
-    """Each evaluation uses the table's options and its own ones, and its rows are stored
+    """Each evaluation uses the options of the table and its own options, and its rows are stored
     separately."""
     measured = tables.Cell.measurement
     cfg = load("table2", f"out={tmp_path}", "seeds=[0]", "evaluations=beyond", "episodes=7")
@@ -267,7 +267,8 @@ def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked
 @pytest.mark.slow
 def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
-    columns = less("table2", ["base", "da_per_frame"])  # each option list is composed and checked
+    # fewer columns, because the options of each column are composed and checked
+    columns = less("table2", ["base", "da_per_frame"])
     cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
     output = tables.cells(cfg)
     cells.check(output, cfg)
@@ -291,7 +292,8 @@ def test_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
     broken = tables.cells(cfg)[-1]
-    (broken.evaluation / "rows.jsonl").unlink()  # the training fails before rows are written
+    # the training run of this cell fails before it writes rows
+    (broken.evaluation / "rows.jsonl").unlink()
     monkeypatch.setattr(
         tables.Cell,
         "commands",
@@ -319,8 +321,7 @@ def test_rows_of_another_severity_are_told(tmp_path):
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
-    """A table may have only clean rows, as for the ablations, at a severity without
-    measurements."""
+    """A table may have only clean rows at a severity, as the tables of ablations do."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
     report = tables.make_table(cfg).read_text(encoding="utf-8")
@@ -356,7 +357,7 @@ def test_trajectories_show_episodes_won_back_by_the_last_agent(tmp_path, quick, 
 
 
 def test_trajectories_use_the_input_guard_of_the_table(tmp_path, monkeypatch):
-    """The agent's name is the one in its rows."""
+    """The name of each agent equals the name in its rows."""
     cfg = config(tmp_path, seeds=[0], episodes=1, walks=["base", "restored"])
     restored = ["name=base", "restore=checkpoints/restorer:rgb", "safeguard=rules"]
     cfg.columns = {"base": [], "restored": restored}

@@ -99,7 +99,7 @@ def test_stage_with_other_user_code_is_not_resumed(tmp_path, monkeypatch):
     cfg.agent = {"_target_": "own_scaled_agent.OwnAgent"}
     for number, scale in enumerate((1, 1, 2)):
         (tmp_path / "own_scaled_agent.py").write_text(
-            # the new text has a different length, so Python reads the file again
+            # the source has a new length, so Python does not use the old bytecode
             OWN_AGENT.format(scale=scale) + "#" * number
         )
         sys.modules.pop("own_scaled_agent", None)
@@ -147,7 +147,7 @@ def test_train_rewrites_damaged_final_weights(tmp_path):
 def test_negative_number_of_workers_is_rejected(tmp_path):
     with pytest.raises(ValueError, match="null uses one per core"):
         train.run(config(tmp_path, "workers=-1"))
-    for wrong in (0, -3):  # this error once appeared only after training
+    for wrong in (0, -3):  # this error was once raised only after training
         with pytest.raises(
             ValueError, match=f"evaluation.workers must be from 1 to 256, got {wrong}"
         ):
@@ -176,10 +176,10 @@ def test_run_reports_its_plan_and_duration_first(tmp_path, capsys):
     cfg = config(tmp_path)
     cfg.stages.first.cost, cfg.stages.second.cost = 60.0, 60.0
     train.run(cfg)
-    # the first line is about a schedule that is not used
+    # the first line warns that a schedule is not used
     printed = capsys.readouterr().out.splitlines()[1]
     assert printed.startswith("tiny: first 4 steps, second 6 steps: about ") and "min" in printed
-    train.run(cfg)  # finished work is not included in the estimate
+    train.run(cfg)  # the estimate does not include finished stages
     assert "about 0 s" in capsys.readouterr().out.splitlines()[1]
 
 
@@ -205,12 +205,12 @@ def test_default_folder_contains_changed_options():
     name = options.default_folder(cfg, "init=checkpoints/mine,debug=smoke")
     assert name == "runs/da_success-s0.9-d0.8-seed3-init-checkpoints_mine_debug-smoke"
     swept, single = (options.default_folder(cfg, f"a.b={value}") for value in ("False", "false"))
-    assert swept == single  # Hydra writes the values of a sweep in Python syntax
+    assert swept == single  # in a sweep, Hydra writes values in Python syntax (False)
 
 
 def test_column_name_contains_training_options():
-    """Seeds are pooled by name, so a different learning rate must not look like a different
-    seed."""
+    """Runs with the same name count as seeds of one recipe, so a run with a different learning rate
+    needs a different name."""
     cfg = conf.load_config("train", ["recipe=da_success", "seed=3"])
     plain, other = (
         Path(options.default_folder(cfg, variant)) for variant in ("", "trainer.lr=1e-5")
@@ -221,7 +221,7 @@ def test_column_name_contains_training_options():
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
 def test_default_folder_ignores_options_without_effect(option, monkeypatch):
-    """Reporting more episodes must not cause a new training run."""
+    """A training run must not be repeated if only the number of reported episodes changes."""
     met = []
     monkeypatch.setattr(train, "run", lambda cfg: met.append(cfg.folder))
     for value in ([], [option]):

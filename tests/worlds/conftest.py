@@ -1,4 +1,4 @@
-"""Fixtures: a panorama in the formats of the suite and of Habitat."""
+"""Fixtures with a panorama in the format of the suite and in the format of Habitat."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,8 @@ import pytest
 
 @pytest.fixture(scope="module")
 def panorama():
-    """Return RGB uint8 [12, 32, 32, 3], and depth of a different size in [0, 1] with holes."""
+    """Return RGB, uint8 [12, 32, 32, 3], and depth, which has a different size, values in [0, 1]
+    and holes."""
     rng = np.random.default_rng(0)
     depth = rng.uniform(0.06, 0.4, (12, 40, 48, 1)).astype(np.float32)
     depth[:, :3, :5] = 0.0
@@ -15,8 +16,8 @@ def panorama():
 
 @pytest.fixture
 def obs(panorama):
-    """Return an observation of ETPNav, in which rgb_A faces A degrees left and is view 12 - A /
-    30."""
+    """Return an observation as ETPNav receives it: the entry rgb_A faces A degrees to the left and
+    is view 12 - A / 30."""
     rgb, depth = panorama
     entries = {"instruction": "go", "rgb": rgb[0], "depth": depth[0]}
     for step in range(1, 12):

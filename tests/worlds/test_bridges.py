@@ -1,4 +1,5 @@
-"""Tests of worlds as torchrl environments, and of torchrl and gymnasium environments as worlds."""
+"""Tests that worlds can be used as torchrl environments, and torchrl and gymnasium environments as
+worlds."""
 
 from __future__ import annotations
 
@@ -29,7 +30,8 @@ def episode(seed: int) -> Episode:
 
 
 class Brightness:
-    """An agent that stops in dark frames, otherwise takes action 1, and records its frames."""
+    """An agent that stops if the frame is dark and otherwise takes action 1. It records its
+    frames."""
 
     def reset(self, instruction):
         self.seen = []
@@ -40,8 +42,8 @@ class Brightness:
 
 
 class Room(gymnasium.Env):
-    """A room that is bright for a number of steps given by its seed; stopping in the dark
-    succeeds."""
+    """A room that becomes dark after a number of steps, which depends on the seed. Stopping in the
+    dark succeeds."""
 
     def __init__(self, entry: str | None = None):
         box = gymnasium.spaces.Box(0, 255, (SIZE, SIZE, 3), np.uint8)
@@ -206,7 +208,7 @@ def test_gym_world_rejects_invalid_success_arguments(success):
 
 
 class Within(Room):
-    """A room whose observation has nested entries for the camera and the goal."""
+    """A room whose observation contains nested dicts for the camera and the goal."""
 
     def __init__(self):
         super().__init__()
@@ -309,7 +311,7 @@ def test_gym_world_requires_the_unit_of_normalised_depth():
 
 @pytest.mark.parametrize(("most", "far"), [(np.inf, np.inf), (8.0, 8.0)])
 def test_env_world_keeps_the_maximum_of_depth(most, far):
-    """torchrl represents a missing maximum by the largest number of the dtype."""
+    """If a space has no maximum, torchrl uses the largest number of the dtype."""
     from torchrl.envs import GymWrapper
 
     from mitigate.worlds.gym import GymWorld
@@ -441,7 +443,7 @@ def test_worlds_name_the_episode_of_an_invalid_success():
 
 
 class Changing(Room):
-    """An environment that replaces one element of the result of step."""
+    """An environment whose ``step`` returns a tuple with one replaced element."""
 
     def __init__(self, place, value):
         super().__init__()

@@ -114,12 +114,13 @@ def test_run_uses_a_named_tokenizer(tmp_path):
     assert tokens[: len(tokenizer(text)["input_ids"])] == tokenizer(text)["input_ids"]
     spoken = {"instruction_text": "Gehe links.", "language": "de-DE"}
     source = write(tmp_path / "in.json.gz", *(episode(i) for i in range(8)), episode(8, **spoken))
-    for severity in (0.0, 0.5):  # an unchanged instruction also has the agent's tokens
+    for severity in (0.0, 0.5):  # at severity 0 too, instructions must have the agent's tokens
         run(source, tmp_path / "o.json", "formal", severity, tokenizer=str(tmp_path / "named"))
         for got in json.loads((tmp_path / "o.json").read_text())["episodes"]:
             text, tokens = (got["instruction"][f"instruction_{x}"] for x in ("text", "tokens"))
             cut = tokenizer(text, truncation=True, max_length=40)["input_ids"]
-            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens  # the end token is kept
+            # truncation keeps the end token (3)
+            assert tokens == (cut + [0] * 40)[:40] and 3 in tokens
 
 
 def test_run_counts_other_languages(tmp_path):
@@ -134,7 +135,8 @@ def test_run_counts_other_languages(tmp_path):
     summary = run(source, tmp_path / "out.json.gz", "capitalize", 1.0)
     old, new = raw(source), raw(tmp_path / "out.json.gz")
     assert new[:3] == old[:3] and new[3]["instruction"]["language"] == "en-IN"
-    assert "timed_instruction" not in new[3]["instruction"]  # the clean words with their times
+    # removed, because it contains the clean words with their times
+    assert "timed_instruction" not in new[3]["instruction"]
     assert summary["skipped_languages"] == {"hi-IN": 2, "te-IN": 1} and summary["changed"] == 1
     assert "2 in hi-IN, 1 in te-IN" in episodes_command.notices(summary)[0]
 
@@ -157,7 +159,7 @@ def test_run_memory_does_not_grow_with_the_file(tmp_path):
         run(source, tmp_path / f"{count}-out.json.gz", "mask", 0.5)
         peaks.append(tracemalloc.get_traced_memory()[1])
         tracemalloc.stop()
-    assert peaks[1] < peaks[0] + 1_000_000, peaks  # the larger file has 10 MB more
+    assert peaks[1] < peaks[0] + 1_000_000, peaks  # although the larger file has 10 MB more
 
 
 def test_run_counts_instructions_without_words(tmp_path):

@@ -1,4 +1,4 @@
-"""Tests of reading and writing VLN-CE files: round trips, memory and error messages."""
+"""Tests of reading and writing VLN-CE episode files: round trips, memory use and error messages."""
 
 from __future__ import annotations
 
@@ -60,7 +60,8 @@ def load(path: Path) -> object:
 
 
 def episode_file(path: Path, **changes: object) -> Path:
-    """Write two valid episodes and a third with ``changes`` (``...`` removes the key)."""
+    """Write two valid episodes and a third one with ``changes``; a key with the value ``...`` is
+    removed."""
     third = {key: value for key, value in (R2R | changes).items() if value is not ...}
     return write_json(path / "bad.json.gz", {"episodes": [R2R, RXR, third]})
 
@@ -117,7 +118,7 @@ def test_failed_write_keeps_the_old_file(tmp_path):
 
 
 def test_read_episodes_joins_values_across_buffers(tmp_path):
-    numbers = list(range(10**5, 10**5 + 40_000))  # 320 kB, which is many buffers
+    numbers = list(range(10**5, 10**5 + 40_000))  # 320 kB of text, which needs many buffers
     many = [R2R | {"episode_id": i, "blob": '\u00e9\\"]}' * (i % 50)} for i in range(700)]
     path = write_json(tmp_path / "a.json", {"x": 12345, "episodes": many, "vocab": numbers})
     assert [e.episode_id for e in read_episodes(path)] == [str(i) for i in range(700)]
@@ -255,7 +256,7 @@ def test_read_episodes_memory_does_not_grow(tmp_path):
         finally:
             tracemalloc.stop()
 
-    assert peak(2000) < peak(125) + 2_000_000  # in bytes; the larger file has 15 MB more text
+    assert peak(2000) < peak(125) + 2_000_000  # 2 MB, although the larger file has 15 MB more text
 
 
 PEAK = """
@@ -275,7 +276,7 @@ def test_real_episodes_need_little_memory(name, count):
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     episodes, grown = map(int, done.stdout.split())
     assert episodes == count
-    assert grown < 8 * 1024  # in kB above the imports; train.json has 18 MB of text
+    assert grown < 8 * 1024  # kB of memory after the imports; train.json has 18 MB of text
 
 
 @needs_r2r_ce

@@ -1,4 +1,4 @@
-"""Tests of corrupting Habitat observations, whose cameras form one panorama."""
+"""Tests of corrupting Habitat observations in which all cameras form one panorama."""
 
 import numpy as np
 import pytest

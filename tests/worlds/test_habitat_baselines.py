@@ -1,4 +1,5 @@
-"""Tests of the observation transformer of habitat-baselines and of its key sensor.
+"""Tests of the observation transformer for habitat-baselines, and of the sensor that gives it the
+random key.
 
 habitat-lab cannot be imported without its simulator, which is on no package index. The tests
 therefore use a small replacement of the public interface of habitat-baselines.
@@ -145,8 +146,8 @@ def test_key_depends_on_scene_episode_and_step():
 
 @pytest.fixture
 def stand_in(monkeypatch):
-    """Provide modules with the public names of habitat-lab and habitat-baselines 0.3 that are
-    used."""
+    """Provide fake modules with the public names of habitat-lab and habitat-baselines 0.3 that the
+    transformer uses."""
     known = {}
 
     class ObservationTransformer(torch.nn.Module):

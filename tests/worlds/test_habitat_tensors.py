@@ -15,7 +15,7 @@ R2R = DepthSensor(0.5, 5.0)
 
 
 def batch_of(obs: dict, axes: int) -> dict[str, torch.Tensor]:
-    """Return three rows of cameras, with depth of [B, H, W, 1] or [B, H, W]."""
+    """Return a batch of three rows with all cameras; depth is [B, H, W, 1] or [B, H, W]."""
     batch = {}
     for entry, frame in obs.items():
         if entry.startswith("rgb") and isinstance(frame, np.ndarray) and frame.ndim == 3:

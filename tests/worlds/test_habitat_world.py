@@ -1,4 +1,4 @@
-"""Tests of the Habitat world without its simulator; episodes are tested by hand
+"""Tests of the Habitat world with a fake simulator; whole episodes are tested by hand
 (docs/habitat.md)."""
 
 import json
@@ -53,7 +53,7 @@ def test_habitat_world_rejects_invalid_arguments_first(value, words):
 
 
 class Simulator:
-    """A replacement for habitat-sim; ``walkable`` states whether a navmesh can be computed."""
+    """A fake habitat-sim; ``walkable`` is true if a navmesh can be computed."""
 
     walkable, loaded = True, ""
     pathfinder = None
@@ -88,7 +88,7 @@ def test_failed_scene_is_loaded_again(tmp_path, monkeypatch):
 
 
 def started(rule, monkeypatch):
-    """Return a world at the start of an episode, without a simulator."""
+    """Return a Habitat world at the start of an episode; it has no simulator."""
     reported = SimpleNamespace(reference_path=[(0.0, 0.0, 0.0), (0.0, 0.0, -2.0)])
     habitat = HabitatWorld("scenes", rule=rule)
     vars(habitat).update(episode=reported, path=[np.zeros(3)], start_distance=2.0)

@@ -1,4 +1,4 @@
-"""Faults of motion: what each does to discrete and continuous actions."""
+"""Tests of motion faults: what each fault does to discrete and to continuous actions."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ class Plane(World):
 
 
 class Arm(World):
-    """A world with continuous actions, which it records."""
+    """A world with continuous actions that records every action."""
 
     rule, done, sensors = "none", False, {}
     action_space = Box(np.array([-1.0, 0.0], np.float32), np.array([1.0, 4.0], np.float32))
@@ -71,7 +71,7 @@ class Arm(World):
 
 
 def drive(name, actions, severity=0.6, seed=0) -> tuple[list[float], list[float]]:
-    """Return the metres and the degrees of each step."""
+    """Return the distance in metres and the turn in degrees of each step."""
     world = FaultyMotion(Plane(), Corruption(name, severity), seed)
     poses = [world.reset(EPISODE)[POSE], *(world.step(action)[POSE] for action in actions)]
     steps = np.diff(np.stack(poses), axis=0)
@@ -215,7 +215,7 @@ def test_apartments_execute_actions_with_faults(name):
     clean = walk(ApartmentsWorld(16), Corruption("clean", 0.0))
     faulty = walk(ApartmentsWorld(16), Corruption(name, 1.0))
     assert faulty["steps"] == clean["steps"] == 12
-    if name == "repeated_action":  # a robot that only drives forward is not affected
+    if name == "repeated_action":  # repeated actions do not affect a robot that only drives forward
         assert faulty == clean
     else:
         assert faulty["distance_to_goal"] != clean["distance_to_goal"]

@@ -1,4 +1,5 @@
-"""Tests of torchrl transforms in batched environments: masks, rows, workers, buffers, devices."""
+"""Tests of torchrl transforms in batched environments: masks, rows, workers, replay buffers and
+devices."""
 
 import warnings
 
@@ -25,8 +26,8 @@ HURT = Schedule("per_episode", 0.8, clean_share=0.2)
 
 
 class Corridor(EnvBase):
-    """A batched environment in which frames depend on the step, and row i ends after 2 + i
-    steps."""
+    """A batched environment. Its frames depend on the step, and the episode of row i ends after 2 +
+    i steps."""
 
     def __init__(self, rows: int = 3, rgb: str = "rgb", top: float = 10.0) -> None:
         super().__init__(device="cpu", batch_size=[rows])
@@ -74,7 +75,7 @@ def hurt_env(rows: int = 3, schedule: Schedule = HURT, **options) -> Transformed
 
 
 def seen(data: TensorDict) -> dict[tuple[int, int], tuple[torch.Tensor, torch.Tensor]]:
-    """Return the frames of a rollout by (episode, frame)."""
+    """Return the frames of a rollout by (episode, frame number)."""
     return {
         (int(i["episode"]), int(i["frame"])): (i["rgb"], i["depth"])
         for i in data.reshape(-1).unbind(0)
@@ -128,7 +129,7 @@ def test_pixels_do_not_depend_on_workers():
         assert {episode for episode, _ in firsts} == {2 * worker, 2 * worker + 1}
         for place in firsts & together.keys():
             hurt = HURT.draw(4, str(place[0]), place[1])[0].modality
-            if hurt != "none":  # both rows show the same scene at a step
+            if hurt != "none":  # at the same step, both rows show the same scene
                 index = ("rgb", "depth").index(hurt)
                 assert torch.equal(alone[place][index], together[place][index])
 
@@ -178,7 +179,8 @@ def test_corrupt_observation_explains_a_missing_modality():
     reported = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
     assert (reported["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
-    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)  # does not need depth now
+    # samples only clean frames, but may need depth in another run
+    mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):
         with pytest.raises(
             ValueError, match="corrupts depth, but the data have no depth.*name the entry"

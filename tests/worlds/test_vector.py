@@ -1,4 +1,4 @@
-"""Tests of the wrapper for vector environments of tensors."""
+"""Tests of the wrapper for vector environments that return tensors."""
 
 import gymnasium
 import numpy as np
@@ -12,7 +12,8 @@ from mitigate.worlds.vector import CorruptVectorObservation
 
 SCHEDULE = Schedule("per_episode", 0.9, clean_share=0.2)
 ENDLESS = [("1", frame) for frame in range(4)]
-EPISODES = {  # episode and frame of environment 0 (ends after 2 steps) and 1 (never ends)
+# (episode, frame) at each step: environment 0 ends after 2 steps, and environment 1 never ends
+EPISODES = {
     AutoresetMode.SAME_STEP: ([("0", 0), ("0", 1), ("2", 0), ("2", 1)], ENDLESS),
     AutoresetMode.NEXT_STEP: ([("0", 0), ("0", 1), ("0", 2), ("2", 0)], ENDLESS),
 }

@@ -215,4 +215,4 @@ def test_unseeded_environments_draw_different_corruptions():
     frames = [env.reset()[0].tobytes() for env in envs]
     assert len({*frames}) == 4
     again = [env.reset(seed=1)[0].tobytes() for env in envs]
-    assert len({*again}) == 1  # the seed names the episode
+    assert len({*again}) == 1  # the seed determines the episode's key

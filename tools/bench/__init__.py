@@ -1,1 +1,1 @@
-"""Benchmarks of corruptions, training, evaluation, renderer and bridge, and of memory growth."""
+"""Benchmarks of corruptions, training, evaluation and the renderer."""

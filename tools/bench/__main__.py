@@ -1,9 +1,11 @@
-"""Measure the time of corruptions (ours and others'), training stages, evaluation and renderer.
+"""Measure the time of corruptions (of this project and of other libraries), training stages,
+evaluation and the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-All measurements except training stages and one evaluation run in this process, on one thread.
-``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an idle machine.
+Training stages and one evaluation run in other processes. All other measurements run in this
+process, on one thread. ``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an
+idle machine.
 """
 
 from __future__ import annotations
@@ -15,7 +17,8 @@ import sys
 from pathlib import Path
 
 for _name in ("OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "NO_ALBUMENTATIONS_UPDATE"):
-    os.environ.setdefault(_name, "1")  # before the libraries are imported
+    # set before the libraries are imported, because they read it then
+    os.environ.setdefault(_name, "1")
 
 import cv2  # noqa: E402
 import torch  # noqa: E402

@@ -3,9 +3,9 @@
 ``python -m tools.bench.critical_severity`` prints the number of severities, the error and the
 coverage of the 95 % intervals for agents with known success curves (about 2 CPU minutes).
 
-An agent succeeds on a clean episode with probability 0.9. Under corruption it then succeeds at
-severities below a limit, which differs between episodes, and in a fraction of all cases success is
-random instead. A fraction of the episodes has no limit.
+A simulated agent succeeds in a clean episode with probability 0.9. Each of these episodes has a
+limit: under corruption, the agent succeeds at severities below the limit. A fraction of the
+episodes has no limit. In a fraction of all cases, success is random instead.
 """
 
 from __future__ import annotations
@@ -27,17 +27,17 @@ FIRST = 0.6  # severity at which a search starts
 LOSSES = (0.1, 0.5)
 GRID = np.linspace(0, 1, 21).round(2)
 RESAMPLES = 1000
-CENSORED = 1.0  # value above 1 in errors
+CENSORED = 1.0  # value that errors use for a critical severity above 1
 
 
 @dataclass(frozen=True)
 class Curve:
-    """Parameters of the success curve of an agent.
+    """Parameters of a simulated agent's success curve.
 
     Attributes:
         mean, deviation: normal distribution of the limits.
-        tough: fraction of the episodes without a limit.
-        random: fraction of the cases with random success.
+        tough: fraction of the episodes that have no limit.
+        random: fraction of the cases in which success is random.
     """
 
     mean: float
@@ -72,7 +72,7 @@ CURVES = (
 
 
 class Episodes:
-    """The episodes of one simulated agent; a severity always gives the same successes."""
+    """The episodes of one simulated agent; repeating a severity gives the same successes."""
 
     def __init__(self, curve: Curve, count: int, random: np.random.Generator) -> None:
         self.curve = curve
@@ -100,7 +100,7 @@ class Episodes:
 
 
 def simulate(curve: Curve, agents: int, count: int, grid: bool) -> list[list[str]]:
-    """Return one line of the table per loss."""
+    """Simulate searches; return one table line per loss in LOSSES."""
     counts = []
     values = np.zeros((agents, len(LOSSES)))
     covered = np.zeros((agents, len(LOSSES)), bool)

@@ -1,4 +1,6 @@
-"""Measure evaluation episodes per CPU second, with conditions run separately and together."""
+"""Measure how many evaluation episodes run per CPU second if conditions run separately, and if they
+run together.
+"""
 
 from __future__ import annotations
 
@@ -22,10 +24,10 @@ SEVERITY = 0.6
 
 @dataclass(frozen=True)
 class Pace:
-    """The CPU seconds of episodes that are run in two ways.
+    """The CPU seconds of the same episodes, run in two ways.
 
     Attributes:
-        count: Number of episodes, each under one condition.
+        count: Number of runs, each of one episode under one condition.
         alone: CPU seconds if every episode runs separately.
         together: CPU seconds if the conditions of an episode run together, as in an evaluation.
         same: Whether both ways give equal rows.
@@ -38,7 +40,9 @@ class Pace:
 
 
 def paces(count: int) -> dict[str, Pace]:
-    """Return, by checkpoint, the speed of ``count`` episodes under the suite in this process."""
+    """Measure ``count`` episodes under the suite in this process; return the speed by
+    checkpoint.
+    """
     cfg = read(conf.load_config("evaluate"))
     by_checkpoint = {}
     for weights in CHECKPOINTS:
@@ -54,7 +58,7 @@ def paces(count: int) -> dict[str, Pace]:
 
 
 def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
-    """Measure the time of all groups except the first, which is a warm-up."""
+    """Measure the time of all groups of runs except the first group, which is a warm-up."""
 
     def alone(group: list[Job]) -> list[dict[str, Any]]:
         assert task.world is not None
@@ -76,8 +80,8 @@ def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
 def seconds_by_workers(count: int) -> dict[int, float]:
     """Return the wall time in seconds of evaluating ``count`` episodes under the suite.
 
-    The times are given by number of workers: 1, and 2 if there are two cores. The faster of two
-    runs is used.
+    The keys are the numbers of workers: 1, and also 2 if there are two cores. Each time is the
+    faster of two runs.
     """
     with tempfile.TemporaryDirectory() as folder:
         return {

@@ -1,4 +1,4 @@
-"""Call corruptions of other libraries for the same failures, with similar strengths.
+"""Call corruptions of other libraries that model the same failures with similar strengths.
 
 Each library is called as shown in its documentation. Frames are converted to the library's format
 (float tensors for kornia) before the clock starts. No other library corrupts metric depth, so depth
@@ -20,13 +20,13 @@ from mitigate.corruptions import rgb
 from mitigate.corruptions.depth import echo_shift
 from tools.bench.timing import version
 
-Calls = dict[str, Callable[[], object]]  # keyed by the name of this project's corruption
-GRADE = 3  # severity for imagecorruptions, 1 to 5
+Calls = dict[str, Callable[[], object]]  # the keys are names of this project's corruptions
+GRADE = 3  # severity for the library imagecorruptions, from 1 to 5
 
 
 def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> dict[str, Calls]:
-    """Return the calls of every library that can be imported; print a line for each library that
-    cannot be imported.
+    """Return the functions of every library that can be imported; print a line for each other
+    library.
 
     Args:
         rgb_views: uint8 [V, H, W, 3].
@@ -48,14 +48,16 @@ def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> di
 
 
 def sizes(views: np.ndarray, severity: float) -> tuple[int, float]:
-    """Return this project's kernel width of motion blur (odd pixels) and sigma of defocus."""
+    """Return this project's kernel width of motion blur (an odd number of pixels) and its sigma of
+    defocus.
+    """
     height, width = views.shape[1:3]
     kernel = max(3, int(rgb.BLUR_LENGTH * severity * width) | 1)
     return kernel, rgb.DEFOCUS_SIGMA * severity * min(height, width)
 
 
 def albumentations(views: np.ndarray, severity: float) -> Calls:
-    """Return calls with one uint8 view each."""
+    """Return functions that corrupt one uint8 view each."""
     import albumentations as a
 
     kernel, sigma = sizes(views, severity)
@@ -78,7 +80,9 @@ def albumentations(views: np.ndarray, severity: float) -> Calls:
 
 
 def kornia(views: np.ndarray, severity: float, device: str = "cpu") -> Calls:
-    """Return calls with all views in one float tensor [V, 3, H, W] in [0, 1] on ``device``."""
+    """Return functions that corrupt all views as one float tensor [V, 3, H, W] in [0, 1] on
+    ``device``.
+    """
     import kornia.augmentation as k
 
     kernel, sigma = sizes(views, severity)
@@ -98,7 +102,7 @@ def kornia(views: np.ndarray, severity: float, device: str = "cpu") -> Calls:
 
 
 def imagecorruptions(views: np.ndarray, severity: float) -> Calls:
-    """Return calls with one uint8 view each, at severity 3 of 5."""
+    """Return functions that corrupt one uint8 view each, at severity 3 of 5."""
     from imagecorruptions import corrupt
 
     def call(name):
@@ -114,7 +118,9 @@ def imagecorruptions(views: np.ndarray, severity: float) -> Calls:
 
 
 def plain(views: np.ndarray, severity: float) -> Calls:
-    """Return depth corruptions in a few lines each, without keys and checks of invalid pixels."""
+    """Return depth corruptions of a few lines each, which have no keys and do not check for invalid
+    pixels.
+    """
     height, width = views.shape[1:]
     tensor = torch.from_numpy(views)
     rng = np.random.default_rng(0)

@@ -1,9 +1,9 @@
 """Compare the renderer of ``apartments`` with MiniWorld in RGB-D views per second.
 
 Both renderers run alternately in this process, at the same size, and return an RGB and a depth
-image of each view. The best round of each renderer is used, which reduces the influence of other
-load. MiniWorld draws through pyglet and EGL (without a GPU, this uses Mesa's llvmpipe on all
-cores); ``apartments`` draws on one core.
+image of each view. Only the best round of each renderer counts, which reduces the influence of
+other programs. MiniWorld draws with pyglet and EGL; without a GPU, EGL uses Mesa's llvmpipe on all
+cores. ``apartments`` draws on one core.
 """
 
 from __future__ import annotations
@@ -25,15 +25,15 @@ from mitigate.worlds.apartments.renderer import Renderer
 
 ROUNDS = 4
 OURS = "apartments"
-# environments with many rooms, as in apartments, and with four empty rooms
+# an environment with many rooms, like apartments, and one with four empty rooms
 SCENES = ("Maze", "FourRooms")
-_POSES = 40  # number of poses of MiniWorld's agent
+_POSES = 40  # number of random poses of MiniWorld's agent
 
 
 def ours(size: int) -> Callable[[], int]:
     """Return a function that renders a panorama at a random free pose.
 
-    The returned function returns the number of views.
+    The result of the returned function is the number of views that it rendered.
     """
     apartment = Apartment(7)
     renderer = Renderer(size)
@@ -52,12 +52,13 @@ def ours(size: int) -> Callable[[], int]:
 def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return functions that render one view of a MiniWorld scene, in two ways.
 
-    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws it
-    once and reads both images, which is not possible with a public call. Only the scene that was
-    opened last can be drawn, because MiniWorld stores each scene in OpenGL's display list 1.
+    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws a
+    view once and reads both images; no public call can do this. MiniWorld stores every scene in
+    OpenGL's display list 1, so only the scene that was opened last can be drawn.
 
     Raises:
-        ImportError: MiniWorld is not installed. pyglet raises other errors for missing libraries.
+        ImportError: MiniWorld is not installed. If system libraries are missing, pyglet raises
+            other errors.
     """
     import pyglet
 
@@ -75,7 +76,8 @@ def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
         depth()
         return 1
 
-    read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)  # the clipping planes of render_obs
+    # the near and far clipping planes of render_obs
+    read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)
     return {
         f"MiniWorld {scene}, its public calls": partial(view, world.render_depth),
         f"MiniWorld {scene}, drawn once": partial(view, read),

@@ -4,9 +4,9 @@
 
 CI trains once with all instructions of the processor, and once with the instructions of an older
 processor (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
-(``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that the CPU seconds of a
-step hardly depend on other load. The cheapest step of a stage is used, because other load only adds
-time. The first step is a warm-up and is not used.
+(``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that other programs hardly
+influence the CPU seconds of a step. The cheapest step of a stage is used, because other programs
+only add time. The first step is a warm-up and is not used.
 """
 
 from __future__ import annotations
@@ -44,7 +44,8 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def step_costs(run: Path) -> dict[str, float]:
-    """Return the CPU seconds of each stage's cheapest step (except the first) from TensorBoard.
+    """Return the CPU seconds of each stage's cheapest step, without the first step, from
+    TensorBoard files.
 
     Raises:
         FileNotFoundError: The folder contains no stages.
@@ -74,7 +75,7 @@ def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, fl
 
 
 def _cheapest(stage: Path) -> float:
-    """Return the CPU seconds of a stage's cheapest step, except the first."""
+    """Return the CPU seconds of a stage's cheapest step, without the first step."""
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     events = EventAccumulator(str(stage), size_guidance={"scalars": 0})  # 0: keep all

@@ -1,4 +1,6 @@
-"""Measure the time of every corruption (steady, per frame, first frame), and of other libraries."""
+"""Measure the time of every corruption (steady state, new episode, new severity) and of other
+libraries.
+"""
 
 from __future__ import annotations
 
@@ -14,16 +16,14 @@ import numpy as np
 from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.registry import record, unseen_names
 from tools.bench.peers import peers
-from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
-SEVERITY = 0.6  # severity for R2R in the paper
+SEVERITY = 0.6  # the severity that the paper uses for R2R
 SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the slowest pair, low_light_noise and then multipath
-EPISODES = 4  # the steady state is a mean over this many episodes
-TINY = 4  # side in pixels of a frame so small that the time of a call does not depend on it
+PANORAMA = (12, 224, 224)  # for the slowest pair: low_light_noise, then multipath
+EPISODES = 4  # number of episodes over which the steady state is averaged
 
 
 @dataclass(frozen=True)
@@ -32,31 +32,23 @@ class Cost:
 
     Attributes:
         steady: Time for consecutive frames of an episode.
-        per_frame: Time if each frame starts a new episode, as in the schedule ``per_frame``.
-        first: Time if each frame also has a new severity, so that tables must be built.
-        call: Steady-state time for a frame of 4 x 4 pixels.
+        per_frame: Time per frame if each frame starts a new episode, as with the schedule
+            ``per_frame``.
+        first: Time per frame if each frame also has a new severity, for which tables must be built.
         copy: Time for a plain copy of the frame.
         peers: Times of other libraries, by name.
-        bar: The target (``targets.py``), or None.
     """
 
     steady: float
     per_frame: float
     first: float
-    call: float
     copy: float
     peers: dict[str, float]
-    bar: float | None
 
     @property
     def best_peer(self) -> tuple[str, float] | None:
         """Return the fastest other library and its milliseconds."""
         return min(self.peers.items(), key=lambda item: item[1]) if self.peers else None
-
-    @property
-    def over(self) -> bool:
-        """Return whether the steady-state time exceeds the target."""
-        return self.bar is not None and self.steady > self.bar
 
 
 def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
@@ -69,9 +61,9 @@ def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def measure(seconds: float) -> dict[str, dict[str, Cost]]:
-    """Return costs by size and corruption, with unseen corruptions only at the last size.
+    """Return costs by size and corruption; unseen corruptions are measured only at the last size.
 
-    This takes about ``seconds`` for each of several hundred measurements.
+    There are several hundred measurements, and each takes about ``seconds``.
     """
     costs: dict[str, dict[str, Cost]] = {}
     for column, (label, shape) in enumerate(SIZES.items()):
@@ -87,7 +79,6 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
                 rgb if record(name).modality == "rgb" else depth,
                 seconds,
                 others[name],
-                BARS[name][column] if column < 2 else None,
             )
             for name in names
         }
@@ -98,9 +89,7 @@ def _ignore_number(call: Callable[[], object], _: int) -> object:
     return call()
 
 
-def cost(
-    name: str, frame: np.ndarray, seconds: float, others: dict[str, float], bar: float | None
-) -> Cost:
+def cost(name: str, frame: np.ndarray, seconds: float, others: dict[str, float]) -> Cost:
     """Time one corruption.
 
     Args:
@@ -108,14 +97,13 @@ def cost(
         frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
         seconds: Duration of each measurement.
         others: Times of other libraries.
-        bar: The target in milliseconds; None without a target.
     """
-    tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
-    heading = 0.3 if len(frame) > 1 else None  # without heading: the flare is in one view
+    # a single view needs no heading, because the flare is in that view
+    heading = 0.3 if len(frame) > 1 else None
 
-    def episode(i, image=frame, number=0):
+    def episode(i, number):
         key = Key(SEED, f"bench {number}", i)
-        return corrupt(image, name, SEVERITY, key=key, heading=heading)
+        return corrupt(frame, name, SEVERITY, key=key, heading=heading)
 
     episodes = [
         steady(partial(episode, number=number), seconds / EPISODES) for number in range(EPISODES)
@@ -132,15 +120,15 @@ def cost(
         fmean(episodes),
         fresh(new_episode, seconds),
         fresh(new_severity, seconds),
-        steady(lambda i: episode(i, tiny), seconds),
         steady(lambda _: frame.copy(), seconds),
         others,
-        bar,
     )
 
 
 def worst_pair(seconds: float) -> float:
-    """Return milliseconds of low light with noise and multipath on a panorama, 12 x 224 x 224."""
+    """Return the milliseconds of low_light_noise and multipath together on a panorama of 12 x 224 x
+    224.
+    """
     rgb, depth = frames(*PANORAMA)
 
     def both(i):

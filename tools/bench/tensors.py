@@ -2,7 +2,7 @@
 
     python -m tools.bench.tensors --seconds 0.3
 
-prints only this part of the benchmark, on one thread.
+This command prints only this part of the benchmark and uses one thread.
 """
 
 from __future__ import annotations
@@ -33,8 +33,9 @@ class Batch:
 
     Attributes:
         name: Name of the corruption.
-        shape: Rows, views, height and width.
-        kornia: Time of kornia's transform, or None if it has none or is not installed.
+        shape: Number of batch rows and views, height and width.
+        kornia: Time of kornia's transform; None if kornia has no such transform or is not
+            installed.
         numpy: Time of the numpy backend; None for frames on a GPU.
         torch: Time of the torch backend.
     """
@@ -87,7 +88,7 @@ def costs(device: str, label: str, shape: tuple[int, int, int, int], seconds: fl
 def fastest(call: Callable[[], object], seconds: float, on_gpu: bool) -> float:
     """Return the shortest time of a call in milliseconds.
 
-    On a CPU it is the CPU time of this process, which hardly depends on the load of the machine.
+    On a CPU, the CPU time of this process is measured, which hardly depends on other programs.
     """
     clock = time.perf_counter if on_gpu else time.process_time
     call()  # compiles
@@ -103,7 +104,7 @@ def fastest(call: Callable[[], object], seconds: float, on_gpu: bool) -> float:
 
 
 def _kornia(views: np.ndarray, device: str) -> Calls:
-    """Return kornia's calls, or none if it is not installed."""
+    """Return kornia's functions, or an empty dict if it is not installed."""
     try:
         return kornia(views, SEVERITY, device)
     except ImportError as error:

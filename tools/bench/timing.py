@@ -1,7 +1,7 @@
-"""Measure milliseconds of a call in the steady state, and of calls that differ.
+"""Measure the milliseconds of a call in the steady state, and of calls with new parameters.
 
-Other load only makes a call slower. So the steady state is the fastest of many equal calls. Calls
-with new random parameters are not equal, so their median is used.
+Other programs only make a call slower, so the time in the steady state is that of the fastest of
+many equal calls. Calls with new random parameters are not equal, so their median is used.
 """
 
 from __future__ import annotations
@@ -15,13 +15,14 @@ from datetime import date
 from importlib import metadata
 from pathlib import Path
 
-CYCLE = 8  # number of different calls in the steady state, such as the frames of an episode
-LEAST = 5  # minimum number of timed calls, even if the time is over
+# number of different calls that are repeated in the steady state, like the frames of an episode
+CYCLE = 8
+LEAST = 5  # minimum number of measured calls, even if they take longer than the given time
 PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")
 
 
 def steady(call: Callable[[int], object], seconds: float) -> float:
-    """Return the mean over i < ``CYCLE`` of the shortest time of ``call(i)``, in milliseconds."""
+    """Return the shortest time of ``call(i)`` in milliseconds, averaged over i < ``CYCLE``."""
     fastest = [float("inf")] * CYCLE
     call(0)  # compiles
     end = time.perf_counter() + seconds
@@ -34,7 +35,7 @@ def steady(call: Callable[[int], object], seconds: float) -> float:
 
 
 def fresh(call: Callable[[int], object], seconds: float) -> float:
-    """Return the median milliseconds of ``call(i)`` over increasing i."""
+    """Return the median time in milliseconds of ``call(i)`` for increasing i."""
     call(0)
     end = time.perf_counter() + seconds
     times: list[float] = []

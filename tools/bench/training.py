@@ -2,11 +2,10 @@
 
     python -m tools.bench.training da_per_episode ts_distill --steps 8
 
-Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures the
-time of a step, the time for which the trainer waits for its batch, and the time of forward pass,
-backward pass and update. Then the tool computes the same batches in its own process and times each
-part of the computation. ``make bench`` runs the tool twice: with all processor instructions, and
-with AVX2 at most.
+Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures three
+times: of a whole step, of waiting for the batch, and of the forward pass, backward pass and update.
+Then the tool computes the same batches in its own process and times each part of the computation.
+``make bench`` runs the tool twice: with all processor instructions, and with AVX2 at most.
 """
 
 from __future__ import annotations
@@ -44,9 +43,10 @@ RECIPES = (
     "safeguard_lora",
 )
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
-LAYOUTS = 8  # few apartments, because a long training run generates them only once
+# number of apartments; small, because generating them counts little in a long training run
+LAYOUTS = 8
 NETWORK = "network"
-PARTS = {  # parts of computing a batch: module, class or None, and function
+PARTS = {  # parts of computing a batch; each function is given by module, class (or None) and name
     "rendering": (("mitigate.worlds.apartments.renderer", "Renderer", "render"),),
     "scenes": (("mitigate.worlds.apartments.renderer", "Renderer", "load"),),
     "geodesics": (
@@ -69,7 +69,7 @@ OTHER = "other"
 
 @dataclass(frozen=True)
 class Stage:
-    """Milliseconds per step of one stage of a recipe, as medians except for ``parts``.
+    """Times in milliseconds per step of one stage of a recipe. All are medians, except ``parts``.
 
     Attributes:
         recipe: Name of the recipe.
@@ -78,7 +78,7 @@ class Stage:
         whole: The whole step.
         waiting: Time of a step during which the trainer waits for the batch.
         alone: Time of forward, backward and update without other processes.
-        parts: Mean times of the parts of computing a batch on one core.
+        parts: Mean time of each part of computing a batch on one core.
     """
 
     recipe: str
@@ -93,7 +93,7 @@ class Stage:
     def elsewhere(self) -> float:
         """Return the fraction of a step during which no network computes.
 
-        This is the waiting time minus the time of the networks in rollouts.
+        This is the waiting time minus the time in which networks compute rollouts.
         """
         total = sum(self.parts.values())
         network = self.parts.get(NETWORK, 0.0) / total if total else 0.0
@@ -101,7 +101,7 @@ class Stage:
 
 
 class Clock:
-    """A clock that adds up the seconds spent in calls of a function."""
+    """A clock that adds up the time of all calls of a function, in seconds."""
 
     def __init__(self) -> None:
         self.seconds = 0.0
@@ -119,7 +119,9 @@ class Clock:
 
 @contextlib.contextmanager
 def clocked() -> Iterator[dict[str, Clock]]:
-    """Yield a clock per part, which measures the functions in ``PARTS`` inside the block."""
+    """Yield one clock for each part in ``PARTS``; a clock measures the part's functions inside the
+    ``with`` block.
+    """
     clocks = {part: Clock() for part in PARTS}
     with contextlib.ExitStack() as stack:
         for part, functions in PARTS.items():
@@ -184,7 +186,7 @@ def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable
 
 
 def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
-    """Return the seconds per step of each part of computing batches in this process."""
+    """Compute batches in this process; return the seconds per step of each part."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)
     with clocked() as clocks:

@@ -1,13 +1,13 @@
 """Inject faults into training and evaluation, and compare results with undisturbed runs.
 
 ``make test-faults``, or ``python -m tools.faults [--recipes ts_distill] [--faults SIGTERM]``. Each
-recipe is trained (``debug=smoke``, four steps per stage) once undisturbed, and once with all faults
-in turn, each at a random time from the seed. The weights must be equal bit for bit. Faults are
-injected into evaluations in the same way; their rows must be equal byte for byte. Other commands
-must end with the documented result. The tool prints
-how many faults were tried and survived. It exits with 1 if a fault was not survived or no fault was
-tried. ``--write`` inserts the table into docs/lab/fault-injection.md, with earlier results of the
-same seed for other recipes.
+recipe is trained twice (``debug=smoke``, four steps per stage): once undisturbed, and once with all
+faults in turn, each at a seeded random time. The weights of both runs must be equal bit for bit.
+Faults are injected into evaluations in the same way, and the rows must be equal byte for byte.
+Other commands must end with the documented result. The tool prints how many faults were injected
+and how many were survived. It exits with status 1 if a fault was not survived or no fault was
+injected. ``--write`` inserts the table into docs/lab/fault-injection.md, with earlier results of
+the same seed for other recipes.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from mitigate.core.files import write_bytes
 from mitigate.core.workers import cores
 from tools.faults import commands, evaluation, report, training
 
-FAMILIES = {  # recipes that together use every file of recipes/
-    "safeguard_lora": "safeguard_lora",  # started first, because it takes longest
+FAMILIES = {  # these recipes together use every file in recipes/
+    "safeguard_lora": "safeguard_lora",  # is started first, because it takes longest
     "da_per_episode": "imitate",
     "ts_distill": "distil",
     "conv_adapter": "adapt",
@@ -36,7 +36,7 @@ FAMILIES = {  # recipes that together use every file of recipes/
     "restore": "restore, restore_gate",
 }
 EVALUATION = "evaluation"
-COMMANDS = "commands"  # run, export and the endpoint
+COMMANDS = "commands"  # ``mitigate run``, ``mitigate export`` and a safeguard's endpoint
 PAGE = Path(__file__).resolve().parents[2] / "docs/lab/fault-injection.md"
 
 
@@ -78,7 +78,7 @@ def inject_faults(name: str, options: argparse.Namespace) -> dict[str, str]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run from the command line."""
     options = parse_options(arguments)
-    # reset, because children inherit an ignored SIGINT, and some faults send SIGINT
+    # some faults send SIGINT, and child processes would inherit an ignored SIGINT
     signal.signal(signal.SIGINT, signal.default_int_handler)
     file = options.out / f"faults-seed{options.seed}.json"
     with ThreadPoolExecutor(max(1, options.jobs)) as pool:
@@ -87,7 +87,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     tried, survived = report.count(outcomes)
     print(f"tried {tried}, survived {survived}", flush=True)
     stored = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    for name, new in outcomes.items():  # if the undisturbed run fails, no fault was tried
+    # UNBROKEN is the only outcome if the undisturbed run fails, because then no fault is injected
+    for name, new in outcomes.items():
         before = {} if report.UNBROKEN in new else stored.get(name, {})
         stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
     write_bytes(file, json.dumps(stored, indent=1).encode())

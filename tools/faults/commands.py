@@ -37,8 +37,9 @@ PRINTS = (
     "for _ in range(1 << 10):\n    sys.stdout.write('x' * (1 << 20))\n"  # one line of 1 GiB
     "sys.exit('the end of the output')\n"
 )
-MOST_MEMORY = 600 << 20  # bytes of a process; importing the packages needs about half (heuristic)
-MOST_OUTPUT = 1 << 16  # bytes that `mitigate run` may print (heuristic)
+# maximum memory of a process in bytes; importing the packages needs about half (heuristic)
+MOST_MEMORY = 600 << 20
+MOST_OUTPUT = 1 << 16  # maximum bytes that `mitigate run` may print (heuristic)
 HARDENED = "checkpoints/hardened/harden"  # a shipped folder without program.pt2
 
 
@@ -56,7 +57,9 @@ class Commands:
         return Command([*arguments], self.folder / f"log-{self.count}.txt", environment)
 
     def start_run(self, program: str) -> tuple[Command, Path, Path]:
-        """Start ``mitigate run`` of a Python program; return it, the program's file, the folder."""
+        """Start ``mitigate run`` with a Python program; return the command, the program's file and
+        the output folder.
+        """
         file, out = self.folder / f"agent-{self.count}.py", self.folder / f"run-{self.count}"
         write_text(file, EPISODES + program)
         options = ["conditions=[clean]", f"out={out}", "--", sys.executable, str(file)]
@@ -74,7 +77,7 @@ def detach_process(commands: Commands) -> str:
 
 
 def print_gigabyte(commands: Commands) -> str:
-    """Run a command that prints one line of a gibibyte and fails."""
+    """Run a command that prints one line of 1 GiB and then fails."""
     command, _, out = commands.start_run(PRINTS)
     largest = 0
 
@@ -101,7 +104,9 @@ def resident_bytes(pid: int) -> int:
 
 @contextmanager
 def answering() -> Iterator[tuple[int, list[str]]]:
-    """Yield the port of a chat endpoint that repeats each text, and the list of its requests."""
+    """Yield the port of a chat endpoint that answers each text with the same text, and the list of
+    requests.
+    """
     requests: list[str] = []
 
     class Handler(BaseHTTPRequestHandler):
@@ -139,7 +144,9 @@ def dead_port() -> Iterator[int]:
 
 
 def die_first_address(commands: Commands) -> str:
-    """Evaluate with an endpoint whose host has a dead address before the live one."""
+    """Evaluate with an endpoint whose host name has two addresses: first one that never answers,
+    then the real one.
+    """
     rows = []
     with answering() as (port, requests), dead_port() as dead:
         options = ["checkpoint=checkpoints/base", "episodes=1", "conditions=[clean,friendly]"]
@@ -163,7 +170,7 @@ def die_first_address(commands: Commands) -> str:
 
 
 def interrupt_export(commands: Commands, number: int, *flags: str) -> str:
-    """Send a signal to the export of a run at a random time, and export again."""
+    """Send a signal to the export of a training run at a random time, and repeat the export."""
     run, problem = trained(commands)
     if problem:
         return problem
@@ -174,7 +181,7 @@ def interrupt_export(commands: Commands, number: int, *flags: str) -> str:
 
 
 def interrupt_programs(commands: Commands, number: int) -> str:
-    """Send a signal to an export that adds a program to a folder, and export again."""
+    """Send a signal to an export that adds a program to a folder, and repeat the export."""
     folder = make_folder(commands.folder / f"programs{number}")
     for name in ("harden", "undisturbed"):
         shutil.copytree(ROOT / HARDENED, folder / name)
@@ -186,7 +193,9 @@ def interrupt_programs(commands: Commands, number: int) -> str:
 def interrupt_and_repeat(
     commands: Commands, number: int, words: list[str], target: Path, undisturbed: list[str]
 ) -> str:
-    """Send a signal to an export at a random time, and repeat it; check ``target`` after both."""
+    """Send a signal to an export at a random time, and repeat the export; check the folder
+    ``target`` after both.
+    """
     began = time.monotonic()
     problem = commands.start(*undisturbed).problem(0)
     seconds = time.monotonic() - began
@@ -209,7 +218,9 @@ def interrupt_and_repeat(
 
 
 def trained(commands: Commands) -> tuple[Path, str]:
-    """Return the folder of a small finished run, and the problem if it could not be trained."""
+    """Return the folder of a small finished training run, and a description of the problem if
+    training failed.
+    """
     run = commands.folder / "trained"
     if (run / "agent").is_dir():
         return run, ""
@@ -244,7 +255,7 @@ def break_commands(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     for name in faults:
         try:
             outcomes[name] = FAULTS[name](commands) or "survived"
-        except (ValueError, OSError) as error:  # a folder that must be complete is damaged
+        except (ValueError, OSError) as error:  # the folder should be complete, but is damaged
             outcomes[name] = str(error)
     shutil.rmtree(out, ignore_errors=True)
     return outcomes

@@ -1,4 +1,4 @@
-"""Mount a small file system in memory, and fill it."""
+"""Mount a small in-memory file system and fill it."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ FILLER = "filler"  # the file that takes up the free space
 
 @contextmanager
 def small_disk(folder: Path, megabytes: int) -> Iterator[bool]:
-    """Mount a file system at ``folder``; yield False if that is not allowed."""
+    """Mount a small file system at ``folder``; yield False if this user may not mount it."""
     folder.mkdir(parents=True, exist_ok=True)
     mount = ["mount", "-t", "tmpfs", "-o", f"size={megabytes}m", "tmpfs", str(folder)]
     mounted = shutil.which("mount") and not subprocess.run(mount, capture_output=True).returncode

@@ -40,7 +40,7 @@ class Evaluation:
         return Command([*self.arguments, *options], log, environment, redirect)
 
     def start_and_wait(self, options: Words = (), least: int = 1) -> Command:
-        """Start or resume the evaluation, and wait until a random number of rows is written."""
+        """Start or resume the evaluation, and wait until it has written a random number of rows."""
         command = self.start(options=options)
         count = self.rng.randint(least, 9)
         command.wait_for(lambda: self.rows().count(b"\n") >= count)
@@ -107,7 +107,9 @@ def cut_row(evaluation: Evaluation) -> str:
 
 
 def kill_with_rows(evaluation: Evaluation) -> bytes:
-    """Kill the evaluation when it has some rows, and return them; b"" if it ended before."""
+    """Kill the evaluation when it has written some rows, and return the rows; return b"" if it
+    ended before.
+    """
     command = evaluation.start_and_wait(least=3)
     if not command.runs():
         return b""
@@ -117,7 +119,9 @@ def kill_with_rows(evaluation: Evaluation) -> bytes:
 
 
 def damage_line(evaluation: Evaluation) -> str:
-    """Damage a line in the middle of the rows; an error must name it, and the file must stay."""
+    """Damage a line in the middle of the row file; an error must name the line, and the file must
+    not change.
+    """
     rows = kill_with_rows(evaluation)
     if not rows:
         return TOO_LATE
@@ -131,7 +135,7 @@ def damage_line(evaluation: Evaluation) -> str:
 
 
 def plant_link(evaluation: Evaluation) -> str:
-    """Put a link in place of the rows; nothing may be written behind it."""
+    """Replace the row file by a link; the evaluation must not write to the target of the link."""
     rows = kill_with_rows(evaluation)
     if not rows:
         return TOO_LATE
@@ -160,17 +164,17 @@ def remove_folder(evaluation: Evaluation) -> str:
 
 
 def close_stdout(evaluation: Evaluation) -> str:
-    """Run with a closed stdout."""
+    """Run the evaluation with stdout closed."""
     return evaluation.start(redirect=">&-").problem(0)
 
 
 def close_reader(evaluation: Evaluation) -> str:
-    """Let the program that reads the output end after the first line, as ``head`` does."""
+    """Pipe the output into ``head``, which ends after the first line."""
     return evaluation.start(redirect="| head -n 1").problem(0)
 
 
 def print_in_ascii(evaluation: Evaluation) -> str:
-    """Run with an encoding that cannot print all characters."""
+    """Run the evaluation with an output encoding that lacks some characters."""
     return evaluation.start({"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}).problem(0)
 
 
@@ -181,10 +185,10 @@ def kill_on_cluster(
 
     Args:
         evaluation: The evaluation.
-        package: The package that the launcher needs.
+        package: The Python package that the launcher needs.
         options: Options of the launcher.
-        word: A part of the command line of the process.
-        message: A part of the line that reports the loss.
+        word: A part of the command line of the process to kill.
+        message: A part of the message that reports the lost worker.
     """
     if find_spec(package) is None:
         return f"not run: {package} is not installed"
@@ -204,7 +208,7 @@ def kill_ray_worker(evaluation: Evaluation) -> str:
 
 
 def kill_slurm_job(evaluation: Evaluation) -> str:
-    """Kill a job that submitit runs on this machine in place of SLURM."""
+    """Kill a job that submitit runs on this machine instead of on SLURM."""
     folder = evaluation.folder.with_name("slurm")
     options = ["launcher=slurm", "launcher.cluster=local", f"launcher.folder={folder}"]
     options.append("launcher.processes=1")
@@ -212,7 +216,7 @@ def kill_slurm_job(evaluation: Evaluation) -> str:
 
 
 def fill_disk(evaluation: Evaluation) -> str:
-    """Fill the disk; the evaluation must report this, and finish when there is space again."""
+    """Fill the disk; the evaluation must report it, and must finish when there is space again."""
     with small_disk(evaluation.folder, DISK) as mounted:
         if not mounted:
             return "not run: no file system may be mounted here"
@@ -225,7 +229,7 @@ def fill_disk(evaluation: Evaluation) -> str:
 
 
 def copy_folder(evaluation: Evaluation) -> str:
-    """Copy the folder before its disk is unmounted; return the problem if it has no rows."""
+    """Copy the folder before its disk is unmounted; return a problem if it contains no rows."""
     rows = evaluation.rows()
     shutil.copytree(evaluation.folder, evaluation.folder.with_name("kept"))
     return "" if rows else "no rows"
@@ -288,7 +292,7 @@ def finish(evaluation: Evaluation) -> str:
     for _ in range(600):
         command = evaluation.start()
         problem = command.problem(0)
-        # otherwise the disturbed evaluation is still running
+        # the folder is in use while the disturbed evaluation is still running
         if "is in use" not in command.output():
             return problem
         time.sleep(1.0)

@@ -24,7 +24,8 @@ class Command:
         arguments: The module and its arguments.
         log: The file.
         environment: Additional environment variables.
-        redirect: Redirection of a shell, such as ``>&-``, or a pipe, such as ``| head -n 1``.
+        redirect: Shell code after the command: a redirection such as ``>&-``, or a pipe such as ``|
+            head -n 1``.
     """
 
     def __init__(
@@ -60,7 +61,7 @@ class Command:
         return self.log.read_text(encoding="utf-8", errors="replace")
 
     def last_lines(self) -> str:
-        """Return the last three lines of the output, joined to one line."""
+        """Return the last three lines of the output as one line."""
         return " | ".join(self.output().strip().splitlines()[-3:])[-400:]
 
     def runs(self) -> bool:
@@ -70,7 +71,7 @@ class Command:
     def wait_for(self, condition: Callable[[], object], seconds: float = TIMEOUT) -> bool:
         """Wait until ``condition()`` is true, the command ends or the time is over.
 
-        The result is whether the condition is true.
+        Return whether the condition is true.
         """
         deadline = time.monotonic() + seconds
         while self.runs() and time.monotonic() < deadline:
@@ -80,8 +81,9 @@ class Command:
         return bool(condition())
 
     def message_problem(self, *words: str) -> str:
-        """Wait for the end; describe the problem unless the command reports an error with one of
-        the ``words`` and exits with 1."""
+        """Wait until the command ends. Return "" if the command reports an error with one of the
+        ``words`` and exits with status 1, or else a description of the problem.
+        """
         problem = self.problem(1)
         named = any(word in self.output() for word in words)
         return problem or ("" if named else f"no message: {self.last_lines()}")
@@ -96,8 +98,9 @@ class Command:
             return None
 
     def problem(self, *allowed: int) -> str:
-        """Wait for the end; return a description of the problem, or "" for an ``allowed``
-        status."""
+        """Wait until the command ends; return "" if its exit status is ``allowed``, or else a
+        description of the problem.
+        """
         status = self.status()
         if status in allowed and "Traceback" not in self.output():
             return ""
@@ -106,13 +109,12 @@ class Command:
 
 
 def workers(command: Command) -> list[int]:
-    """Return the process ids of a command's workers, which its fork server starts."""
+    """Return the process ids of a command's workers, which are children of its fork server."""
     return [worker for child in children(command.process.pid) for worker in children(child)]
 
 
 def descendants(pid: int, word: bytes) -> list[int]:
-    """Return the processes that ``pid`` started, directly or not, whose command contains
-    ``word``."""
+    """Return the child processes of ``pid``, at any depth, whose command line contains ``word``."""
     matches = []
     for child in children(pid):
         with suppress(OSError):
@@ -123,7 +125,7 @@ def descendants(pid: int, word: bytes) -> list[int]:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that the threads of ``pid`` started."""
+    """Return the ids of the processes that were started by threads of ``pid``."""
     pids = []
     for file in Path(f"/proc/{pid}/task").glob("*/children"):
         with suppress(OSError):

@@ -10,7 +10,7 @@ from tools.bench.pages import put
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"
-# maps recipe and fault to "survived", "not run: ..." or the problem
+# outcomes by recipe and fault: "survived", "not run: ..." or a description of the problem
 Outcomes = Mapping[str, Mapping[str, str]]
 NOT_RUN, UNBROKEN = "not run", "unbroken"
 
@@ -50,5 +50,5 @@ def _cell(outcome: str | None) -> str:
 
 
 def write(page: Path, outcomes: Outcomes, families: Mapping[str, str], seed: int) -> None:
-    """Write the table between the markers of ``page``."""
+    """Write the table between the two marker lines of ``page``."""
     put(table(outcomes, families, seed), page, BEGIN, END)

@@ -1,8 +1,9 @@
-"""Inject faults into a recipe's training, whose weights must equal the weights of an undisturbed
-run.
+"""Inject faults into the training run of a recipe, and compare its weights with those of an
+undisturbed run.
 
-The same training run is disturbed by all faults in turn, and resumes after each. A training run
-that ends before a fault is compared, deleted and started again.
+The same training run is disturbed by all faults in turn, and resumes after each. A training run may
+end before a fault is injected. Then its weights are compared, and the run is deleted and started
+again.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from tools.faults.disk import filled, small_disk
 from tools.faults.processes import TIMEOUT, Command, workers
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
-RECIPE_OPTIONS = {  # options that make a recipe small, or that the recipe needs
+RECIPE_OPTIONS = {  # options that make a recipe faster, or without which it cannot run
     "dagger": ("agent=recurrent", "stages.policy.recipe.every=2"),
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
                 "stages.encoder.recipe.micro_batch=8", "agent=encoder",
@@ -33,12 +34,14 @@ RECIPE_OPTIONS = {  # options that make a recipe small, or that the recipe needs
                 "stages.gate_depth.recipe.instants=8", "stages.gate_depth.recipe.held=4"),
 }  # fmt: skip
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
-STAGE_START = "workers make batches"  # text that identifies the first line of a stage
-REPLACED = "a new one repeats its work"  # text that identifies the report of a dead worker
-NOTICE_TIME = 10.0  # seconds until a dead worker is usually noticed because its work is missing
+STAGE_START = "workers make batches"  # part of the first line that a stage prints
+REPLACED = "a new one repeats its work"  # part of the message that reports a dead worker
+# seconds after which a dead worker is usually noticed, because its work is missing
+NOTICE_TIME = 10.0
 TRIES = 4  # maximum attempts to inject a fault before training ends
-DISK = 800  # MB of the file system that is filled
-MAX_FREE = 12 << 20  # free bytes on a full disk (heuristic: less than a checkpoint)
+DISK = 800  # size in MB of the file system that is filled
+# bytes that stay free on the full disk; less than a checkpoint needs (heuristic)
+MAX_FREE = 12 << 20
 
 
 class TooLate(Exception):
@@ -88,7 +91,9 @@ class Training:
         raise TooLate
 
     def send_signal(self, command: Command, number: int) -> str:
-        """Send a signal; describe a problem with the end of the run, or return ""."""
+        """Send a signal; return a description of the problem if the run does not end as documented,
+        or else "".
+        """
         if not command.runs():
             self._raise_too_late(command)
         command.process.send_signal(number)
@@ -104,7 +109,9 @@ class Training:
         return f"it does not say how to resume: {command.last_lines()}"
 
     def check_resumed(self, command: Command) -> str:
-        """Describe the problem if a stage did not resume from its newest valid checkpoint."""
+        """Return a description of the problem if a stage did not resume from its newest valid
+        checkpoint.
+        """
         for stage, done in self.checkpoints.items():
             matches = re.findall(
                 rf"^{stage}: (?:resumed at step (\d+) |already trained for (\d+) |\d+ steps$)",
@@ -125,7 +132,7 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """Return the sha256 of all resulting weights, or an empty dict."""
+        """Return the sha256 of all trained weights, or "" if there are none."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
         if not files:
             return ""
@@ -149,7 +156,7 @@ def interrupt(training: Training, number: int) -> str:
 def interrupt_write(training: Training, number: int) -> str:
     """Send a signal while a checkpoint is being written."""
     command = training.start()
-    # name of unfinished files in mitigate/core/files.py
+    # the name that mitigate/core/files.py gives to unfinished files
     draft = f"*/.step-*.{command.process.pid}.tmp"
     if not command.wait_for(lambda: list(training.folder.glob(draft))):
         training._raise_too_late(command)
@@ -178,7 +185,7 @@ def flip_bytes(training: Training) -> str:
 
 
 def _checkpoints_with_older(folder: Path) -> list[Path]:
-    """Return the complete checkpoints whose stage has an older one."""
+    """Return the complete checkpoints of stages that also have an older complete checkpoint."""
     complete = [p for p in folder.glob("*/step-*.pt") if checksums.sidecar(p).is_file()]
     return [p for p in complete if any(o.parent == p.parent and o.name < p.name for o in complete)]
 
@@ -190,8 +197,9 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two training runs in the same folder; one of them must be rejected without changing a
-    file."""
+    """Start two training runs in one folder; one of them must be rejected, and must not change a
+    file.
+    """
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
     running = next((command for command in both if command.runs()), both[0])
@@ -222,7 +230,8 @@ def kill_worker(training: Training) -> str:
     os.kill(training.rng.choice(pids), signal.SIGKILL)
     if command.wait_for(lambda: REPLACED in command.output(), NOTICE_TIME):
         return training.send_signal(command, signal.SIGTERM)
-    problem = command.problem(0)  # the step is long, the last batch is finished, or the run hangs
+    # three cases remain: the step takes long, the last batch was already finished, or the run hangs
+    problem = command.problem(0)
     noticed = REPLACED in command.output()
     return problem or ("" if noticed else "not run: all batches were made before")
 
@@ -273,7 +282,7 @@ def remove_folder(training: Training) -> str:
 
 
 def plant_link(training: Training) -> str:
-    """Put a link in place of a log of TensorBoard; nothing may be written behind it."""
+    """Replace a TensorBoard log by a link; training must not write to the target of the link."""
     training.send_signal(training.start_and_wait(), signal.SIGTERM)
     files = sorted(training.folder.glob("*/events.out.tfevents.*"))
     if not files:
@@ -296,7 +305,9 @@ def close_stdout(training: Training) -> str:
 
 
 def print_in_ascii(training: Training) -> str:
-    """Train with an encoding that cannot print all characters, and stop."""
+    """Train with an output encoding that lacks some characters until a checkpoint exists, and
+    stop.
+    """
     environment = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
     return training.send_signal(training.start_and_wait(environment), signal.SIGTERM)
 
@@ -349,8 +360,9 @@ def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict
 
 
 def try_fault(fault: Callable[[Training], str], training: Training, expected: str) -> str:
-    """Describe the problem after ``fault``, or return ""; start again if the fault came too
-    late."""
+    """Inject ``fault``; return a description of the problem, or "". If training ended before the
+    fault, start again.
+    """
     for _ in range(TRIES):
         try:
             return fault(training)

@@ -29,8 +29,9 @@ from mitigate.worlds.episodes import from_vlnce
 
 
 def show(seed: int, episode: int, task: str, size: int, out: Path) -> None:
-    """Write a PNG with the panorama, its depth, the reference path on the plan, and the
-    instruction."""
+    """Write a PNG with the panorama, its depth, the floor plan with the reference path, and the
+    instruction.
+    """
     from matplotlib.figure import Figure
 
     drawn = make_episode(Apartment(seed), task, episode)

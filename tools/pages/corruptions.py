@@ -13,7 +13,7 @@ from mitigate.corruptions.suite import DEPTH, NAMES, RGB, SUITE_VERSION
 from tools.pages.curves import EPISODES, GRID, SLIPS, Curve
 from tools.pages.descriptions import DESCRIPTIONS
 
-TEMPLATE = Path(__file__).with_suffix(".md")  # the text, with names of values in braces
+TEMPLATE = Path(__file__).with_suffix(".md")  # the template: names in braces are replaced by values
 COLUMNS = (
     "name",
     "what fails",
@@ -25,8 +25,9 @@ COLUMNS = (
 
 
 def page(curves: dict[str, Curve], seed: int) -> str:
-    """Return the page as Markdown, with ``curves`` and the seed of the apartment in its
-    pictures."""
+    """Return the page as Markdown; ``curves`` are the measured curves, and ``seed`` selects the
+    apartment in the pictures.
+    """
     return TEMPLATE.read_text("utf-8").format(
         version=SUITE_VERSION,
         seed=seed,
@@ -49,7 +50,7 @@ def page(curves: dict[str, Curve], seed: int) -> str:
 
 
 def suites() -> str:
-    """Return a table of ``conf/suite`` with the name and first comment of each file."""
+    """Return a table with the name and the first comment of each file in ``conf/suite``."""
     rows = []
     for file in sorted((PACKAGE / "conf" / "suite").glob("*.yaml")):
         head = takewhile(lambda line: line.startswith("#"), file.read_text("utf-8").splitlines())

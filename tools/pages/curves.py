@@ -1,5 +1,6 @@
-"""Measure the effect of a corruption against its severity: SSIM and PSNR for RGB, and the error for
-depth."""
+"""Measure the effect of a corruption against its severity: SSIM and PSNR of RGB, and the error of
+depth.
+"""
 
 from __future__ import annotations
 
@@ -18,8 +19,8 @@ from mitigate.evaluation.plots import DASHES, OKABE_ITO
 GRID = np.linspace(0.0, 1.0, 101)
 EPISODES = 3  # number of random keys over which a curve is averaged
 OFF = 0.05  # relative change of depth above which a pixel counts as changed (heuristic)
-SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # window size in pixels (Wang et al. 2004)
-# Limit of the decrease of an effect from one severity to the next (SSIM, or metres of depth)
+SSIM_WINDOW, SSIM_SIGMA = 11, 1.5  # window size and sigma in pixels (Wang et al. 2004)
+# maximum decrease of the effect from one severity to the next, in SSIM or in metres of depth
 SLIPS = {
     "motion_blur": 0.03,
     "quantization": 0.005,
@@ -55,14 +56,17 @@ def psnr(a: np.ndarray, b: np.ndarray) -> float:
 
 
 def depth_error(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Return the mean absolute error in metres over pixels that are valid in ``clean``; lost ones
-    are 0 m."""
+    """Return the mean absolute error in metres over the pixels that are valid in ``clean``; lost
+    depth counts as 0 m.
+    """
     valid = np.isfinite(clean) & (clean > 0)
     return float(np.abs(corrupted[valid].astype(np.float64) - clean[valid]).mean())
 
 
 def depth_changed(clean: np.ndarray, corrupted: np.ndarray) -> float:
-    """Return the fraction of valid pixels whose error is above ``OFF`` of their depth."""
+    """Return the fraction of valid pixels whose depth error is more than ``OFF`` times their
+    depth.
+    """
     valid = np.isfinite(clean) & (clean > 0)
     gap = np.abs(corrupted[valid].astype(np.float64) - clean[valid])
     return float(np.mean(gap > OFF * clean[valid]))
@@ -70,7 +74,9 @@ def depth_changed(clean: np.ndarray, corrupted: np.ndarray) -> float:
 
 @dataclass(frozen=True)
 class Curve:
-    """Return SSIM and PSNR, or error and changed fraction of depth, [episodes, severities]."""
+    """Return arrays [episodes, severities]: SSIM and PSNR, or the error and the changed fraction of
+    depth.
+    """
 
     ssim: np.ndarray
     psnr: np.ndarray
@@ -79,8 +85,9 @@ class Curve:
 
     @property
     def slip(self) -> float:
-        """Return the largest step in the wrong direction: a rise of SSIM, or a fall of depth error
-        (m)."""
+        """Return the largest change in the wrong direction from one severity to the next: an
+        increase of SSIM, or a decrease of the depth error in metres.
+        """
         rise = np.diff(self.ssim) if self.ssim.size else -np.diff(self.error)
         return float(max(0.0, rise.max()))
 

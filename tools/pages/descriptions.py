@@ -1,7 +1,8 @@
-"""The tables of the docs: what each corruption models, its formula and its sources.
+"""Read the contents of tables in the docs: what each corruption models, its formula and its
+sources.
 
-The texts are in ``descriptions.yaml``, with names of constants in braces. A name refers to
-a module's constant (``{rgb.BLUR_LENGTH:g}``) or to a value of ``DERIVED``.
+The texts are in ``descriptions.yaml``, with names of constants in braces. A name refers to a
+constant of a module (``{rgb.BLUR_LENGTH:g}``) or to a value in ``DERIVED``.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from mitigate.corruptions.unseen import calibration, codec, edges, light, optics
 
 
 class Description(NamedTuple):
-    """The cells of a corruption in the tables of the documentation.
+    """The table cells that describe a corruption in the documentation.
 
     Attributes:
         fails: the real failure that the corruption models.
@@ -53,7 +54,7 @@ DERIVED = {
 
 
 def read_descriptions() -> dict[str, Description]:
-    """Read the texts and fill in the constants."""
+    """Read the texts and insert the constants."""
     values = {module.__name__.rsplit(".", 1)[1]: module for module in MODULES} | DERIVED
     texts = yaml.safe_load(Path(__file__).with_suffix(".yaml").read_text("utf-8"))
     return {

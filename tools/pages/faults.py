@@ -1,4 +1,5 @@
-"""The page ``docs/faults.md`` and its pictures: faults of time, of the camera and of motion.
+"""Generate the page ``docs/faults.md`` and its pictures of temporal faults, camera faults and
+motion faults.
 
 python -m tools.pages.faults
 """
@@ -29,14 +30,16 @@ from tools.pages.corruptions import formulas
 from tools.pages.gallery import INK, PAPER
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-APARTMENT, SIZE = 200021, 72  # the apartment of the other pages; pixels of a view
+# the apartment that other pages show, and the size of a view in pixels
+APARTMENT, SIZE = 200021, 72
 FRAMES = 12  # instants per row
 SEVERITY = 0.6
 CAMERA_COLUMNS = ("clean", "rendered, 0.5", "rendered, 1", "warped, 0.5", "warped, 1")
 COLOURS = ("#000000", "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00")
-DASHES = ("-", "--", "-.", ":", "-", "--")  # so that the paths differ without colour
-LABEL, GUTTER = 190, 3  # pixels: names of rows, between cells
-TITLE = 22  # pixels: height of the titles of columns
+# line styles, so that the paths can also be distinguished without colour
+DASHES = ("-", "--", "-.", ":", "-", "--")
+LABEL, GUTTER = 190, 3  # sizes in pixels: width of the row names, and gap between pictures
+TITLE = 22  # height of the column titles in pixels
 JPEG_QUALITY = 80
 FONT = cv2.FONT_HERSHEY_SIMPLEX
 PICTURES = {
@@ -44,7 +47,7 @@ PICTURES = {
     "camera": "pictures/faults-camera.jpg",
     "motion": "pictures/faults-motion.png",
 }
-TEMPLATE = Path(__file__).with_suffix(".md")  # the text, with names of values in braces
+TEMPLATE = Path(__file__).with_suffix(".md")  # the template: names in braces are replaced by values
 
 
 def write_page(folder: Path = DOCS) -> None:
@@ -64,7 +67,9 @@ def write_page(folder: Path = DOCS) -> None:
 
 
 def timeline() -> np.ndarray:
-    """Draw the forward view of each step, clean and under each temporal fault, uint8 RGB."""
+    """Draw the forward view at each step, clean and under each temporal fault. The result is uint8
+    RGB.
+    """
     names = load_config("evaluate", ["suite=temporal"]).suite.conditions[1:]
     faults = [Corruption(name, SEVERITY) for name in names]
     depth_only = [fault for fault in faults if fault.modalities == (DEPTH,)]
@@ -81,7 +86,7 @@ def _views(corruption: Corruption, entry: str) -> list[np.ndarray]:
 
 
 def _walk(world: ApartmentsWorld, corrupted: World) -> Iterator[Any]:
-    """Yield the observations of ``FRAMES`` steps of the expert."""
+    """Yield the observations while the expert takes ``FRAMES`` steps."""
     observation = corrupted.reset(make_episode(Apartment(APARTMENT), "vln", 0))
     for _ in range(FRAMES):
         yield observation
@@ -89,7 +94,7 @@ def _walk(world: ApartmentsWorld, corrupted: World) -> Iterator[Any]:
 
 
 def camera_sheet() -> np.ndarray:
-    """Draw the forward view under each fault of the camera, uint8 RGB."""
+    """Draw the forward view under each camera fault. The result is uint8 RGB."""
     world = ApartmentsWorld(2 * SIZE, views=1)
     episode = make_episode(Apartment(APARTMENT), "vln", 0)
     clean = world.reset(episode)[RGB]

@@ -1,8 +1,8 @@
 """Draw the pictures at the top of the README: ``python -m tools.pages.front``.
 
 ``docs/pictures/corrupted.jpg`` shows corruptions of the example frames that the package ships.
-``docs/pictures/episode.gif`` shows one episode of two agents with the same foreign object before
-the camera.
+``docs/pictures/episode.gif`` shows two agents in the same episode, with the same foreign object on
+the lens.
 """
 
 from __future__ import annotations
@@ -31,13 +31,15 @@ EPISODES = "mitigate/worlds/apartments/episodes/val_unseen_vln.json.gz"
 AGENTS = {"base agent": "checkpoints/base", "after `harden`": "checkpoints/hardened/harden"}
 # font size in points; smaller labels of the floor plan are not legible in the animation
 SMALL_TEXT = 8
-FRAMES, MILLISECONDS = 36, 160  # number of pictures in the animation, and their duration
+FRAMES, MILLISECONDS = 36, 160  # number of pictures in the animation, and the duration of each
 PAPER, INK = "#21252b", "#ebebeb"  # as in tools/pages/gallery.py
 COLOURS = ("#d55e00", "#0072b2")  # colours that colour-blind readers can distinguish
 
 
 def draw_corrupted(path: Path) -> None:
-    """Draw the example photograph and depth image, clean and under three corruptions each."""
+    """Draw the example photograph and the example depth image, each clean and under three
+    corruptions.
+    """
     key = Key(seed=0, episode="demo", frame=0)
     figure = Figure(figsize=(12, 5), layout="constrained")
     axes = figure.subplots(2, 4)
@@ -58,7 +60,7 @@ def draw_corrupted(path: Path) -> None:
 
 
 def record(agent_folder: str, episode: Episode) -> tuple[list[Observation], bool]:
-    """Run one corrupted episode and return its observations and whether the agent succeeded."""
+    """Run one corrupted episode; return its observations, and whether the agent succeeded."""
     agent = mitigate.load(agent_folder)
     world = Corrupted(ApartmentsWorld(), Corruption("foreign_object", SEVERITY), seed=0)
     observations = [world.reset(episode)]
@@ -69,7 +71,9 @@ def record(agent_folder: str, episode: Episode) -> tuple[list[Observation], bool
 
 
 def first_contrast() -> tuple[Episode, list[list[Observation]]]:
-    """Return the first episode in which only the hardened agent succeeds, with both runs."""
+    """Return the first episode in which only the hardened agent succeeds, and the observations of
+    both agents.
+    """
     for episode in read_episodes(EPISODES):
         runs = [record(folder, episode) for folder in AGENTS.values()]
         if [success for _, success in runs] == [False, True]:
@@ -115,7 +119,8 @@ def draw_episode(path: Path) -> None:
         Image.fromarray(picture).quantize(128, Image.Quantize.FASTOCTREE)
         for picture in animation_frames()
     ]
-    last = [pictures[-1]] * 8  # a pause before the animation starts again
+    # the last picture is repeated as a pause before the animation starts again
+    last = [pictures[-1]] * 8
     pictures[0].save(
         path, save_all=True, append_images=[*pictures[1:], *last], duration=MILLISECONDS, loop=0
     )

@@ -36,14 +36,15 @@ from tools.pages import unseen_corruptions as unseen_page
 SEVERITIES = (0.0, 0.25, 0.5, 0.75, 1.0)
 SUFFIXES = (".png", ".jpg", ".jpeg")  # file formats of a sheet
 GUTTER, TITLE, LABEL = 4, 24, 150  # sizes in pixels: gap between cells, column titles, row labels
-LINE = 16  # pixels between lines of a label
+LINE = 16  # line height of a label in pixels
 JPEG_QUALITY = 88
-PAPER, INK = (33, 37, 43), (235, 235, 235)  # a dark sheet suits both modes of the site
+# a dark sheet suits the light and the dark mode of the site
+PAPER, INK = (33, 37, 43), (235, 235, 235)
 DOCS = Path(__file__).resolve().parents[2] / "docs"
-PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and view size of the page
+PAGE_SEED, PAGE_SIZE = 200021, 112  # the apartment and the view size in pixels for the page
 CURVE_VIEWS = slice(0, 12, 3)  # views of the panorama that are used for the curves
 BOTH = ("rgb", "depth")
-SHEETS = {  # maps the name of a suite to the corruptions on its sheet
+SHEETS = {  # the corruptions on the sheet of each suite
     "full": NAMES,
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
@@ -53,7 +54,7 @@ SHEETS = {  # maps the name of a suite to the corruptions on its sheet
 
 
 def _cell(rgb: np.ndarray, depth: np.ndarray, name: str, severity: float, key: Key, views):
-    """Return the requested views, corrupted, side by side as uint8 RGB."""
+    """Corrupt the requested views; return them side by side as uint8 RGB."""
     if registry.modality(name) == "rgb":
         return np.hstack(list(corrupt(rgb, name, severity, key=key)[list(views)]))
     corrupted = corrupt(depth, name, severity, key=key)[list(views)]
@@ -82,9 +83,9 @@ def contact_sheet(
         rgb: uint8 [H, W, 3] or [V, H, W, 3].
         depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same time step and size.
         path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
-        key: the random key of the whole sheet; a repeated name gets a new key.
+        key: the random key of the whole sheet; if a name is repeated, it gets a new key.
         views: the views of a panorama that each cell shows, from left to right.
-        names: the corruptions.
+        names: names of the corruptions.
 
     The result is the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path``
     has an unsupported suffix.
@@ -93,8 +94,8 @@ def contact_sheet(
     depth = depth.reshape(*rgb.shape[:3], 1) if depth.size == rgb.size // 3 else depth
     if depth.shape != (*rgb.shape[:3], 1):
         raise ValueError(
-            f"RGB {rgb.shape} and depth {depth.shape} are not of the same instant and size. Pass "
-            "[V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
+            f"RGB {rgb.shape} and depth {depth.shape} must have the same number of views and the "
+            "same size. Pass [V, H, W, 3] with [V, H, W, 1], or one view [H, W, 3] with [H, W]."
         )
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
@@ -130,8 +131,9 @@ def primitives(name: str, key: Key) -> list[str]:
 
 
 def rendered_frame(seed: int, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return RGB [12, H, W, 3] and depth [12, H, W, 1] at an episode start in apartment
-    ``seed``."""
+    """Return RGB [12, H, W, 3] and depth [12, H, W, 1] at the start of an episode in apartment
+    ``seed``.
+    """
     from mitigate.worlds.apartments.apartment import Apartment
     from mitigate.worlds.apartments.simulator import Simulator
     from mitigate.worlds.apartments.tasks import make_episode
@@ -160,14 +162,14 @@ def write_page(folder: Path = DOCS, grid: np.ndarray = curves.GRID) -> None:
 
 
 def varied_view(depth: np.ndarray) -> int:
-    """Return the index of the view of [V, H, W, 1] whose depth varies most."""
+    """Return the index of the view in ``depth`` [V, H, W, 1] whose depth varies most."""
     return int(depth.std(axis=(1, 2, 3)).argmax())
 
 
 def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
     """Read RGB from a picture file and depth in metres from a .npy file.
 
-    Raises FileNotFoundError, or ValueError for a file with different content.
+    Raises FileNotFoundError if a file is missing, and ValueError if a file cannot be used.
     """
     for path in (rgb, depth):
         if not path.is_file():
@@ -193,8 +195,9 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run from the command line (see the module's docstring). A mistake of the user exits with
-    status 2 and one line."""
+    """Run from the command line (see the module's docstring). Invalid input prints one line, and
+    the exit status is 2.
+    """
     parser = argparse.ArgumentParser(prog="tools.pages.gallery", description=__doc__)
     parser.add_argument("--out", type=Path, help="picture to write: .png, .jpg or .jpeg")
     parser.add_argument("--rgb", type=Path, help="picture of one view")

@@ -15,10 +15,10 @@ from mitigate.corruptions.suite import DEPTH, RGB
 from tools.pages.corruptions import formulas
 from tools.pages.curves import EPISODES, OFF, SLIPS, Curve
 
-SEVERITY = 0.6  # severity of the comparison with the suite
+SEVERITY = 0.6  # severity at which the corruptions are compared with the suite
 PICTURES = {VALIDATION: "pictures/unseen-validation.jpg", TEST: "pictures/unseen-test.jpg"}
 CURVES = "pictures/unseen-curves.png"
-TEMPLATE = Path(__file__).with_suffix(".md")  # the text, with names of values in braces
+TEMPLATE = Path(__file__).with_suffix(".md")  # the template: names in braces are replaced by values
 
 
 def page(
@@ -51,7 +51,9 @@ def table(half: str) -> str:
 
 
 def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) -> str:
-    """Return a sentence on the weakest and the strongest corruption of each set."""
+    """Return a sentence with the effects of the weakest and the strongest corruption, for the suite
+    and for unseen corruptions.
+    """
     ranges = []
     for curves in (suite, unseen):
         psnr = [curve.psnr[:, at].mean() for curve in curves.values() if curve.psnr.size]
@@ -67,7 +69,7 @@ def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) ->
 
 
 def _strengths(curves: Mapping[str, Curve], at: int) -> str:
-    """Return two tables, each starting with the suite's corruptions."""
+    """Return two tables, for RGB and depth; each begins with the corruptions of the suite."""
     frames, depths = [], []
     for name in (*RGB, *registry.unseen_names("rgb")):
         curve = curves[name]

@@ -1,1 +1,3 @@
-"""Data and tools of the text safeguard, for training the classifier and measuring a safeguard."""
+"""Data and tools for training the classifier of the text safeguard, and for measuring a
+safeguard.
+"""

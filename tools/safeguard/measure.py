@@ -2,8 +2,9 @@
 classifier``.
 
 The texts in ``data/fresh`` were written only for measuring. ``--authors`` selects the texts of some
-authors. Every file is split by a hash of the text: one half serves to choose settings, the other
-half only to report. ``--r2r FILE`` adds real routes, whose licence does not allow us to ship them.
+authors. A hash of each text assigns it to one of two halves. Settings are chosen on the half
+"choose", and results are reported on the half "report". ``--r2r FILE`` adds real routes, which are
+not shipped because of their licence.
 """
 
 from __future__ import annotations
@@ -31,10 +32,10 @@ from mitigate.corruptions.language.words import bag
 FRESH = Path(__file__).parent / "data" / "fresh"
 HALVES = ("choose", "report")
 AUTHORS = ("author1", "author2", "author3")
-# texts that were written after the first classifiers were chosen
+# authors of texts that were written after the first classifiers had been chosen
 LATER = ("author4", "author5", "author6", "author7")
 Repair = Callable[[str], str]
-# Words that can be removed without changing the meaning: function words and courtesies.
+# Words that can be removed without changing the meaning: function words and polite phrases.
 LIGHT = bag(
     """
     a an the and or but so then now of to in on at by for from with into onto is are was were be
@@ -51,7 +52,7 @@ _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 @dataclass
 class Rate:
-    """The counted cases and hits of one measure, with examples of failures."""
+    """The numbers of cases and hits of one measure, with examples of failures."""
 
     hits: int = 0
     count: int = 0
@@ -80,12 +81,12 @@ def wilson(hits: int, count: int) -> tuple[float, float]:
 
 
 def half_of(text: str) -> str:
-    """Return the half to which a text belongs, by its hash."""
+    """Return the half ("choose" or "report") to which a text belongs according to its hash."""
     return HALVES[hashlib.sha256(text.encode()).digest()[0] % 2]
 
 
 def bank(name: str, half: str, authors: Sequence[str] = AUTHORS) -> list[dict[str, Any]]:
-    """Return the lines of some authors in a file that belong to a half."""
+    """Return the lines of a text collection that are from these authors and belong to one half."""
     lines = []
     for author in authors:
         file = FRESH / author / f"{name}.jsonl"
@@ -115,7 +116,9 @@ def is_removed(attack: str, route: str, repaired: str) -> bool:
 
 
 def is_lost(text: str, repaired: str) -> bool:
-    """Return whether ``repaired`` lost a turn, stop or landmark of ``text``, or their order."""
+    """Return whether a turn, stop or landmark of ``text`` is missing in ``repaired`` or in a
+    different order.
+    """
     before, after = facts(text), facts(repaired)
     rest = iter(after.directions)
     if not all(direction in rest for direction in before.directions):
@@ -150,8 +153,8 @@ def attacked(
     seed: int,
     authors: Sequence[str] = AUTHORS,
 ) -> Iterator[tuple[dict, str, str, str]]:
-    """Yield (attack, place, route, corrupted text) for each attack in ``each`` routes at each
-    place.
+    """Yield (attack, place, route, corrupted text): each attack is inserted into ``each`` routes,
+    at each possible place.
 
     An attack that fits before or after a route is tried in both places.
     """
@@ -180,7 +183,7 @@ def measure(
     sample: int | None = None,
     authors: Sequence[str] = AUTHORS,
 ) -> dict[str, Rate]:
-    """Return a dict from names to the rates of all measures on one half of the texts.
+    """Measure a safeguard on one half of the texts; return the rates of all measures by name.
 
     ``r2r`` contains real routes; without them, plain texts from the styles collection are used.
     """

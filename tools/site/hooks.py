@@ -1,4 +1,6 @@
-"""Hooks for MkDocs, which add pages from outside ``docs/``, generated reference pages and links."""
+"""Hooks for MkDocs that add pages from outside ``docs/`` and generated reference pages, and correct
+links.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,7 @@ from mkdocs.structure.files import File, Files
 from mitigate.cli import COMMANDS
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGES = {  # maps a page of the site to a file of the checkout
+PAGES = {  # page of the site: file in the checkout
     "changelog.md": "CHANGELOG.md",
     "checkpoints.md": "checkpoints/README.md",
     "contributing.md": "CONTRIBUTING.md",
@@ -25,10 +27,11 @@ ROLE = re.compile(r":(?:attr|class|data|func|meth|mod):<code>(?:~[\w.]*\.)?")  #
 CODE = re.compile(
     r"<pre.*?</pre>|<code.*?</code>|<span class=\"doc doc-object-name.*?</span>", re.S
 )
-BREAK = re.compile(r"([_./=,:(\[]+)(?=\w)")  # where a name may break
+BREAK = re.compile(r"([_./=,:(\[]+)(?=\w)")  # characters after which a long name may be broken
 NAME = re.compile(r"(?<![&\w])[^\s<>&]{16,}")  # long names, outside tags and HTML entities
 CELL = re.compile(r"<td([^>]*)>(.*?)</td>", re.S)
-OPTION = re.compile(r"^ {0,4}(\S+(?: \S+)*)(?: {2,}(.*))?$")  # a line of a help: name and meaning
+# a line of a help text: name and meaning
+OPTION = re.compile(r"^ {0,4}(\S+(?: \S+)*)(?: {2,}(.*))?$")
 LINK = re.compile(r"(!?)\[([^\]]*)\]\((?!\w+:|#)([^)#\s]+)(#[^)\s]*)?\)")
 
 
@@ -52,19 +55,21 @@ def on_page_markdown(markdown: str, page, config, files: Files) -> str:
 
 
 def on_page_content(html: str, page, config, files: Files) -> str:
-    """Render roles of docstrings as code, and let long names and cells fit on a phone."""
+    """Render Sphinx roles in docstrings as code, and let long names and table cells fit on a
+    phone.
+    """
     html = ROLE.sub("<code>", html)
     return CELL.sub(_mark_long_cell, CODE.sub(_allow_breaks, html))
 
 
 def _mark_long_cell(cell: re.Match) -> str:
-    """Give cells with more than a few words a class, for which the style sets a minimum width."""
+    """Give long table cells a class for which the style sheet sets a minimum width."""
     text = re.sub(r"<[^>]*>", "", cell[2])
     return f'<td class="long"{cell[1]}>{cell[2]}</td>' if len(text) > 60 else cell[0]
 
 
 def _allow_breaks(code: re.Match) -> str:
-    """Let a browser break long names behind punctuation; code blocks stay unchanged."""
+    """Let a browser break long names after punctuation; code blocks stay unchanged."""
     if code[0].startswith("<pre"):
         return code[0]
     parts = re.split(r"(<[^>]*>)", code[0])
@@ -74,7 +79,9 @@ def _allow_breaks(code: re.Match) -> str:
 
 
 def _relink(text: str, source: str, page: str) -> str:
-    """Make links of ``source`` valid on ``page``; links to files without a page become text."""
+    """Make the links in ``source`` valid on ``page``; a link to a file without a page becomes plain
+    text.
+    """
     pages = {file: name for name, file in PAGES.items()}
 
     def replace(match: re.Match) -> str:
@@ -125,7 +132,7 @@ def _help(text: str) -> list[str]:
             parts += ["```bash", *(line.strip() for line in lines), "```", ""]
         elif previous.endswith("defaults:"):
             parts += ["```yaml", block, "```", ""]
-        elif re.match(r".*:\n {2,}\S", block):  # such as "options:" of argparse
+        elif re.match(r".*:\n {2,}\S", block):  # a section such as "options:" in argparse's help
             parts += [lines[0].capitalize(), "", *_option_table(lines[1:]), ""]
         elif re.match(r" {2,}\S|\S+ {2,}", block):
             parts += [*_option_table(lines), ""]
@@ -136,7 +143,9 @@ def _help(text: str) -> list[str]:
 
 
 def _option_table(lines: list[str]) -> list[str]:
-    """Return a table of names and meanings; lines that are indented further continue a meaning."""
+    """Return a table of names and meanings; a line with a larger indentation continues the meaning
+    above.
+    """
     rows: list[list[str]] = []
     for line in lines:
         match = OPTION.match(line)
@@ -149,7 +158,9 @@ def _option_table(lines: list[str]) -> list[str]:
 
 
 def configs_page() -> str:
-    """Return the page with all options of the Hydra commands, as the config files with comments."""
+    """Return the page with all options of the Hydra commands, which shows the commented config
+    files.
+    """
     parts = [
         "# Configuration",
         "",

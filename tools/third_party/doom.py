@@ -10,12 +10,13 @@ import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
 
 HEIGHT, WIDTH = 48, 64
-# metres per level of the depth buffer: 7.35 map units (measured), with 32 map units per metre
+# metres per level of the depth buffer: one level is 7.35 map units (measured), and a metre is 32
+# map units
 METRES = 7.35 / 32
 
 
 class SmallFrames(gymnasium.ObservationWrapper):
-    """Wrapper that reduces all frames to HEIGHT x WIDTH and removes the game variables."""
+    """Wrapper that shrinks all frames to HEIGHT x WIDTH and removes the game variables."""
 
     def __init__(self, env: gymnasium.Env) -> None:
         super().__init__(env)
@@ -45,6 +46,7 @@ def make_env(name: str, frame_skip: int) -> gymnasium.Env:
         frame_skip=frame_skip,
         screen_resolution="RES_160X120",
         depth_buffer_enabled=True,
-        doom_config_path=os.devnull,  # by default, this is a file in the working folder
+        # by default, ViZDoom writes a config file into the working folder
+        doom_config_path=os.devnull,
     )
     return SmallFrames(env)

@@ -46,7 +46,7 @@ def features() -> nn.Sequential:
 def make_actor() -> ProbabilisticActor:
     """Return an actor that reads "pixels" and writes "action"."""
     network = nn.Sequential(features(), nn.Linear(128, ACTIONS))
-    # this call sets the size of the lazy layer
+    # this call initialises the lazy layer with the right size
     network(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))
     return ProbabilisticActor(
         TensorDictModule(network, in_keys=["pixels"], out_keys=["logits"]),

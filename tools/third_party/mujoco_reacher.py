@@ -1,7 +1,7 @@
 """Train on MuJoCo's ``Reacher-v5`` from pixels, with continuous actions and a plain ``nn.Module``.
 
-A controller that reads the simulator's state labels the frames of the student's own rollouts
-(DAgger).
+Training uses DAgger: a controller that reads the simulator's state labels the frames of the
+student's rollouts.
 """
 
 from __future__ import annotations
@@ -22,16 +22,18 @@ from tools.third_party.ppo import WEIGHTS
 
 PATH = WEIGHTS / "mujoco_reacher.safetensors"
 LINKS = 0.1, 0.11  # metres
-STIFFNESS, DAMPING = 0.5, 0.05  # torque per radian and per radian/s (tuned by hand)
+# spring constant (torque per radian) and damping (torque per radian/s), tuned by hand
+STIFFNESS, DAMPING = 0.5, 0.05
 CAMERA = {"distance": 0.62, "elevation": -90.0, "azimuth": 90.0, "lookat": np.zeros(3)}
 ROUNDS, EPISODES, EPOCHS = 8, 15, 4
 
 
 class SpringDriven(gymnasium.ActionWrapper):
-    """Wrapper in which each joint moves by a damped spring, whose extension in radians is the
-    action.
+    """Wrapper in which a damped spring moves each joint; the action is the extension of the springs
+    in radians.
 
-    With plain torques, a policy needs the speeds of the joints, which a single frame does not show.
+    If actions were torques, a policy would need the speeds of the joints, which a single frame does
+    not show.
     """
 
     def action(self, action):
@@ -83,7 +85,7 @@ def forward(policy: nn.Module, observation: torch.Tensor) -> torch.Tensor:
 
 
 def expert(env: gymnasium.Env) -> np.ndarray:
-    """Return the action of a controller that knows the inverse kinematics."""
+    """Return the action of a controller that computes the inverse kinematics."""
     positions = env.unwrapped.data.qpos
     angles = positions[:2]
     target = positions[2:4]
@@ -99,7 +101,9 @@ def expert(env: gymnasium.Env) -> np.ndarray:
 
 
 def rollout(env: gymnasium.Env, policy: nn.Module | None, seed: int, frames: list, labels: list):
-    """Run one episode of the student, or of the controller, and record the controller's labels."""
+    """Run one episode with ``policy`` or, if it is None, with the controller; record the
+    controller's labels.
+    """
     observation, _ = env.reset(seed=seed)
     over = False
     total = 0.0

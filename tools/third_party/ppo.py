@@ -33,18 +33,20 @@ def train_ppo(
     target: float = np.inf,
     ent_coef: float = 0.01,
 ) -> None:
-    """Train a policy with PPO until its most probable actions reach a given mean return; save its
-    weights."""
+    """Train a policy with PPO until the mean return of its most probable actions reaches
+    ``target``; save its weights.
+    """
     envs = VecNormalize(make_vec_env(make, n_envs=8, seed=100_000), norm_obs=False)
     test_env = VecNormalize(
         make_vec_env(make, seed=200_000), training=False, norm_obs=False, norm_reward=False
     )
-    test_env = VecTransposeImage(test_env)  # PPO wraps its own environments in the same way
+    # PPO also applies this wrapper to its training environments
+    test_env = VecTransposeImage(test_env)
     stop = EvalCallback(
         test_env,
         callback_on_new_best=StopTrainingOnRewardThreshold(target, verbose=1),
         n_eval_episodes=20,
-        eval_freq=512,  # maximum number of PPO updates, of 8 steps each
+        eval_freq=512,  # number of steps in each training environment between two tests
     )
     model = PPO(
         policy,

@@ -1,5 +1,5 @@
-"""Harden a policy of another library with several seeds, or measure it with a guard, and compare
-it before and after on known and unseen corruptions.
+"""Harden a policy of another library with several seeds, or add a guard to it. Compare the results
+before and after on known and unseen corruptions.
 
     python -m tools.third_party.results vizdoom_basic --seeds 0 1 2
     python -m tools.third_party.results vizdoom_basic --method ppo --set w_kl=0.1
@@ -7,7 +7,7 @@ it before and after on known and unseen corruptions.
     python -m tools.third_party.results vizdoom_basic --restore checkpoints/restorer
     python -m tools.third_party.results --table docs/results/third-party/vizdoom_basic.jsonl.gz
 
-An interrupted command continues. The last form prints the tables of stored rows, which are in
+An interrupted command continues. The last command prints the tables of stored rows for
 docs/results/third-party.md.
 """
 
@@ -32,7 +32,7 @@ BEFORE, AFTER = "before", "after"
 
 
 def hardened(module: Any, options: argparse.Namespace, seed: int) -> tuple[list[Row], list[Row]]:
-    """Harden the policy; return the rows before and after on known and on unseen corruptions."""
+    """Harden the policy; return its rows before and after, on known and on unseen corruptions."""
     settings = {name: float(value) for name, value in (s.split("=", 1) for s in options.set)}
     name = "-".join([options.tune, *([] if options.method == "self_distil" else [options.method])])
     out = options.runs / "-".join([options.world, name, *options.set, f"seed{seed}"])
@@ -57,7 +57,9 @@ def hardened(module: Any, options: argparse.Namespace, seed: int) -> tuple[list[
 
 
 def guarded(module: Any, options: argparse.Namespace, seed: int) -> tuple[list[Row], list[Row]]:
-    """Measure the policy without and with a guard; return the rows as :func:`hardened`."""
+    """Evaluate the policy without and with a guard; return rows in the same form as
+    :func:`hardened`.
+    """
     guards = {"adapt": options.adapt, "restore": options.restore}
     label = "-".join(str(Path(g).name).replace(":", "-") for g in guards.values() if g)
     out = options.runs / f"{options.world}-{label}-seed{seed}"
@@ -104,7 +106,9 @@ def tables(known: list[Row], unseen: list[Row]) -> str:
 
 
 def stored_tables(file: Path) -> str:
-    """Return the tables of a file of rows; the split of unseen corruptions is ``UNSEEN``."""
+    """Return the result tables for a file of rows; rows of unseen corruptions have the split
+    ``UNSEEN``.
+    """
     stored = rows.read(file)
     known = [row for row in stored if row["split"] != UNSEEN]
     return tables(known, [row for row in stored if row["split"] == UNSEEN])

@@ -1,7 +1,7 @@
 """Parse the values of ``restore=``.
 
-A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors, or a
-user's ``module:callable`` (``callables.py``). Needs no torch.
+A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors,
+``hold`` (``hold.py``), or a user's ``module:callable`` (``callables.py``). Needs no torch.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from mitigate.core.names import name_of
 from mitigate.core.observation import DEPTH, RGB
 
 SENSORS = (RGB, DEPTH)
+HOLD = "hold"
 _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 

@@ -1,4 +1,4 @@
-"""Tests of the recurrent agent: batches of decisions equal step-by-step actions."""
+"""Tests of the recurrent agent: decisions in a batch equal decisions step by step."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ def test_recurrent_agent_is_trainable_and_seeing():
 def test_decide_equals_step_by_step_actions():
     new_agent, episode = agent(), load_episodes("val_seen")[0]
     with torch.no_grad():
-        # independent of the frames, so that both take the same route
+        # the actions must not depend on the frames, so that both rollouts take the same route
         new_agent.policy.act[-1].bias[FORWARD] = 50.0
     how = {"expert_share": 0.0, "rngs": [generator(0, "same")]}
     piece = new_agent.collect([World()], [episode], **how)
@@ -92,7 +92,7 @@ def test_collect_never_takes_the_agents_stop():
     with torch.no_grad():
         new_agent.policy.act[-1].bias[STOP] = 50.0
     piece = walked(new_agent, 1, share=0.0)
-    # if the agent's own STOP were taken, the rollout would end at once
+    # if the agent's STOP were executed, the rollout would end at once
     assert piece["lengths"][0] > 1
     assert piece["answer"][-1] == STOP  # the expert's STOP ends the rollout
 
@@ -135,7 +135,8 @@ def test_collect_weights_changes_of_action():
 
 
 def test_rgb_agent_ignores_depth(monkeypatch):
-    monkeypatch.setattr(simulator, "MAX_STEPS", 60)  # the untrained agent does not stop earlier
+    # the untrained agent does not stop before this limit
+    monkeypatch.setattr(simulator, "MAX_STEPS", 60)
     new_agent, episode = agent(RGB), load_episodes("val_seen")[1]
     clean = run_episode(new_agent, World(), episode, Corruption("clean", 0.0), 0)
     gone = run_episode(new_agent, World(), episode, Corruption("missing_data", 1.0), 0)
@@ -162,7 +163,7 @@ def test_act_all_keeps_episodes_independent():
     seen = [World().reset(episode) for episode in episodes]
     memories = [new_agent.begin(episode.instruction.text) for episode in episodes]
     actions = new_agent.act_all(seen, memories)
-    for number in (2, 0):  # each acts alone, so its batch index differs
+    for number in (2, 0):  # run alone, an episode has a different batch index
         alone = new_agent.begin(episodes[number].instruction.text)
         assert new_agent.act_all([seen[number]], [alone]) == [actions[number]]
         assert torch.equal(alone.state.hidden, memories[number].state.hidden)
@@ -174,7 +175,8 @@ def test_act_all_keeps_episodes_independent():
 def test_evaluation_of_many_episodes_gives_equal_rows(tmp_path):
     new_agent, episodes = agent(), load_episodes("val_seen")[:4]
     with torch.no_grad():
-        new_agent.policy.act[-1].bias[STOP] = 0.1  # the agent takes some steps
+        # with this bias, the agent takes some steps before it stops
+        new_agent.policy.act[-1].bias[STOP] = 0.1
     met = [CLEAN, Corruption("low_light", 0.8), Corruption("black_box", 1.0)]
     how = {"name": "test", "split": "val_seen"}
     records = evaluate(new_agent, World, episodes, met, out=tmp_path / "all.jsonl", **how)
@@ -201,7 +203,7 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_state_separates_last_and_summed_attention():
-    """Two values once used the same tensor, so that training rollouts followed a different
+    """``last`` and ``sum`` once shared a tensor, so that training rollouts followed a different
     policy."""
     new_agent = agent()
     state = State.start(new_agent.policy.read(new_agent.tokens(["go left", "go right"])))

@@ -40,7 +40,7 @@ def test_checkpoint_leaves_out_public_weights(tmp_path):
     again = agent()
     with torch.no_grad():
         for parameter in again.parameters():
-            parameter.add_(0.1)  # including shared public weights, which loading restores
+            parameter.add_(0.1)  # also changes the shared public weights, which loading restores
     checkpoint.load_weights(again, tmp_path)
     assert torch.equal(features(new_agent), features(again))
     assert torch.equal(features(new_agent), features(copy.deepcopy(new_agent)))
@@ -100,7 +100,8 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_depth_encoder_keeps_its_size():
-    """The depth encoder of the base agent detects free floor only at its size."""
+    """The depth encoder of the base agent detects free floor only at the input size that it was
+    trained with."""
     new_agent, base = agent(), TopologicalAgent(16, SMALL)
     base.load_state_dict(
         {n: w for n, w in new_agent.state_dict().items() if not n.startswith("rgb")}, strict=False

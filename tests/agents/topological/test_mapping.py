@@ -1,4 +1,5 @@
-"""Tests of the topological map on small examples: positions and merging of ghosts, and routes."""
+"""Tests of the topological map on small examples: positions of ghosts, merging of ghosts, and
+routes."""
 
 from __future__ import annotations
 
@@ -23,8 +24,8 @@ def places(graph: TopologicalMap) -> list[list[float]]:
 
 
 def corridor() -> TopologicalMap:
-    """Return a map with nodes at y = 0, 2, 4, a ghost to the right of the first and one after the
-    last."""
+    """Return a map with nodes at y = 0, 2 and 4. One ghost is to the right of the first node, and
+    one after the last node."""
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((RIGHT, 1.5), (0, 2)))
     graph.add(pose(0, 2), waypoints((0, 2)))
@@ -44,7 +45,7 @@ def test_add_places_ghosts_clockwise_from_the_heading():
 def test_add_merges_near_waypoints():
     graph = TopologicalMap()
     graph.add(pose(0, 0), waypoints((0, 2)))
-    # not joined, because it is the second node itself
+    # this waypoint is not merged, because it is the second node itself
     graph.add(pose(1, 0), waypoints((LEFT, 0.2)))
     graph.add(pose(0, 3.2), waypoints((BACK, 1)))  # 0.2 m from the first ghost
     assert places(graph) == [[0, 2.1]]
@@ -90,7 +91,8 @@ def test_route_takes_the_shorter_way():
     # at the position of the first ghost, so it is joined to node 0
     graph.add(pose(1.5, 0), waypoints((RIGHT, 2)))
     assert 0 in graph.edges[4]
-    assert np.allclose(graph.route_to_node(2), [[1.5, 3], [0, 4]])  # 4.8 m, not 5.5 m
+    # this route is 4.8 m long, the other one 5.5 m
+    assert np.allclose(graph.route_to_node(2), [[1.5, 3], [0, 4]])
     assert np.allclose(graph.route_to_node(1), [[0, 0], [0, 2]])
     assert np.allclose(graph.route(max(graph.ghosts)), [[3.5, 0]], atol=1e-6)
 
@@ -101,7 +103,7 @@ def test_decision_lists_stop_nodes_and_ghosts():
     assert output.panorama == 2 and output.nodes.tolist() == [0, 1, 2]
     assert output.geometry.shape == (1 + 3 + 2, GEOMETRY)
     assert output.travel == pytest.approx([5.5, 2.0])
-    # the panorama and view that saw each ghost
+    # for each ghost, the index of the panorama and of the view that saw it
     assert output.sightings[:, 0].tolist() == [[0, 3], [2, 0]]
     assert (output.sightings[:, 1:] == -1).all()
 

@@ -1,4 +1,4 @@
-"""Tests of the planner: scores do not depend on padding or on the order of ghosts."""
+"""Tests that the planner's scores do not depend on padding or on the order of ghosts."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def planner() -> Planner:
 
 
 def decision(moves: int) -> Decision:
-    """Return a decision after some moves, with about 3 ghosts per move."""
+    """Return the inputs of a decision after some moves; each move adds about 3 ghosts."""
     rng = np.random.default_rng(moves)
     graph, pose = TopologicalMap(), np.zeros(3)
     for _ in range(moves):
@@ -45,7 +45,8 @@ def score(planner, decisions, rows, offsets, panoramas, tokens) -> torch.Tensor:
 
 
 def split(logits: torch.Tensor, output: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:
-    """Return the scores of [stop] and of the ghosts in a row padded to ``nodes`` nodes."""
+    """Return the score of [stop] and the scores of the ghosts; ``logits`` is padded to ``nodes``
+    nodes."""
     return logits[0], logits[1 + nodes : 1 + nodes + len(output.ghosts)]
 
 

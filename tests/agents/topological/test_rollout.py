@@ -1,4 +1,5 @@
-"""Tests of imitation rollouts: the oracle's answers, scheduled sampling, and stored features."""
+"""Tests of rollouts for imitation: the oracle's answers, scheduled sampling, and stored
+features."""
 
 from __future__ import annotations
 
@@ -27,7 +28,7 @@ SIZE, SCENE = 16, "apartments/train/000000"
 
 
 class RoomWorld:
-    """An empty room whose views are noise, and in which a route is one step."""
+    """An empty room whose views are noise; every route is one step long."""
 
     rule_metres = 2.0
     done = False
@@ -92,7 +93,7 @@ def test_oracle_stops_at_the_goal():
 
 @pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
 def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
-    """A stricter success rule only delays the stop."""
+    """If success requires a smaller distance, the oracle only stops later."""
     free, _ = traces_of(1.0)
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)
@@ -111,8 +112,8 @@ def test_roll_out_ends_at_the_limit():
 
 
 def test_roll_out_ends_with_the_episode(monkeypatch):
-    """A rollout also ends in the middle of a route, because worlds reject steps after the last
-    one."""
+    """A rollout ends with the episode, even in the middle of a route, because worlds reject steps
+    after the last one."""
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)
     worlds, episodes = [ApartmentsWorld(SIZE) for _ in range(3)], load_episodes("val_seen")[:3]
     rngs = [np.random.default_rng(n) for n in range(3)]
@@ -131,7 +132,7 @@ def test_roll_out_depends_only_on_its_generator():
 
 @pytest.fixture(scope="module")
 def stored(tmp_path_factory):
-    """Return an untrained agent and its features of the first training apartment."""
+    """Return an untrained agent, and its stored features of the first training apartment."""
     agent = wanderer()
     store = Store(agent, partial(ApartmentsWorld, SIZE, 1), tmp_path_factory.mktemp("stored"))
     store.build()
@@ -220,7 +221,8 @@ def test_live_walk_requires_an_expert():
 
 
 def test_stored_folders_keep_the_class_name(tmp_path):
-    """tensordict stores the class name in the folder and looks it up when loading."""
+    """tensordict stores a class name in the folder and imports the class when it loads the
+    folder."""
     arrays = {
         "xy": torch.rand(2, 2),
         "views": torch.rand(2, VIEWS, 4).half(),

@@ -1,4 +1,4 @@
-"""Tests of the agent in closed loop: when it reads frames and stops, and that it is
+"""Tests of the agent in closed loop: when it reads frames, when it stops, and that it is
 deterministic."""
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ def simulator() -> Simulator:
 
 
 def drive(agent, simulator, number=0, change=lambda frames: frames) -> tuple[list[int], list[int]]:
-    """Run an episode; return the actions and the steps at which frames were read."""
+    """Run an episode; return the actions and the numbers of the steps at which frames were read."""
     episode = load_episodes("val_seen")[number]
     simulator.reset(episode)
     agent.reset(episode.instruction.text)
@@ -43,7 +43,7 @@ def test_act_reads_frames_only_to_decide(simulator):
     agent = wanderer()
     actions, looks = drive(agent, simulator)
     assert len(looks) == agent.decisions > 3
-    # once per decision, with motion in between
+    # frames are read once per decision, and the agent moves between decisions
     assert len(set(looks)) == len(looks) < len(actions) / 2
 
 

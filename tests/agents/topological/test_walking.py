@@ -22,7 +22,7 @@ from tests.agents.rooms import room, sure
 
 
 def walk(space, xy, heading, route) -> tuple[np.ndarray, int]:
-    """Return the final position of a controller and the number of its actions."""
+    """Follow a route with a controller; return its final position and the number of its actions."""
     controller, xy, steps = Controller(), np.array(xy, float), 0
     controller.follow([np.array(p, float) for p in route])
     while (action := controller.action(np.array([*xy, heading]))) is not None:
@@ -47,7 +47,8 @@ def test_controller_reaches_its_targets(number):
 
 def test_controller_gives_up_on_a_blocked_target():
     space = room(4, 4)
-    end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])  # the first position lies outside
+    # the first position is outside the free space
+    end, steps = walk(space, (2, 2), 0.0, [(2, 6), (1, 1)])
     assert np.hypot(*(end - (1, 1))) < 0.2 and steps < 60
 
 
@@ -75,13 +76,14 @@ def test_free_directions_gives_free_distances():
     metres = 0.25 * grid.sum(1)
     assert grid.shape == (ANGLES, 12) and set(np.unique(grid)) == {0, 1}
     assert metres[np.abs(YAWS).argmin()] <= 0.75 < 2.9 < metres[np.abs(YAWS - np.pi).argmin()]
-    assert (np.diff(grid, axis=1) <= 0).all()  # free up to some distance, and then blocked
+    # each direction is free up to some distance, and blocked beyond
+    assert (np.diff(grid, axis=1) <= 0).all()
 
 
 @pytest.mark.parametrize("quarters", [1, 2, 3])
 def test_free_directions_turns_against_the_heading(quarters):
     space, xy = room(5, 3), np.array([1.0, 1.2])
-    # shifted to the left by this offset, because all moves are to the right
+    # a turn of the agent shifts the directions in the opposite direction
     turned = free_directions(space, xy, quarters * np.pi / 2)
     assert np.array_equal(
         np.roll(free_directions(space, xy, 0.0), quarters * ANGLES // 4, 0), turned

@@ -1,4 +1,5 @@
-"""A small world for tests: cells in a row, in which FORWARD and LEFT move to either side."""
+"""A small world for tests: cells in a row, where FORWARD moves to one side and LEFT to the
+other."""
 
 from __future__ import annotations
 

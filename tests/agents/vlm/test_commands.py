@@ -49,7 +49,8 @@ def test_recipes_train_and_evaluate_a_vision_language_agent(model, recipe, monke
             f"out={tmp_path / 'a'}",
         ]
         first += ["env.size=28", "episodes=1", "conditions=[clean]", "workers=1"]
-        run(monkeypatch, evaluate, *first)  # history and LoRA are read from the folder
+        # the settings of history and LoRA are read from the folder
+        run(monkeypatch, evaluate, *first)
         with pytest.raises(SystemExit, match="needs no export: it is a PEFT folder"):
             run(monkeypatch, export_command, str(tmp_path / "run"), "name", f"--out={tmp_path}")
 

@@ -1,4 +1,4 @@
-"""Tests of the served agent, with a stand-in server that is slow, broken or wrong."""
+"""Tests of an agent behind a server; a fake server answers slowly, wrongly or not at all."""
 
 from __future__ import annotations
 
@@ -52,7 +52,7 @@ def frames_of(body: dict) -> list[np.ndarray]:
 
 
 def expert(body: dict) -> str:
-    """Return the right answer to the last frame, which shows the agent's cell and the goal."""
+    """Return the correct answer for the last frame, which shows the agent's cell and the goal."""
     frame = frames_of(body)[-1]
     cell = int((frame[10] == (40, 220, 40)).all(-1).argmax()) // 3
     goal = int((frame[0] == (220, 40, 40)).all(-1).argmax()) // 3

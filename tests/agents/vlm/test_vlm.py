@@ -36,7 +36,7 @@ FRAME = Corridor().reset(episode(2, 5))["rgb"]
 
 @pytest.fixture(scope="session")
 def folder_of(tmp_path_factory):
-    """Function that returns the folder of a model of an architecture."""
+    """A function that returns the folder with the tiny model of an architecture."""
     folder = tmp_path_factory.mktemp("vlm")
     return cache(lambda name: write_model(folder / name, name))
 
@@ -236,7 +236,8 @@ def test_decide_uses_clean_frames_for_the_teacher(model):
         seen, clean = agent.decide(decisions).logits, agent.decide(decisions, clean=True).logits
     assert seen.shape == decisions.target.shape and not torch.equal(seen, clean)
     half = len(seen) // 2
-    assert torch.equal(seen[:half], seen[half:])  # a decision does not depend on the others
+    # a decision does not depend on the other decisions of the batch
+    assert torch.equal(seen[:half], seen[half:])
     assert decisions.views[half] == [half]
 
 
@@ -347,7 +348,7 @@ def test_vision_modules_can_be_adapted(model):
 @pytest.mark.slow
 def test_answers_are_scored_with_a_template_that_writes_turns_differently(model, tmp_path):
     folder = shutil.copytree(model, tmp_path / "model")
-    file = folder / "chat_template.jinja"  # in LLaVA-OneVision, only the prompt has this line break
+    file = folder / "chat_template.jinja"  # LLaVA-OneVision has this line break only in prompts
     text = file.read_text("utf-8").replace("m['role'] }}\n", "m['role'] }} ", 1)
     file.write_text(text, "utf-8")
     assert torch.equal(build(str(folder))._answer_ids, build(model)._answer_ids)
@@ -373,7 +374,8 @@ def test_quantised_base_trains_only_lora(model, precision, tmp_path):
     pytest.importorskip("bitsandbytes", reason="needs bitsandbytes: pip install -e '.[vlm]'")
     agent = build(model, precision=precision)
     before = {n: p.data.clone() for n, p in agent.named_parameters() if p.is_floating_point()}
-    assert len(before) < len(list(agent.parameters()))  # bitsandbytes may repack the others
+    # bitsandbytes may repack the weights that are not floating-point
+    assert len(before) < len(list(agent.parameters()))
     train(agent, tmp_path, 1)
     trained = dict(agent.named_parameters())
     moved = {name for name, value in before.items() if not torch.equal(value, trained[name])}

@@ -1,7 +1,9 @@
-"""Randomly initialised vision-language models of three architectures, built without a network.
+"""Randomly initialised vision-language models of three architectures, built without internet
+access.
 
-Layer widths are multiples of 64, as bitsandbytes needs on some CPUs. The processor consists of a
-tokenizer that is trained here and an image processor of transformers that needs only Pillow.
+Layer widths are multiples of 64, because bitsandbytes requires this on some CPUs. The processor
+consists of a tokenizer that is trained here and an image processor of transformers that needs only
+Pillow.
 """
 
 from __future__ import annotations

@@ -1,5 +1,5 @@
-"""A stand-in for WMNav's environment in tests: its methods in the same order, and its
-try-except."""
+"""A fake of WMNav's environment for tests: it calls the same methods in the same order, and has the
+same try-except."""
 
 import json
 

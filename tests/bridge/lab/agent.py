@@ -1,4 +1,4 @@
-"""An agent's program on the stand-in lab that does not know mitigate. Python 3.6 to 3.13.
+"""An agent's program (Python 3.6 to 3.13) for the fake habitat-lab; it does not import mitigate.
 
 usage: agent.py OUT [--workers N] [--start METHOD] [--cameras N] [--steps N] ...
 """

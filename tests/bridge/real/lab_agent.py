@@ -1,9 +1,10 @@
-"""An agent's program on the real habitat-lab 0.3, with our simulator; it does not know mitigate.
+"""An agent's program for the real habitat-lab 0.3 and this file's simulator; it does not import
+mitigate.
 
 usage: lab_agent.py OUT EPISODES.json.gz
 
-habitat-sim is not on the package index. habitat-lab needs only its names at import, so empty
-modules replace it. Tasks, measures, sensors, dataset and Env come from habitat-lab.
+habitat-sim is not on PyPI. habitat-lab only imports names from it, so empty modules replace it.
+Tasks, measures, sensors, dataset and Env come from habitat-lab.
 """
 
 import hashlib
@@ -51,7 +52,7 @@ class Blanks(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         pass
 
 
-sys.meta_path.insert(1, Blanks())  # wrapped by the hook, if there is one
+sys.meta_path.insert(1, Blanks())  # the hook wraps this importer if the hook is loaded
 
 import habitat  # noqa: E402
 from gym import spaces  # noqa: E402

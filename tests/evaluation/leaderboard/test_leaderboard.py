@@ -1,4 +1,4 @@
-"""Tests that entries repeat the figures of their rows, also when a shipped agent is run again."""
+"""Tests that entries have the same figures as their rows, and as a new run of a shipped agent."""
 
 from __future__ import annotations
 
@@ -207,7 +207,7 @@ def test_shipped_entry_loads(path):
 
 @pytest.mark.slow
 def test_shipped_entry_matches_its_rows_and_a_rerun(tmp_path, monkeypatch):
-    """Run two episodes with the shipped weights, clean and with missing depth."""
+    """The rerun evaluates two episodes with the shipped weights, clean and with missing depth."""
     entry = load(ROOT / "docs/leaderboard/base.json")
     message = command.rows_of(entry)
     assert command.differences(entry, message) == []
@@ -342,7 +342,7 @@ def test_benchmark_hashes_networks_and_reports_unreadable_state(tmp_path, monkey
     for entry in (first, second):
         assert command.differences(entry, command.rows_of(entry)) == []
     described = Straight()
-    described.settings = {"speed": 1}  # a mapping is also accepted
+    described.settings = {"speed": 1}  # ``settings`` may be a dict instead of a method
     capsys.readouterr()
     assert mitigate.benchmark(described, **options).agents != first.agents
     assert "settings()" not in capsys.readouterr().out
@@ -358,8 +358,8 @@ class Dark(ApartmentsWorld):
 
 @pytest.mark.slow
 def test_benchmark_runs_the_script_of_the_page(tmp_path):
-    """The call is not under ``if __name__``, and the agent is defined in the script or
-    interactively."""
+    """The script defines the agent, and calls ``benchmark`` without ``if __name__ == "__main__"``.
+    It runs from a file and with ``python -c``."""
     script = (
         "import mitigate\n"
         f"{inspect.getsource(Straight)}"
@@ -427,7 +427,7 @@ def test_entry_of_rejects_an_unfinished_seed(rows):
 
 
 def test_entry_of_requires_all_rows_of_each_seed(rows):
-    """Otherwise the figures of the entry would come from other seeds than it states."""
+    """Otherwise the figures of an entry would not come from the seeds that it names."""
     second = [r | {"seed": 1, "agent": "cccccc"} for r in rows]
     assert len(entry_of(rows + second, "base", severity=0.6).agents) == 2
     clean = [r for r in second if r["corruption"] == "clean"]
@@ -453,7 +453,8 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
 
 
 def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
-    """Values that differ between processes, such as sets and objects, do not change an episode."""
+    """Values in an episode's info that differ between processes, such as objects, do not make it a
+    different episode."""
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     (episode,) = load_episodes("val_unseen")[:1]

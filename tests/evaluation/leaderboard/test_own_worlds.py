@@ -32,7 +32,8 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Corridor(gymnasium.Env):
-    """A world in which an agent succeeds if it takes action 1 once per cell, and then 0."""
+    """A world in which an agent succeeds if it takes action 1 once for each cell, and then action
+    0."""
 
     def __init__(self, cells: int = 2) -> None:
         self.cells = cells
@@ -79,7 +80,7 @@ def weight(value: float) -> nn.Linear:
 
 
 class Hidden(Holder):
-    """An agent whose weights are in an object that cannot be read."""
+    """An agent whose weights are in an object that the fingerprint cannot read."""
 
     def __init__(self, value: float) -> None:
         self.session = iter([value])
@@ -229,7 +230,7 @@ class Counting(Hidden):
 
 def test_fingerprint_ignores_changes_by_episodes(walk):
     hashes = {one["agent"] for _ in range(2) for one in walk(Counting()).agents}
-    assert len(hashes) == 1  # two new objects, neither of which has run an episode
+    assert len(hashes) == 1  # both agents were new objects, which had not run an episode
     agent = Counting()
     assert {one["agent"] for _ in range(3) for one in walk(agent).agents} == hashes
 

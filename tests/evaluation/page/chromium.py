@@ -1,5 +1,5 @@
-"""Control a headless Chromium over its debugging pipe, with NUL-ended JSON on file descriptors 3
-and 4.
+"""Control a headless Chromium over its debugging pipe: NUL-terminated JSON messages on file
+descriptors 3 and 4.
 
 The protocol: https://chromedevtools.github.io/devtools-protocol
 """
@@ -20,15 +20,17 @@ SECONDS = 20.0  # for any answer
 
 
 class Page:
-    """One page in a separate browser. ``requests`` contains the addresses that the page requested,
-    and ``errors`` the exceptions of its scripts and the violations of its policy."""
+    """A page in its own browser process. ``requests`` contains the addresses that the page
+    requested, and ``errors`` contains the exceptions of its scripts and the violations of its
+    content security policy."""
 
     def __init__(self, profile: Path) -> None:
         assert PROGRAM is not None
         self.requests: dict[str, str] = {}
         self.errors: list[str] = []
         self._number, self._text = 0, b""
-        # pipe ends (read, write) for commands to Chromium and for its messages
+        # one pipe for commands to Chromium and one for its messages; each is a pair (read end,
+        # write end)
         ours, theirs = os.pipe(), os.pipe()
         options = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
         options += [f"--user-data-dir={profile}", "--window-size=1300,1000", "--no-first-run"]
@@ -53,7 +55,7 @@ class Page:
             self.call(f"{domain}.enable")
 
     def open(self, file: Path, address: str = "") -> None:
-        """Open ``file`` with a fragment after ``#``."""
+        """Open ``file`` with the URL fragment ``address``."""
         self.requests.clear()
         self.errors.clear()
         self.call("Page.navigate", url="about:blank")

@@ -1,4 +1,5 @@
-"""Tests of the page in a browser: sorting, comparing, opening cells, and no code from rows."""
+"""Tests of the page in a browser: it sorts, compares and opens cells, and runs no code from
+rows."""
 
 from __future__ import annotations
 
@@ -25,14 +26,15 @@ def page(tmp_path_factory):
 
 
 def made_rows() -> list[dict]:
-    """Return rows in which ``base`` succeeds in 8 of 10 clean episodes and in 2 of 10 under
-    spatter, and ``hard`` in 6 of 10 in both."""
+    """Return rows of two agents. ``base`` succeeds in 8 of 10 clean episodes and in 2 of 10 under
+    spatter; the agent ``hard`` succeeds in 6 of 10 in both conditions."""
     rows = column(8, {"spatter": 2, "gaussian_noise": 7}, steps=41)
     return rows + column(6, {"spatter": 6, "gaussian_noise": 5}, name="hard", agent="ba9876543210")
 
 
 def made_walk(rows: list[dict]) -> dict:
-    """Write a page for which base runs the first episode again, clean and under spatter."""
+    """Return the data of a page on which ``base`` runs the first episode again, clean and under
+    spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -143,8 +145,8 @@ def test_cells_open_at_any_severity(page, tmp_path, severity):
 
 
 def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
-    """Seed 1 lacks the last episode, in which seed 0 succeeded, so this episode is not in the
-    grid's mean."""
+    """Seed 1 has no row of the last episode, so the mean in the grid leaves this episode out for
+    seed 0 too."""
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
     rows = first + [r for r in second if r["episode_id"] != "9"]
@@ -163,7 +165,7 @@ def test_ties_are_rounded_as_the_table_rounds_them(page, tmp_path):
     rows = cell(5, 16) + cell(3, 16, corruption="spatter", severity=0.6)
     page.open(document.write(report_of(rows), tmp_path / "page.html"))
     values = page.ask("[...document.querySelectorAll('.agents .value')].map(v => v.textContent)")
-    # rounded from 31.25, 0.15625 and 18.75
+    # the exact values are 31.25, 0.15625 and 18.75
     assert values[:3] == ["31.2", "0.16", "18.8 \u2020 1/8"]
     displayed = page.ask("[...document.querySelectorAll('[data-at]')].map(v => v.textContent)")
     assert displayed == ["31.2", "18.8"]
@@ -313,7 +315,8 @@ def test_see_links_only_walks_of_the_row(page, tmp_path, other):
     assert page.ask("document.querySelector('dialog .link')") is None
     page.open(out, "#agent=0&corruption=clean")
     seen = page.ask("document.querySelectorAll('dialog .link').length")
-    assert seen == ("severity" in other)  # clean episodes have no such entry
+    # clean episodes have no link to an episode under corruption
+    assert seen == ("severity" in other)
 
 
 def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):

@@ -1,4 +1,4 @@
-"""Tests that the page contains the numbers and episodes of the rows up to a limit."""
+"""Tests that the page contains the numbers of the rows, and their episodes up to a limit."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from tests.evaluation.straight import Straight
 
 
 def page_data(text: str) -> tuple[dict, np.ndarray]:
-    """Return the data of a page, and its episodes [cell, field, ...] as one array."""
+    """Return the JSON data of a page, and the packed data of its episodes as one flat array."""
     data = re.search(r'id="data">(.*?)</script>', text, re.S)
     packed = re.search(r'id="packed">(.*?)</script>', text, re.S)
     assert data and packed
@@ -116,7 +116,8 @@ def test_cell_is_packed_with_all_seeds_or_none(rows):
 
 
 def test_page_share_uses_common_episodes(rows):
-    """Like a PRS, this is the retained fraction of the measured success."""
+    """Like a PRS, the displayed share is the retained fraction of the success; only episodes of
+    both conditions count."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
     fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]
@@ -166,7 +167,7 @@ def test_page_escapes_texts_and_names_no_address(rows):
     assert len(re.findall(r"<script", text)) == 3 and len(re.findall(r"</script", text)) == 3
     assert "<!--" not in text and page_data(text)[0]["sections"][0]["columns"][0]["label"] == evil
     addresses = set(re.findall(r"https?://[^\"'\s)]+", text))
-    # a name that must not be loaded as an address
+    # the only address is the XML namespace, which no browser loads
     assert addresses == {"http://www.w3.org/2000/svg"}
 
 
@@ -180,14 +181,14 @@ def test_choose_alternates_outcomes_and_corruptions():
         for episode, won in zip("abcd", wins, strict=True)
     ]
     chosen = choose(output, ["base", "hard"], 9)
-    # outcomes in the order of KINDS
+    # episodes are sorted by their outcome, in the order of KINDS
     assert [episode for episode, _ in chosen] == ["b", "a", "d", "c"]
     assert {met.name for _, met in chosen} == {"spatter", "flare"} and len(KINDS) == 4
     assert choose(output, ["base", "hard"], 2) == chosen[:2]
 
 
 def walked_rows(agents: dict, world: ApartmentsWorld, episode: Episode) -> list[dict]:
-    """Return clean and low-light rows of agents, by their hashes."""
+    """Return clean and low-light rows of the agents with these hashes."""
     output = []
     for name, agent in agents.items():
         for met in (Corruption("clean", 0.0), Corruption("low_light", 0.6)):
@@ -202,7 +203,7 @@ def test_walk_again_compares_with_the_row():
     world, (episode,) = ApartmentsWorld(16), load_episodes("val_seen")[:1]
     agents = {"base": Straight(1), "hard": Straight(3)}
     records = walked_rows(agents, world, episode)
-    records[-1]["steps"] += 1  # a row that differs from the new result
+    records[-1]["steps"] += 1  # this row now differs from the result of the new run
     (drawn,) = walk_again(agents, world, [episode], records, most=3, seed=0)
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True, False]
     assert drawn["picture"].startswith("data:image/png;base64,")

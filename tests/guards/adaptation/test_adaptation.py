@@ -1,4 +1,5 @@
-"""Test-time adaptation: what changes during an episode, and that nothing is left behind."""
+"""Tests of test-time adaptation: what changes during an episode, and that all changes are undone
+after it."""
 
 import json
 
@@ -27,7 +28,7 @@ EPISODES = seeded_episodes(range(6))
 
 
 class Normalised(nn.Module):
-    """A network with two kinds of normalisation."""
+    """A network with BatchNorm and LayerNorm."""
 
     def __init__(self):
         super().__init__()
@@ -63,7 +64,7 @@ def guard_of(kind, agent, **options):
 
 
 def answers(agent, guard, episodes, conditions=(DARK,)):
-    """Return the logits of every decision of some episodes."""
+    """Run some episodes and return the logits of every decision."""
     outputs = []
     handle = agent.network.register_forward_hook(
         lambda *call: None if torch.is_grad_enabled() else outputs.append(call[2].clone())

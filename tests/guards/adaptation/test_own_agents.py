@@ -1,4 +1,4 @@
-"""Test-time adaptation of the agents of this project."""
+"""Tests of test-time adaptation of this project's agents."""
 
 from __future__ import annotations
 

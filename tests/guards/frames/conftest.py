@@ -13,7 +13,7 @@ from mitigate.worlds.apartments.world import ApartmentsWorld
 
 @pytest.fixture(scope="session")
 def panorama() -> dict[str, np.ndarray]:
-    """A clean observation with 12 views of 64 pixels, from a layout of val_seen."""
+    """A clean observation from a val_seen apartment, with 12 views of 64 x 64 pixels."""
     world = ApartmentsWorld(64)
     world.enter("apartments/val_seen/100000")
     seen, _ = world.put(world.point(generator(0, "place")), 0.3, views=None, rgb=True)
@@ -28,7 +28,7 @@ def untrained() -> Restorer:
 
 
 def opened(restorer: Restorer, threshold: float = -1e9) -> Restorer:
-    """Return ``restorer`` with these thresholds."""
+    """Set all thresholds of ``restorer`` to this value, and return it."""
     for net in restorer.parts().values():
         net.threshold.fill_(threshold)
     return restorer

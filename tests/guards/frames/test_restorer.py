@@ -1,4 +1,5 @@
-"""Tests that clean frames are unchanged, and that others are corrected and filled."""
+"""Tests that clean frames are unchanged, and that other frames are corrected and their holes
+filled."""
 
 from __future__ import annotations
 
@@ -66,7 +67,8 @@ def wall(metres: float, hole: bool = False) -> np.ndarray:
 @pytest.mark.parametrize("metres", [9.0, 9.9, 11.0, 20.0])
 @pytest.mark.parametrize("hole", [False, True])
 def test_far_wall_gets_no_invented_obstacle(metres, hole):
-    """The shipped network, trained in apartments, would predict a wall at 1.2 m."""
+    """Without the gate, the shipped network, which was trained in apartments, would predict a wall
+    at 1.2 m."""
     frame = wall(metres, hole)
     assert load_restorer(SHIPPED).restore(DEPTH, frame) is frame
 
@@ -78,7 +80,7 @@ def test_near_wall_with_a_hole_is_filled():
 
 def test_depth_mostly_out_of_range_is_kept_with_a_warning(untrained):
     frame = wall(5.0)
-    frame[:9] = 12.0  # 9.4 % of the frame
+    frame[:9] = 12.0  # 9.4 % of the frame, which is not enough for a warning
     assert untrained.restore(DEPTH, frame).max() <= 10
     frame[:10] = 12.0
     with pytest.warns(UserWarning, match="farther than 10 m"):
@@ -275,7 +277,8 @@ def test_damaged_folder_is_rejected(untrained, tmp_path, change, words):
     change(tmp_path)
     with pytest.raises((ValueError, FileNotFoundError), match=words) as error:
         load_restorer(tmp_path)
-    assert "delete" not in str(error.value)  # the folder must contain every file
+    # the message must not advise deleting a file, because the folder needs all files
+    assert "delete" not in str(error.value)
 
 
 # shipped weights ---------------------------------------------------------------------------------
@@ -376,8 +379,8 @@ def test_report_corrupts_depth_up_to_the_world_range(panorama):
 
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
 def test_report_without_fitting_corruption_has_no_picture(tmp_path, panorama, met):
-    """This happens after training with suite=clean, or with only RGB corruptions for a depth
-    restorer."""
+    """No corruption fits after a training run with suite=clean, or with only RGB corruptions for a
+    depth restorer."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
     report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")
     assert [path.name for path in tmp_path.iterdir()] == ["restoration.md"]

@@ -1,4 +1,4 @@
-"""Tests of names, folders, labels and content hashes of safeguards."""
+"""Tests of the names, folders, labels and content hashes of safeguards."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of an endpoint safeguard with a local server that is correct, slow or broken."""
+"""Tests of a safeguard that calls an endpoint; the local server is correct, slow or broken."""
 
 from __future__ import annotations
 
@@ -28,8 +28,9 @@ class Server(ThreadingHTTPServer):
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.replies, self.requests = [], []
-        self.drops, self.pause = 1 << 30, 0.0  # bytes per piece, and seconds before each piece
-        self.headers = 0  # header bytes that are sent slowly before the first piece
+        # the server sends its answer in pieces: bytes per piece, and seconds before each piece
+        self.drops, self.pause = 1 << 30, 0.0
+        self.headers = 0  # number of header bytes that are sent slowly before the first piece
         self.url = f"http://127.0.0.1:{self.server_port}/v1"
 
 
@@ -201,7 +202,8 @@ def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
 
 
 def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
-    """A socket with a full queue never accepts, so each such address would use up the timeout."""
+    """An address whose connection queue is full never accepts, so each such address would use up
+    the timeout."""
     with socket.socket() as dead:
         dead.bind(("127.0.0.1", 0))
         dead.listen(0)
@@ -327,7 +329,7 @@ def test_cache_survives_flipped_bytes(server, tmp_path):
 
 @contextmanager
 def dead_address():
-    """Yield the address of a socket whose queue is full, so that it never accepts."""
+    """Yield the address of a socket whose connection queue is full, so that it never accepts."""
     with socket.socket() as dead, ExitStack() as stack:
         dead.bind(("127.0.0.1", 0))
         dead.listen(0)

@@ -1,4 +1,4 @@
-"""Tests of training, saving and loading a classifier, and of learning a new mechanism."""
+"""Tests of training, saving and loading a classifier, and of learning a new attack mechanism."""
 
 from __future__ import annotations
 
@@ -26,7 +26,8 @@ ATTACKS = [
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory):
-    """Write a few lines of every text collection, and one attack that resembles no other line."""
+    """Write a few lines to every text collection, including one attack of a kind that no other line
+    contains."""
     folder = tmp_path_factory.mktemp("data")
     source = ROOT / "tools/safeguard/data"
     for part in ("banks", "styles"):

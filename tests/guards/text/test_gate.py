@@ -52,7 +52,7 @@ def test_rewrite_accepts_empty_answer_only_without_facts():
 
 
 def test_rewrite_refused_catches_lies():
-    """The hand-written rewrites each change one fact."""
+    """Each hand-written rewrite changes one fact."""
     with open(ROOT / "tools/safeguard/data/banks/lies.jsonl", encoding="utf-8") as file:
         lies = [json.loads(line) for line in file]
     caught = [bool(rewrite_refused(lie["true"], lie["lie"])) for lie in lies]

@@ -64,7 +64,7 @@ def test_canonicalise_removes_attacks_of_known_mechanisms(safeguard, attack, pla
 
 
 def test_canonicalise_removes_most_fresh_attacks(safeguard):
-    """The bound is below the measured fraction, on the half of the texts for choosing settings."""
+    """The bound is below the measured fraction. The test uses the half "choose" of the texts."""
     plain = [line["plain"] for line in bank("styles", "choose")]
     good = [
         is_removed(line["text"], route, value) and not is_lost(route, value)
@@ -177,7 +177,7 @@ def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
     filled = safeguard.canonicalise("Turn left [MASK] walk past [MASK] bed.").text
     assert not rules.MASK.search(filled) and facts(filled).landmarks == ("bed",)
     hidden = "Turn [MASK] at the sofa, then stop."
-    # no function word gives the direction of a turn
+    # the masked word is a direction, which no function word can replace
     assert safeguard.canonicalise(hidden).text == hidden
 
 

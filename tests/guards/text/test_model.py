@@ -1,4 +1,5 @@
-"""Tests of the language model: trained and masked tokens, saved weights, and errors."""
+"""Tests of the language model: which tokens are trained and which are masked, saved weights, and
+errors."""
 
 from __future__ import annotations
 

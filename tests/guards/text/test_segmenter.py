@@ -1,4 +1,4 @@
-"""Tests of the network that finds the span of an attack, and of its training texts."""
+"""Tests of the network that finds the attack span in a text, and of its training texts."""
 
 from __future__ import annotations
 

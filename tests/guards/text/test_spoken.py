@@ -1,4 +1,5 @@
-"""Tests of hand-written texts by style: which are used for training, and which for figures."""
+"""Tests of hand-written texts in different styles: which are used for training, and which for
+reported figures."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of the check with which CI fails if training with fewer instructions is much slower."""
+"""Tests of the CI check that fails if training with fewer processor instructions is much slower."""
 
 from __future__ import annotations
 
@@ -15,7 +15,8 @@ USUAL = {"perception": (9.0, 0.2, 0.25), "imitation": (20.0, 1.0, 1.5)}
 
 
 def make(folder: Path, costs: dict[str, tuple[float, ...]]) -> Path:
-    """Create a run folder whose stages logged these CPU seconds per step, as a Journal does."""
+    """Create a run folder in which each stage has logged these CPU seconds per step with a
+    Journal."""
     for stage, seconds in costs.items():
         clock = accumulate((5.0, *seconds))
         with (

@@ -35,12 +35,12 @@ def test_camera_labels_describe_columns_and_directions():
     wide = ApartmentsWorld()
     wide.reset(EPISODE)
     around = wide.truth()["free"]
-    left, right = around[110], around[19]  # 45 degrees to each side
+    left, right = around[110], around[19]  # the directions 45 degrees to each side
     assert np.array_equal(truth["free"][0], left) and np.array_equal(truth["free"][-1], right)
 
 
 def test_furniture_on_the_left_is_in_left_columns():
-    """After a right turn, furniture moves to columns farther left."""
+    """When the agent turns right, furniture moves to columns farther left."""
     world = ApartmentsWorld(views=1)
     world.enter("apartments/train/000003")
     rng = np.random.default_rng(0)

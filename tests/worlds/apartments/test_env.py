@@ -1,4 +1,5 @@
-"""Tests of the torchrl environment with the corruption transform: specs, rewards and pixels."""
+"""Tests of the apartments as a torchrl environment with the corruption transform: specs, rewards
+and pixels."""
 
 from __future__ import annotations
 
@@ -24,12 +25,13 @@ def episodes():
 
 
 def actions_for(name: str, count: int) -> list[int]:
-    """Return random actions keyed by the run of an episode; about every tenth is STOP."""
+    """Return random actions; the run of an episode is the seed, and about every tenth action is
+    STOP."""
     return [int(a) for a in generator("walk", name).choice(4, count, p=[0.1, 0.5, 0.2, 0.2])]
 
 
 def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int], torch.Tensor]:
-    """Step through several episodes, and return rgb and depth by (episode, frame)."""
+    """Step through several episodes, and return RGB and depth by (episode, frame number)."""
     seen = {}
 
     def note(data) -> None:
@@ -76,7 +78,8 @@ def test_env_repeats_the_episodes_of_a_file():
     assert [first["episode"], env.reset()["episode"]] == [e.episode_id for e in expected[:2]]
     env = ApartmentsEnv(expected[:2], size=SIZE)
     names = [env.reset()["episode"] for _ in range(4)]
-    assert names[2:] == [f"{name}@1" for name in names[:2]]  # a new run of the same episode
+    # each name with "@1" is a second run of the same episode
+    assert names[2:] == [f"{name}@1" for name in names[:2]]
 
 
 def test_env_rewards_the_expert_at_stop(episodes):

@@ -27,7 +27,7 @@ def pose(apartment: Apartment, number: int) -> tuple[float, float, float]:
 
 
 def rays(heading: float, view: int) -> np.ndarray:
-    """Return the directions of pixel centres, 1 m along the optical axis, as [S * S, 3]."""
+    """Return the vectors [S * S, 3] from the camera to the pixel centres at a depth of 1 m."""
     row, column = np.mgrid[0:SIZE, 0:SIZE]
     up, right = 1 - (2 * row + 1) / SIZE, (2 * column + 1) / SIZE - 1
     yaw = heading - np.radians(30 * view)
@@ -55,7 +55,7 @@ def cast(corners: np.ndarray, eye: np.ndarray, directions: np.ndarray) -> tuple[
 
 
 def inner(hit: np.ndarray) -> np.ndarray:
-    """Return the pixels whose 8 neighbours show the same face."""
+    """Return a mask of the pixels whose 8 neighbours show the same face."""
     grid = hit.reshape(SIZE, SIZE)
     same = np.zeros_like(grid, bool)
     neighbours = [np.roll(grid, (i, j), (0, 1)) for i in (-1, 0, 1) for j in (-1, 0, 1)]
@@ -74,7 +74,8 @@ def test_depth_and_ids_equal_ray_casting(renderer, seed):
         drawn, seen = ids[view].ravel(), depth[view].ravel()
         same = drawn == hit
         assert np.abs(seen - metres)[same].max() < 1e-5
-        # an edge is drawn to the nearest pixel, and distant faces 1 cm apart may overlap
+        # the renderer rounds edges to the nearest pixel, and may confuse distant faces that are 1
+        # cm apart
         assert same.mean() > 0.8
         assert same[inner(hit)].mean() > 0.98
 
@@ -107,7 +108,8 @@ def test_view_k_faces_30_k_degrees_right(renderer):
     x, y, heading = pose(apartment, 0)
     rgb, depth, ids = renderer.render(x, y, heading)
     for k in (1, 3, 8):
-        turned = renderer.render(x, y, heading - np.radians(30 * k))  # clockwise means to the right
+        # this turns clockwise, which is to the right
+        turned = renderer.render(x, y, heading - np.radians(30 * k))
         for before, after in zip((rgb, depth, ids), turned, strict=True):
             assert np.mean(np.roll(before, -k, axis=0) == after) > 0.99
 
@@ -128,7 +130,7 @@ def test_views_overlap_by_30_degrees(renderer):
 
 
 def test_first_view_faces_the_heading(renderer):
-    """The depth in the middle of view 0 equals the distance of the wall ahead."""
+    """The depth in the middle of view 0 equals the distance to the wall ahead."""
     apartment = Apartment(200_001)
     renderer.load(apartment)
     for number in range(6):
@@ -151,7 +153,8 @@ def test_panorama_is_reproducible_after_other_scenes():
     first = renderer.render(*target)
     for again in zip(first, renderer.render(*target), strict=True):
         assert np.array_equal(*again)
-    for other in apartments[1:]:  # more scenes than the cache holds, so the first is built again
+    # there are more scenes than the cache holds, so the first scene is built again
+    for other in apartments[1:]:
         renderer.load(other)
         assert not np.array_equal(renderer.render(*pose(other, 0))[0], first[0])
     renderer.load(apartments[0])

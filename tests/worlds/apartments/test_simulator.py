@@ -48,7 +48,8 @@ def test_expert_solves_ten_episodes(episodes):
     rows = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert [row["success"] for row in rows] == [1] * 10
     assert min(row["spl"] for row in rows) > 0.8
-    assert [row["decisions"] for row in rows] == [0] * 10  # the expert reads no frame
+    # no decisions are counted, because the expert reads no frame
+    assert [row["decisions"] for row in rows] == [0] * 10
 
 
 def test_geodesic_distance_is_at_least_euclidean():
@@ -84,13 +85,13 @@ def test_forward_moves_or_slides():
     room = box(40, 40)
     xy, hit = room.move(np.array([2.0, 2.0]), 0.0, 0.25)
     assert np.allclose(xy, [2.0, 2.25]) and not hit
-    # counter-clockwise means to the left
+    # a positive angle is counter-clockwise, which is to the left
     xy, hit = room.move(np.array([2.0, 2.0]), np.pi / 2, 0.25)
     assert np.allclose(xy, [1.75, 2.0]) and not hit
     for _ in range(12):
         xy, hit = room.move(xy, 0.0, 0.25)
     assert hit and free_at(room, xy) and xy[0] == pytest.approx(1.75)
-    # a motion against the wall at 45 degrees slides along it
+    # a motion that hits the wall at 45 degrees slides along the wall
     slid, hit = room.move(xy, -np.pi / 4, 0.25)
     assert hit and slid[0] > xy[0] + 0.1 and abs(slid[1] - xy[1]) < CELL
 
@@ -184,8 +185,8 @@ def test_reset_explains_an_unknown_scene(episodes, scene, words):
 
 
 def test_reset_rejects_positions_outside_free_space(episodes):
-    """Otherwise a sign error in z, or positions of a different scene, would lower the success
-    rate."""
+    """Without this check, a sign error in z or positions of a different scene would only lower the
+    success rate."""
     first = episodes[0]
     x, y, z = first.start_position
     for wrong in (

@@ -1,4 +1,5 @@
-"""Tests that splits have no common layout, palette or template, and that lists can be generated."""
+"""Tests that splits have no common layout, palette or template, and that episode lists can be
+generated again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,5 @@
-"""Tests of bags as robots record them: camera shapes, encodings, topics, times and damage."""
+"""Tests of bags as robots record them: camera shapes, encodings, topics, times and damaged
+files."""
 
 from __future__ import annotations
 
@@ -76,10 +77,10 @@ def write(
 
     Args:
         path: Path of the bag.
-        images: Fields of one image message per second, by topic.
+        images: For each topic, the fields of its image messages, one message per second.
         infos: Topics of CameraInfo.
         poses: Topics of odometry.
-        shifts: Seconds by which the header times of a topic are late.
+        shifts: Seconds that are added to the header times of a topic.
         focal: Focal length in pixels.
     """
     connections: dict[str, object] = {}

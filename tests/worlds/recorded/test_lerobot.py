@@ -1,4 +1,4 @@
-"""Episodes of LeRobot datasets as recorded drives."""
+"""Tests of reading episodes of LeRobot datasets as recorded drives."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of reading recorded drives: folders and bags, choice of steps, and square views."""
+"""Tests of reading recorded drives: folders and bags, the choice of steps, and square views."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ SIZE = 32
 
 
 def steps(poses: list[tuple[float, float, float]]) -> list[dict[str, np.ndarray]]:
-    """Return random frames at these poses, which differ from step to step."""
+    """Return one step per pose, each with different random frames."""
     rng = np.random.default_rng(0)
     return [
         {
@@ -146,7 +146,8 @@ def test_bag_names_a_damaged_file(tmp_path, form):
         file.write_bytes(whole[:cut])
         with pytest.raises(ValueError, match="robot"):
             read(bag)
-    for _ in range(10):  # flipped bytes may still be readable; an error must name the bag
+    # a bag with flipped bytes may still be readable; if not, the error must name it
+    for _ in range(10):
         damaged = bytearray(whole)
         for at in rng.integers(0, len(whole), 30):
             damaged[at] ^= 0xFF
@@ -158,7 +159,8 @@ def test_bag_names_a_damaged_file(tmp_path, form):
 
 
 def tum(folder: Path, frames: list[dict[str, np.ndarray]], hertz: float = 10.0) -> Path:
-    """Write a drive in the layout of TUM RGB-D, at ten times the rate of an agent's steps."""
+    """Write these frames as a drive in the layout of TUM RGB-D, with ``hertz`` frames per
+    second."""
     lists = {RGB: [], DEPTH: []}
     poses = []
     for number, step in enumerate(frames):
@@ -170,7 +172,7 @@ def tum(folder: Path, frames: list[dict[str, np.ndarray]], hertz: float = 10.0) 
             cv2.imwrite(str(folder / kind / f"{time:.4f}.png"), picture)
             lists[kind].append(f"{time + (kind == DEPTH) * 0.01:.4f} {kind}/{time:.4f}.png")
         x, y, heading = step[POSE]
-        # the optical axis (z) points forward, x to the right, y down
+        # in camera coordinates, z (the optical axis) points forward, x to the right and y down
         ahead = np.array([-math.sin(heading), math.cos(heading), 0])
         right = np.array([math.cos(heading), math.sin(heading), 0])
         turned = np.stack([right, [0, 0, -1], ahead], 1)
@@ -185,7 +187,7 @@ def tum(folder: Path, frames: list[dict[str, np.ndarray]], hertz: float = 10.0) 
 
 
 def test_load_keeps_frames_one_step_apart(tmp_path):
-    slow = [(0.0, 0.025 * i, 0.0) for i in range(41)]  # one metre in 41 frames
+    slow = [(0.0, 0.025 * i, 0.0) for i in range(41)]  # the robot drives one metre in 41 frames
     recording = read(tum(tmp_path / "lab", steps(slow)), hfov=90.0)
     assert len(recording.times) == 5
     assert np.allclose(np.diff(recording.poses[:, 1]), 0.25, atol=0.01)
@@ -195,14 +197,14 @@ def test_load_keeps_frames_one_step_apart(tmp_path):
 def turn_poses(folder: Path, quaternion: str, numbers: Sequence[int]) -> None:
     """Replace the rotation of some poses in a TUM folder."""
     lines = (folder / "groundtruth.txt").read_text().splitlines()
-    for n in numbers:  # the first line is a comment
+    for n in numbers:  # line 0 is a comment
         lines[1 + n] = " ".join([*lines[1 + n].split()[:4], quaternion])
     (folder / "groundtruth.txt").write_text("\n".join(lines))
 
 
 def test_tum_folder_rejects_poses_of_a_robot_frame(tmp_path):
     folder = tum(tmp_path / "lab", steps([(0.0, 0.25 * i, 0.0) for i in range(8)]))
-    # a rotation about the vertical, for a frame with x forward
+    # a rotation about the vertical axis in a robot frame, whose x axis points forward
     turn_poses(folder, "0 0 0.38 0.92", range(8))
     with pytest.raises(ValueError, match=r"8 of 8 poses face up or down.*z ahead"):
         read(folder)
@@ -239,12 +241,14 @@ def recorded(tmp_path):
         for i, p in enumerate(path_poses())
     ]
     (episode / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    copytree(episode, episode.with_name(".18.4711.tmp"))  # left over from a run that was killed
+    # a temporary folder that a killed run has left behind
+    copytree(episode, episode.with_name(".18.4711.tmp"))
     return tmp_path / "recorded"
 
 
 def change_steps(recorded: Path, change: Callable[[int, dict], object]) -> None:
-    """Call ``change`` with the number and the content of each line of the episode."""
+    """Change each line of an episode file: call ``change`` with the line's number and content, and
+    write the result."""
     file = recorded / "kitchen" / "17" / "steps.jsonl"
     lines = [json.loads(line) for line in file.read_text().splitlines()]
     for number, line in enumerate(lines):
@@ -298,7 +302,8 @@ def test_open_recording_rejects_other_encodings(folder):
 
 def test_load_warns_about_headings_off_the_path(folder):
     way = [(0.0, 0.25 * n, 0.0) for n in range(6)]
-    for heading, strange in ((0.0, False), (math.pi / 2, True)):  # yaw from +x, as in ROS
+    # yaw is measured from +x, as in ROS
+    for heading, strange in ((0.0, False), (math.pi / 2, True)):
         rows = "".join(f"{x},{y},{heading}\n" for x, y, _ in way)
         (folder / "poses.csv").write_text(rows)
         with warnings.catch_warnings(record=True) as caught:
@@ -320,7 +325,8 @@ def test_square_view_keeps_a_matching_frame():
 
 def test_square_view_pads_a_narrow_camera_with_black():
     frame = np.full((48, 64, 3), 200, np.uint8)
-    lens = Lens(RGB, hfov=math.degrees(2 * math.atan(0.5)))  # half as wide as the view
+    # the camera is half as wide as the square view
+    lens = Lens(RGB, hfov=math.degrees(2 * math.atan(0.5)))
     view = square_view(frame, lens, 64)[..., 0]
     assert (view[:, :15] == 0).all() and (view[:, 49:] == 0).all()
     assert (view[22:42, 18:46] == 200).all()

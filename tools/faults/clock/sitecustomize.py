@@ -1,7 +1,8 @@
-"""Make the clock jump about once per second in a Python whose PYTHONPATH contains this folder.
+"""Make the clock jump about once per second in each Python process whose PYTHONPATH contains this
+folder.
 
-``time.time`` jumps by up to a day in either direction. ``time.monotonic`` does not jump, as when an
-administrator or NTP sets a machine's clock.
+``time.time`` jumps by up to a day in either direction, and ``time.monotonic`` does not jump. The
+same happens when an administrator or NTP sets a machine's clock.
 """
 
 import random

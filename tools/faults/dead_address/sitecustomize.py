@@ -1,5 +1,5 @@
-"""Put a dead address before each address of a host, in a Python whose PYTHONPATH contains this
-folder.
+"""Give every host an additional first address that never answers. This affects each Python process
+whose PYTHONPATH contains this folder.
 
 ``DEAD_PORT`` names a port of this machine whose queue of connections is full, so that a connection
 is neither accepted nor rejected.

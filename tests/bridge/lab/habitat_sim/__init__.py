@@ -1,4 +1,4 @@
-"""A stand-in for habitat-sim, for tests of programs without habitat-lab."""
+"""A fake habitat-sim for tests of programs that do not use habitat-lab."""
 
 from habitat_sim.simulator import Simulator
 

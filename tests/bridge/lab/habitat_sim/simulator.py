@@ -1,4 +1,4 @@
-"""A simulator with two agents, where one acts and the other shows the goal."""
+"""A simulator with two agents: one acts, and the camera of the other one shows the goal."""
 
 import enum
 

@@ -1,4 +1,4 @@
-"""A task with the words of the episode, a goal picture, and a success measure."""
+"""A task with the episode's instruction, a goal picture, and a success measure."""
 
 from habitat.core.simulator import Sensor, SensorSuite, SensorTypes
 

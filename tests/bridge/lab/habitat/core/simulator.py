@@ -1,4 +1,4 @@
-"""Sensors, and a simulator of an agent on an infinite plane."""
+"""Sensors, and a simulator with an agent on an infinite plane."""
 
 import enum
 import math
@@ -11,7 +11,7 @@ class SensorTypes(enum.Enum):
 
 
 class Config:
-    """Upper-case options, as in habitat-lab before 0.2.3."""
+    """A config with upper-case option names, as in habitat-lab before 0.2.3."""
 
     def __init__(self, **options):
         self.__dict__.update(options)
@@ -41,7 +41,8 @@ class AgentState:
 
 
 class Simulator:
-    """Cameras: 1, or 12 that turn left by 30 degrees each; RGB 32 x 32, depth 24 x 24 of 0-10 m."""
+    """A simulator with one camera, or with 12 cameras 30 degrees apart; RGB is 32 x 32, depth is 24
+    x 24 from 0 to 10 m."""
 
     def __init__(self, cameras=1):
         self.sensor_suite = SensorSuite(list(self._sensors(cameras)))
@@ -69,7 +70,7 @@ class Simulator:
         wave = 0.5 + 0.4 * np.sin(6 * columns + yaw + x) * np.cos(5 * rows + z)
         if sensor.sensor_type is SensorTypes.COLOR:
             shades = np.stack([wave, wave**2, 1 - wave, wave], -1)
-            # as in habitat-lab, a view instead of a copy
+            # like habitat-lab, this returns a view of the array instead of a copy
             return (255 * shades).astype(np.uint8)[:, :, :3]
         return wave[:, :, None].astype(np.float32)
 
