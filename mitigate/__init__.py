@@ -49,7 +49,7 @@ _MODULES = {
 
 
 def __getattr__(name: str) -> Any:
-    """Import a name of ``__all__`` on first use, because this may import torch."""
+    """Import a name of ``__all__`` on first use, because its module may import torch."""
     if name in _MODULES:
         try:
             return vars(import_module(_MODULES[name]))[name]

@@ -1,4 +1,4 @@
-"""``python -m mitigate``: the command ``mitigate``."""
+"""Run the command ``mitigate`` when Python is started with ``python -m mitigate``."""
 
 from mitigate.cli import main
 

@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Harden an image encoder in your own training loop
 #
-# This tutorial puts zero-initialised adapters into a frozen encoder and trains them to return the clean features of
-# corrupted frames. No label, action or environment is needed. It takes about 20 seconds on a CPU.
+# This tutorial puts zero-initialised adapters into a frozen encoder. It trains the adapters so that
+# the features of a corrupted frame equal those of the clean frame. No label, action or environment
+# is needed. The tutorial takes about 20 seconds on a CPU.
 
 # %%
 import torch
@@ -62,7 +63,8 @@ def batch(step, size=8):
 # %% [markdown]
 # ## Adapters
 #
-# After insertion the outputs are bit-identical, because the last layer of each adapter is zero.
+# Inserting the adapters does not change the outputs of the encoder by a single bit, because the
+# last layer of each adapter is zero.
 
 # %%
 encoder = make_encoder()
@@ -97,7 +99,8 @@ print(
 # %% [markdown]
 # ## Save and load
 #
-# The folder holds safetensors and JSON. It loads into an encoder with the same weights only.
+# The folder holds safetensors and JSON. It can only be loaded into an encoder with the same
+# weights.
 
 # %%
 save_adapters(encoder, "runs/my-adapters")

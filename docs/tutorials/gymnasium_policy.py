@@ -1,8 +1,9 @@
 # %% [markdown]
 # # Measure and harden a policy in a gymnasium environment
 #
-# This tutorial wraps a gymnasium environment as a world, measures a policy of another library (a torchrl actor)
-# under three corruptions, and makes it robust. It takes about a minute on a CPU.
+# This tutorial wraps a gymnasium environment as a world. It measures a policy of another library (a
+# torchrl actor) under three corruptions, and then makes the policy robust. The tutorial takes about
+# a minute on a CPU.
 #
 # The environment is a corridor. Action 1 drives half a metre forward, action 0 stops. The episode succeeds if the
 # robot stops within one metre of the wall.
@@ -56,8 +57,8 @@ class Corridor(gymnasium.Env):
 # %% [markdown]
 # ## The policy
 #
-# The network is a torchrl `ConvNet` on depth. A short supervised training makes it predict whether the wall is
-# within one metre. Replace it with your own trained policy.
+# The network is a torchrl `ConvNet` on depth. A short supervised training teaches the network to
+# predict whether the wall is within one metre. Replace the network with your own trained policy.
 
 
 # %%
@@ -93,7 +94,7 @@ print(f"training loss {loss.item():.3f}")
 # ## The benchmark
 #
 # The printed entry shows the success rate per condition and PRS. Missing depth reads as zero, so the policy stops
-# too early. The rows are in `runs/corridor`; the same call continues a run that was interrupted.
+# too early. The rows are in `runs/corridor`. If a run was interrupted, the same call continues it.
 
 
 # %%
@@ -111,8 +112,9 @@ if __name__ == "__main__":
 # %% [markdown]
 # ## Hardening
 #
-# The actor teaches a copy of itself, which sees the same depth corrupted. Neither an expert nor a reward is needed.
-# The report compares both on the same episodes. 300 steps are enough here; the default is 1,500.
+# The actor teaches a copy of itself; the copy sees corrupted versions of the same depth frames.
+# Neither an expert nor a reward is needed. The report compares the actor before and after hardening
+# on the same episodes. In this tutorial, 300 training steps are enough; the default is 1,500.
 
 # %%
 if __name__ == "__main__":
@@ -127,4 +129,4 @@ if __name__ == "__main__":
         out="runs/corridor-hardened",
     )
     print(result)
-    hardened_actor = result.policy  # a TensorDictModule, as before hardening
+    hardened_actor = result.policy  # still a TensorDictModule

@@ -1,4 +1,4 @@
-"""A small program on the API of habitat-lab, as an example for ``mitigate run``.
+"""A small program that uses the API of habitat-lab, as an example for ``mitigate run``.
 
     mitigate run "conditions=[low_light_noise,missing_data]" -- python docs/tutorials/habitat_agent.py
 
@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-# with habitat-lab installed, a program of your own does not need this line
+# your own program does not need this line if habitat-lab is installed
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests/bridge/lab"))
 
 import habitat

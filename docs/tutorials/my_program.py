@@ -10,7 +10,7 @@ green. Without ``mitigate run`` the program runs without corruption.
 import numpy as np
 
 try:
-    import mitigate_hook  # available under `mitigate run` only; no installation is needed
+    import mitigate_hook  # exists only under `mitigate run`; no installation is needed
 except ImportError:
     mitigate_hook = None
 
@@ -64,7 +64,7 @@ def drive(number):
 
 if __name__ == "__main__":
     numbers = range(EPISODES)
-    if mitigate_hook:  # `mitigate run episodes=N` may ask for fewer
+    if mitigate_hook:  # `mitigate run episodes=N` may ask for fewer episodes
         numbers = [
             int(name) for _, name in mitigate_hook.wanted([("corridor", str(n)) for n in numbers])
         ]

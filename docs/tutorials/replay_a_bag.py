@@ -1,9 +1,10 @@
 # %% [markdown]
 # # Replay a ROS bag with your own policy
 #
-# This tutorial writes a ROS bag, shows its frames to a policy, clean and corrupted, and measures how many decisions
-# change. It takes about 30 seconds on a CPU. The bag is simulated: it records an oracle in a generated apartment.
-# Use the bag of your robot in its place. ROS is not needed.
+# This tutorial writes a ROS bag and shows its frames to a policy, once clean and once corrupted. It
+# measures how many decisions change. The tutorial takes about 30 seconds on a CPU. The bag is
+# simulated: it records an oracle in a generated apartment. Replace it with a bag of your robot. ROS
+# is not needed.
 
 # %%
 import subprocess
@@ -17,8 +18,9 @@ subprocess.run(
 # %% [markdown]
 # ## The policy
 #
-# It turns left while something is closer than 0.6 metres in front of it, and drives forward otherwise.
-# `sensors` lists what it reads. `depth` is float32 [64, 64, 1] in metres, with 0 where nothing was measured.
+# The policy turns left while something in front of the robot is closer than 0.6 metres, and drives
+# forward otherwise. `sensors` lists the sensors that the policy reads. `depth` is float32 [64, 64,
+# 1] in metres, where 0 means that nothing was measured.
 
 # %%
 import numpy as np
@@ -41,12 +43,14 @@ class AvoidObstacles:
 # %% [markdown]
 # ## The recording
 #
-# Check first what will be read. `open_recording` reads the structure of a bag, `load` its frames: square views of 64
-# pixels, one per 0.25 metres or 15 degrees of motion. `views=1` is a single camera.
+# Check first what will be read. `open_recording` reads the structure of a bag. `load` reads its
+# frames as square views of 64 pixels, one frame per 0.25 metres or 15 degrees of motion. `views=1`
+# selects a single camera.
 #
-# The summary names the topics, the field of view and its border, the unit and range of depth, and whether there are
-# poses. If several topics fit, choose: `open_recording(bag, topics={"rgb": "/front/image_raw"})`. Other options are
-# `instruction=`, `unit=` (metres per count of depth), `hfov=` and `yaw=`.
+# The summary shows the topics, the field of view and its border, the unit and range of depth, and
+# whether there are poses. If several topics fit, choose one:
+# `open_recording(bag, topics={"rgb": "/front/image_raw"})`. Other options are `instruction=`,
+# `unit=` (metres per count of depth), `hfov=` and `yaw=`.
 
 # %%
 from pathlib import Path
@@ -61,8 +65,9 @@ print("\n".join(recording.summary))
 # %% [markdown]
 # ## The report
 #
-# The robot drives as recorded, whatever the policy answers. Each decision asks: what would it do now?
-# `replay_recordings` prints a table with intervals, and writes it with pictures and all decisions into a folder.
+# The robot drives as recorded, whatever the policy answers. At each step, the question is what the
+# policy would do now. `replay_recordings` prints a table with intervals, and writes the table,
+# pictures and all decisions into a folder.
 
 # %%
 import mitigate
@@ -77,8 +82,8 @@ report = mitigate.replay_recordings(
 print(sorted(path.name for path in report.iterdir()))
 
 # %% [markdown]
-# The command does the same with a policy in a file, here `my_policy.py` in the current folder, and with weights in
-# folders:
+# The command `mitigate replay` does the same. It accepts a policy in a file (here `my_policy.py` in
+# the current folder) and folders of weights:
 #
 # ```bash
 # mitigate replay runs/drives agents=[my_policy:AvoidObstacles] suite=depth
@@ -87,7 +92,7 @@ print(sorted(path.name for path in report.iterdir()))
 #
 # ## Decisions one by one
 #
-# `walk` returns the decisions on one drive under one corruption, for your own analysis.
+# For your own analysis, `walk` returns the decisions for one drive under one corruption.
 
 # %%
 from mitigate.corruptions import CLEAN, Corruption

@@ -1,9 +1,10 @@
 # %% [markdown]
 # # Protect instructions with a language model behind an endpoint
 #
-# The safeguard removes foreign text from an instruction. A language model can also rewrite unusual styles in plain
-# words. This tutorial starts a small stand-in for such a model, which speaks OpenAI's chat protocol, and connects the
-# safeguard to it. Use the address of your server in its place. It takes a few seconds.
+# The safeguard removes text that does not belong to an instruction. A language model can also
+# rewrite unusual styles in plain words. This tutorial starts a small stand-in for such a model,
+# which uses OpenAI's chat protocol, and connects the safeguard to it. Replace its address with the
+# address of your server. The tutorial takes a few seconds.
 
 # %%
 import json
@@ -51,8 +52,8 @@ print(classifier.canonicalise(INFORMAL).text)
 # %% [markdown]
 # ## With the endpoint
 #
-# A rewrite passes only if it keeps all turns, places, numbers and negations. Otherwise the original is used, and the
-# decision names the reason.
+# A rewritten instruction is accepted only if it keeps all turns, places, numbers and negations.
+# Otherwise the original instruction is used, and the decision states the reason.
 
 # %%
 safeguard = open_safeguard(address)
@@ -61,8 +62,8 @@ for text in (ATTACKED, INFORMAL):
     print(decision.text, decision.reasons)
 
 # %% [markdown]
-# In an evaluation: `mitigate evaluate suite=instructions safeguard=http://host/v1@model`. The key is read from the
-# environment variable `OPENAI_API_KEY`.
+# In an evaluation, use `mitigate evaluate suite=instructions safeguard=http://host/v1@model`. The
+# key is read from the environment variable `OPENAI_API_KEY`.
 
 # %%
 server.shutdown()

@@ -1,1 +1,3 @@
-"""Navigation agents, which have ``reset`` and ``act``; the reference agent is ``topological``."""
+"""Navigation agents with the methods ``reset`` and ``act``; ``topological`` is the
+reference agent.
+"""

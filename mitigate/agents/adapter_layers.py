@@ -16,7 +16,7 @@ from torch.utils.hooks import RemovableHandle
 
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
-# absolute second differences below these values count as zero (heuristic; pixels span about 1)
+# absolute second differences below these values count as 0 (heuristic; values span about 1)
 FLAT = (1e-3, 1e-2)
 TEXTURES = 4 + 4 * (3 + len(FLAT))  # number of outputs of :func:`textures` per channel
 HIDDEN = 32  # width of a gate's hidden layer (heuristic)
@@ -41,7 +41,7 @@ class Adapter(nn.Module):
 
 
 def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
-    """Raise ValueError for a size below 1 or an even kernel; sizes of None are not checked."""
+    """Raise ValueError if a size is below 1 or the kernel size is even; None is not checked."""
     for name, size in sizes.items():
         if size is not None and size < 1:
             raise ValueError(f"{name} of a {owner} must be >= 1, got {size}.")
@@ -50,37 +50,39 @@ def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
 
 
 class Judged:
-    """The gate's logits ``[n]`` for the last batch; the gate is open for frames with a logit above
+    """Hold a gate's logits ``[n]`` for the last batch; a frame's gate is open if its logit is above
     0.
     """
 
     logits: Tensor
 
     def __getstate__(self) -> dict[str, Tensor]:
-        """Return a copy without the logits, which belong to one forward pass and its gradients."""
+        """Leave out the logits in a copy, because they belong to one forward pass and its
+        gradients.
+        """
         return {}
 
 
 class FrameGate(Adapter):
     """Classify each frame ``[n, C, h, w]`` that enters a module as clean or corrupted.
 
-    The adapters after the gate in the same encoder correct only the frames for which the gate is
-    open (:func:`through`). For a frame that is classified as clean, the output equals the output of
-    the encoder without adapters. The gate reads the mean, the standard deviation and the maximum
-    of two convolutions, and :func:`textures`; for a panorama, it also reads the means of these
-    features over all views. During training the gate is always open, so that the adapters learn
-    from all frames; the gate is trained together with the adapters.
+    If the gate is closed for a frame, the adapters that follow in the same encoder do not correct
+    this frame (:func:`through`). For a frame that is classified as clean, the encoder's output
+    equals its output without adapters. The gate reads the mean, the standard deviation and the
+    maximum of two convolutions, and :func:`textures`; for a panorama, it also reads the means of
+    these features over all views. During training, the gate is always open, so that the adapters
+    learn from all frames. The gate is trained together with the adapters.
 
     Args:
         channels: number of input channels.
         middle: channels of the convolutions.
-        views: number of views per panorama, which are consecutive in the batch; with 1, each frame
-            is classified separately.
+        views: number of views per panorama, which must be consecutive in the batch; if it is 1,
+            each frame is classified separately.
 
-    ``threshold`` is subtracted from the logits; ``calibrate`` sets the threshold.
+    ``threshold`` is subtracted from the logits. The method ``calibrate`` sets it.
 
-    Source: this project. Learned statistics and a threshold on clean frames replace the rule on
-    feature magnitudes in the NavTrust paper.
+    Source: this project. The NavTrust paper uses a rule on feature magnitudes instead. This gate
+    learns which statistics to use, and its threshold is set on clean frames.
     """
 
     threshold: Tensor
@@ -115,11 +117,11 @@ class FrameGate(Adapter):
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Set the threshold so that the gate opens for a given fraction of clean frames.
+        """Set the threshold so that the gate is open for a given fraction of clean frames.
 
         Args:
             logits: the gate's logits [n] of clean frames.
-            touched: fraction of clean frames for which the gate may open, in [0, 1].
+            touched: fraction of clean frames for which the gate is open, in [0, 1].
         """
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
@@ -132,7 +134,7 @@ def textures(x: Tensor) -> Tensor:
         x: frames ``[n, C, h, w]`` whose values have a range of about 1.
 
     Returns:
-        float32 [n, C * TEXTURES]; magnitudes are given as logarithms.
+        float32 [n, C * TEXTURES]. Magnitudes are returned as logarithms.
     """
     features = [x.mean((2, 3)), x.std((2, 3)), x.flatten(2).amin(2), x.flatten(2).amax(2)]
     for level in (x, F.avg_pool2d(x, 2)):
@@ -146,9 +148,9 @@ def textures(x: Tensor) -> Tensor:
 
 
 def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
-    """Return ``corrected`` for frames whose gate is open and ``x`` for the others.
+    """Return ``corrected`` for frames whose gate is open, and ``x`` for all other frames.
 
-    Without a gate, and during training, all frames are corrected.
+    If there is no gate, or during training, all frames are corrected.
 
     Args:
         gates: the gate of the adapter; an empty list means no gate.
@@ -164,12 +166,12 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 
 
 class Gate(nn.Module):
-    """Scale the correction of an adapter per frame: logits ``[n]`` from the bottleneck.
+    """Compute one logit per frame from the bottleneck, which scales the adapter's correction.
 
-    The input is the mean and the root mean square of each of the ``middle`` channels over a frame.
-    The gate should be closed on clean frames, so that their features do not change. A recipe may
-    add a loss for this purpose (``recipes/encoder.py``). The gate is always trained together with
-    the adapter.
+    The input consists of the mean and the root mean square of each of the ``middle`` channels over
+    a frame. The gate should be closed for clean frames, so that their features do not change. A
+    recipe may add a loss for this purpose (``recipes/encoder.py``). The gate is always trained
+    together with the adapter.
     """
 
     def __init__(self, middle: int) -> None:
@@ -177,7 +179,9 @@ class Gate(nn.Module):
         self.read = nn.Linear(2 * middle, 1)
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
-        """Return logits [n]; ``over`` lists the axes of ``y`` except frames and channels."""
+        """Return logits [n]; ``over`` lists all axes of ``y`` except those of frames and
+        channels.
+        """
         mean, power = (y.mean(over), (y * y).mean(over)) if over else (y, y * y)
         return self.read(torch.cat([mean, (power + 1e-6).sqrt()], 1))[:, 0]
 
@@ -193,8 +197,9 @@ class TokenAdapter(Adapter):
         gate: whether to add a :class:`Gate`.
         middle: channels of the bottleneck; overrides ``reduction``.
 
-    ``norm`` is a layer norm without weights, because in transformers a few channels of the residual
-    stream are far larger than the others. Source: as ``ConvAdapter``.
+    ``norm`` is a layer norm without weights. It is needed because in transformers a few channels of
+    the residual stream are far larger than the others. The source is the same as for
+    ``ConvAdapter``.
     """
 
     corrects = ("up",)
@@ -232,7 +237,7 @@ class TokenAdapter(Adapter):
 
 
 def optional_settings(gate: bool, middle: int | None) -> dict[str, bool | int]:
-    """Return the optional settings, which are stored only if they are set."""
+    """Return the optional settings that are set; only these are stored."""
     return {**({"gate": True} if gate else {}), **({"middle": middle} if middle else {})}
 
 
@@ -246,8 +251,9 @@ class ConvAdapter(Adapter):
         gate: whether to add a :class:`Gate`.
         middle: channels of the bottleneck; overrides ``reduction``.
 
-    Bottleneck and zero initialisation follow Houlsby et al. 2019, as in the NavTrust paper. This
-    project chose reduction and kernel so that adapters have 1 to 4 % of the weights.
+    The bottleneck and the zero initialisation follow Houlsby et al. 2019, as in the NavTrust paper.
+    This project chose ``reduction`` and ``kernel`` so that the adapters have 1 to 4 % of the
+    weights.
     """
 
     corrects = ("up",)
@@ -284,16 +290,17 @@ class ConvAdapter(Adapter):
 class RingAdapter(Adapter):
     """Zero-initialised residual adapter that combines neighbouring views of a panorama.
 
-    The input x has the shape ``[P * views, C, h, w]``. With y = gelu(down(x)), and ``aligned``
-    warping the two neighbouring maps into each view:
+    The input x has the shape ``[P * views, C, h, w]``. In the formulas below, y = gelu(down(x)),
+    and ``aligned`` warps the maps of the two neighbouring views into each view:
 
         w = softmax(score(aligned(y)))            over the view and the neighbours that see a cell
         z = gelu(mix([y, sum w aligned(y)]))
         out = x + tanh(share(z)) * (sum w aligned(x) - x) + up(z)
 
     ``up`` and ``share`` are initialised to zero, so the output equals the input before training.
-    ``up`` computes the correction, as in any adapter. ``share`` sets how much of a cell's features
-    comes from the neighbours, for all channels at once and without a bottleneck.
+    ``up`` computes the correction, as in any adapter. ``share`` sets which fraction of a cell's
+    features comes from the neighbouring views. This fraction is the same for all channels, and it
+    needs no bottleneck.
 
     Args:
         channels: number of channels C.
@@ -308,7 +315,8 @@ class RingAdapter(Adapter):
     Source: this project. The adapters of the NavTrust paper read one view at a time.
     """
 
-    corrects = ("share", "up")  # the fraction is an output of tanh
+    # the output of ``share`` passes through tanh, so its effect is scaled only approximately
+    corrects = ("share", "up")
 
     def __init__(
         self,
@@ -342,7 +350,7 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # [2, h, w]; each view sees all of its own cells
+        unseen = (grid.abs() > 1).any(-1)  # shape [2, h, w]; each view sees all of its own cells
         scores = torch.stack([each[:, -1] for each in maps], 1)
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)
@@ -361,8 +369,9 @@ class RingAdapter(Adapter):
             grid: result of :func:`neighbour_grid`.
 
         Returns:
-            Three tensors with the shape of ``maps``. A warped neighbour is zero in cells that it
-            does not see, and fades to zero within half a cell of its border.
+            Three tensors with the shape of ``maps``. A warped neighbouring map is zero in cells
+            that the neighbouring view does not see, and it fades to zero within half a cell of its
+            border.
         """
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
@@ -377,18 +386,19 @@ class RingAdapter(Adapter):
 
 
 def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
-    """Return the positions of a view's cells in its left and right neighbours.
+    """Return the positions of a view's cells in the left and the right neighbouring view.
 
     Args:
         height: rows of the map.
         width: columns of the map.
-        step: degrees from a view to the next one on its right (``mitigate/core/observation.py``).
+        step: angle in degrees from a view to the next view on its right
+            (``mitigate/core/observation.py``).
         hfov: horizontal field of view in degrees; views are square.
 
     Returns:
         float32 ``[2, h, w, 2]``: (x, y) in the coordinates of ``grid_sample`` with
         ``align_corners=False``;
-        values are inside [-1, 1] for cells that the neighbour sees.
+        values are inside [-1, 1] for cells that the neighbouring view sees.
     """
     half = math.tan(math.radians(hfov) / 2)
     x = ((torch.arange(width) + 0.5) / width * 2 - 1) * half

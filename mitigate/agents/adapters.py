@@ -1,12 +1,12 @@
 """Zero-initialised residual adapters for any frozen torch encoder.
 
-``insert_adapters(model, target_modules=...)`` adds ``x + up(act(down(x)))`` after named modules, as
-PEFT does for attention. This changes neither the names and values of the backbone's weights nor its
-``forward``, and its output stays the same until ``up`` is trained. Each adapter is a child of its
-module, called by a forward hook. ``adapter_layers.py`` defines the layers: convolutional adapters
-for modules that return maps, linear adapters for modules that return tokens, *ring* adapters, which
-also read the neighbours of each view of a panorama, and *gates*, which restrict the correction to
-frames that they classify as corrupted.
+``insert_adapters(model, target_modules=...)`` adds a residual layer ``x + up(act(down(x)))`` after
+named modules, as PEFT does for attention layers. Inserting adapters changes neither the names and
+values of the backbone's weights nor its ``forward``. The output of the backbone stays the same
+until ``up`` is trained. Each adapter is a child of its module and is called by a forward hook.
+``adapter_layers.py`` defines the layers. Modules that return maps get convolutional adapters, and
+modules that return tokens get linear adapters. *Ring* adapters also read the neighbours of each
+view of a panorama. *Gates* restrict the correction to frames that they classify as corrupted.
 """
 
 from __future__ import annotations
@@ -57,9 +57,9 @@ def insert_adapters(
 ) -> list[str]:
     r"""Freeze ``model`` and add an adapter to every module that a target pattern matches.
 
-    Train with the backbone in eval mode. In training mode, batches change the running statistics of
-    BatchNorm layers, even frozen ones. The adapters then no longer fit the saved backbone, and
-    ``save_adapters`` warns.
+    Keep the backbone in eval mode during training. In training mode, batches change the running
+    statistics of BatchNorm layers, even of frozen layers. The adapters then no longer fit the saved
+    backbone, and ``save_adapters`` warns.
 
     Args:
         model: any torch module. Without ``run``, each target must return one tensor ``[n, C, h,
@@ -67,15 +67,15 @@ def insert_adapters(
             item of a tuple or list.
         target_modules: regular expressions, each matched against the whole dotted name of a module
             or its end (``"stages\.[01]"`` finds ``rgb_encoder.stages.0``).
-        reduction: the number of channels is divided by this to get the bottleneck width.
-        kernel: convolution size of adapters for maps.
+        reduction: the width of a bottleneck is the number of channels divided by this number.
+        kernel: kernel size of convolutional and ring adapters.
         ring: targets that get a :class:`RingAdapter` instead of the adapter from
             ``target_modules``. The views of a panorama must be consecutive in the batch (n = P *
             views).
-        ring_reduction: same as ``reduction``, for ring adapters.
+        ring_reduction: the value of ``reduction`` for ring adapters.
         gates: targets that get a :class:`FrameGate` on their input, such as an encoder's first
-            module. The gate controls the adapters for maps in the nearest enclosing module that has
-            such adapters.
+            module. A gate controls the convolutional and ring adapters in the nearest enclosing
+            module that has such adapters.
         views: number of views per panorama; with 1 view, ``ring`` adds plain adapters.
         hfov: horizontal field of view in degrees.
         run: function that calls the model on n frames, such as ``lambda n: model(frames[:n])``. The
@@ -130,7 +130,7 @@ def insert_adapters(
 
 
 def remove_adapters(model: nn.Module) -> None:
-    """Remove all adapters and their hooks, so that the backbone's output is as before.
+    """Remove all adapters and their hooks, which restores the original output of the backbone.
 
     The backbone stays frozen; ``model.requires_grad_(True)`` makes it trainable again.
     """
@@ -149,13 +149,14 @@ def adapter_parameters(model: nn.Module) -> list[nn.Parameter]:
 def scale_adapters(model: nn.Module, strength: float) -> None:
     """Scale the corrections of all adapters in ``model`` by ``strength``.
 
-    A strength of 1 keeps the corrections. With 0, the output equals the output of the model
-    without adapters. Values between 0 and 1 trade robustness for clean success. The weights of the
-    adapters change in place, so a checkpoint saved afterwards contains the scaled adapters.
+    A strength of 1 keeps the corrections. With a strength of 0, the output equals the output of the
+    model without adapters. A value between 0 and 1 gives up some robustness for more success on
+    clean frames. The weights of the adapters change in place, so a checkpoint that is saved
+    afterwards contains the scaled adapters.
 
     Source: The method follows WiSE-FT (Wortsman et al., "Robust fine-tuning of zero-shot models",
     CVPR 2022), which interpolates all weights between their values before and after training. For
-    adapters it is enough to scale the layers that were initialised to zero.
+    adapters, it is sufficient to scale the layers that were initialised to zero.
 
     Raises:
         ValueError: ``strength`` is outside [0, 1], or the model has no adapters.
@@ -182,8 +183,8 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     """Write the adapters, without the backbone, and return the folder.
 
     ``adapters.safetensors`` holds the weights; ``adapters.json`` holds module names, settings and
-    the sha256 of the backbone. Warns if the backbone's running statistics changed after the
-    adapters were inserted.
+    the sha256 of the backbone. A warning is issued if the backbone's running statistics changed
+    after the adapters were inserted.
 
     Raises:
         ValueError: The model has no adapters.
@@ -245,8 +246,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. Load the weights they "
-            "were trained on first; to run in another dtype, convert the model afterwards."
+            f"{escaped(str(expected))}, but this one has {sha}. First load the weights that "
+            "the adapters were trained on. To run in another dtype, convert the model afterwards."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -268,10 +269,10 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
 
 def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
-    """Return an adapter with these ``settings`` and the weights ``tensors``.
+    """Return an adapter that has the given ``settings`` and the weights ``tensors``.
 
-    Settings and shapes are first checked on the meta device, so that a damaged file cannot allocate
-    memory.
+    Settings and shapes are first checked on the meta device. So a damaged file cannot cause a large
+    memory allocation.
 
     Raises:
         TypeError, RuntimeError: The settings and the tensors do not match.
@@ -299,7 +300,7 @@ def backbone_sha(model: nn.Module) -> str:
 
 
 def _key(name: str) -> str:
-    """Return a module's name as a key of a ModuleDict, which must not contain a dot."""
+    """Return a module's name as a key of a ModuleDict, whose keys must not contain a dot."""
     return name.replace(".", "/")
 
 
@@ -330,17 +331,19 @@ def reject_adapted(model: nn.Module) -> None:
 
 
 def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
-    """Freeze ``model`` and attach all ``adapters``; if one does not fit, attach none of them."""
+    """Freeze ``model`` and attach all ``adapters``; if an adapter does not fit, attach none of
+    them.
+    """
     gates = _gates_of(adapters)
     kinds = (name for name, adapter in adapters.items() if isinstance(adapter, FrameGate))
     idle = [name for name in kinds if name not in gates.values()]
     if idle:
         raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for maps follows it in the "
-            "same encoder, and adapters for tokens take no gate. Leave it out of gates, or choose "
-            "other target modules."
+            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps follows it "
+            "in the same encoder, and a gate cannot control adapters for tokens. Leave it out of "
+            "gates, or choose other target modules."
         )
-    # an attribute of that name may be a module, a parameter or a method
+    # an existing attribute with this name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]
     if conflicts:
         raise ValueError(
@@ -363,8 +366,8 @@ def moved_statistics(model: nn.Module) -> bool:
 
 
 def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
-    """Add ``adapter`` to ``module``; ``usual`` provides device and dtype if the module has no
-    weights.
+    """Add ``adapter`` to ``module``; if the module has no weights, use the device and dtype of
+    ``usual``.
     """
     like = next(module.parameters(), usual)
     module.add_module(NAME, adapter.to(like.device, like.dtype))
@@ -392,9 +395,11 @@ def _judge_input(module: nn.Module, inputs: Any) -> None:
 
 
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
-    """Return the nearest gate in the same encoder for each adapter, by the adapter's name."""
+    """Return a dict that maps each adapter's name to the name of the nearest gate in its
+    encoder.
+    """
     controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    # maps an adapter's name to the names of its module and its gate
+    # maps an adapter's name to the name of the module that encloses both, and the gate's name
     gates: dict[str, tuple[str, str]] = {}
     for name, gate in adapters.items():
         if not isinstance(gate, FrameGate):

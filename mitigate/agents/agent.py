@@ -1,8 +1,8 @@
 """Define the interface that evaluation and training expect from an agent.
 
-An agent receives an instruction and acts on observations; it does not depend on a particular world.
-A *trainable* agent also exposes its decisions as batches, and objectives use only these batches to
-train it. ``docs/bring-your-own.md`` shows how to add an agent.
+An agent receives an instruction and acts on observations. It does not depend on a particular world.
+A *trainable* agent also returns its decisions as batches, and objectives train the agent with these
+batches only. ``docs/bring-your-own.md`` shows how to add an agent.
 
 A subclass of :class:`Agent` inherits defaults for all optional members. Objects of other classes
 also work: :func:`as_agent` adds the defaults.
@@ -36,8 +36,8 @@ class Agent:
     Attributes:
         views: 12 for a panorama, 1 for a forward camera; worlds with a different number are
             rejected. If None, any number is accepted.
-        sensors: the entries of observations that the agent reads. Training does not corrupt other
-            frames. If None, the agent may read all entries.
+        sensors: the entries of observations that the agent reads. Training corrupts only the frames
+            of these entries. If None, the agent may read all entries.
         tasks: the values of an episode's ``info["task"]`` that the agent supports ("vln": follow a
             route, "ogn": find an object). Evaluation warns about other tasks. If None, the agent
             supports all tasks.
@@ -45,16 +45,17 @@ class Agent:
         aim: position [2] in plan metres that the agent is moving to, or None.
         together: number of episodes that the agent can run at once; more than 1 requires ``begin``
             and ``act_all``.
-        encoders: names of the parts that read a sensor, by sensor; used by ``see``
+        encoders: maps a sensor to the names of the parts that read it; used by ``see``
             (:class:`Seeing`).
-        labels: the entry of a world's ``truth()`` that these parts are trained on, by sensor.
+        labels: maps a sensor to the entry of a world's ``truth()`` on which these parts are
+            trained.
         loss_weights: weights of the auxiliary losses by name; 1 by default.
         frozen: names of modules that are never trained, such as a pretrained backbone; adapters
             inside them are trained.
         plain_walks: whether ``collect`` returns plain data (dicts, lists, strings, numbers and
             tensors), which DAgger stores on disk.
         run_state: attributes of a shipped agent that change while it runs. The fingerprint excludes
-            these attributes, and all attributes that a new agent lacks.
+            these attributes, and all attributes that a newly built agent does not have.
         own_config_only: constructor arguments that name code or files. A config that comes with
             weights must not set these arguments.
         brings_weights: whether the constructor loads pretrained weights, so that the agent can be
@@ -91,14 +92,15 @@ class Agent:
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
     ) -> list[int]:
-        """Return one action per observation of n episodes, and update their memories.
+        """Return one action for each of n episodes, given their observations, and update their
+        memories.
 
         The action for one episode must not depend on the other episodes or on their number.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Update the agent's state after a motion that it did not choose itself.
+        """Update the agent's state after a motion that the agent did not choose itself.
 
         The agent drops its plan.
 
@@ -109,23 +111,24 @@ class Agent:
         """
 
     def episode_figures(self, memory: Any) -> Mapping[str, float]:
-        """Return additional numbers for the row of a finished episode, by name.
+        """Return additional numbers by name, for the result row of a finished episode.
 
         Args:
-            memory: the episode's memory from ``begin``, or None for the episode of ``reset``.
+            memory: the memory that ``begin`` returned, or None if the episode was started with
+                ``reset``.
         """
         return {}
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context in which identical frames are encoded only once; actions do not
-        change.
+        """Return a context in which identical frames are encoded only once, without changing any
+        action.
         """
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
-        """Return a piece of ``collect`` in which the outputs of frozen weights are precomputed.
+        """Return a result of ``collect`` in which the outputs of frozen weights are precomputed.
 
-        Worker processes call it. With ``clean``, also precompute the values that
+        Worker processes call this method. With ``clean``, also precompute the values that
         ``decide(clean=True)`` needs.
         """
         return piece
@@ -150,7 +153,7 @@ class SideBySide(Agent):
 
         Raises the errors of ``agents/observation.py``.
         """
-        # the batch is always full, so that sums are rounded identically
+        # the batch is always filled up to ``together``, so that sums are rounded identically
         padding = self.together - len(memories)
         observations = [*observations, *[observations[-1]] * padding]
         return self.answers(observations, [*memories, *[memories[-1]] * padding], len(memories))
@@ -163,12 +166,12 @@ class SideBySide(Agent):
 
 
 def check_started(started: bool) -> None:
-    """Raise RuntimeError before the first ``reset``."""
+    """Raise RuntimeError if ``reset`` has not been called yet."""
     if not started:
         raise RuntimeError("Start the episode first: agent.reset(instruction).")
 
 
-# members that :func:`as_agent` copies once; ``system_prompt`` and ``aim`` may change later
+# members that :func:`as_agent` does not copy once, such as ``aim``, whose value may change
 _READ_LATER = ("reset", "act", "system_prompt", "aim")
 OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name not in _READ_LATER]
 
@@ -176,8 +179,7 @@ OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name no
 def as_agent(agent: Any) -> Agent:
     """Return ``agent`` if it is an :class:`Agent`, otherwise a wrapper that adds the defaults.
 
-    The agent itself is not changed; fingerprints are computed from the agent itself, not from the
-    wrapper.
+    The agent itself is not changed. Fingerprints are computed from the agent, not from the wrapper.
     """
     return agent if isinstance(agent, Agent) else _AgentView(agent)
 
@@ -214,8 +216,8 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return the ``settings`` of ``agent``, which are a method or a mapping, or None if it has
-    no settings.
+    """Return the settings of ``agent`` (its ``settings`` may be a method or a mapping), or None if
+    it has none.
     """
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
@@ -226,8 +228,8 @@ class Output:
     """The output of an agent for B decisions.
 
     Attributes:
-        logits: [B, n] over the candidates of each decision, or None if there are no decisions.
-        mask: bool [B, n], True for candidates that may be chosen; None allows all.
+        logits: [B, n], one logit per candidate of each decision, or None if there are no decisions.
+        mask: bool [B, n], True for candidates that may be chosen; None allows all candidates.
         features: features by name, which distillation compares between student and teacher.
         losses: auxiliary losses of the agent, as scalars by name.
         figures: additional scalars to log, by name.
@@ -241,7 +243,8 @@ class Output:
 
 
 def check_logits(logits: Tensor, agent: Any) -> Tensor:
-    """Return ``logits`` [..., n] if an action can be chosen from them; -inf marks forbidden ones.
+    """Return ``logits`` [..., n] if an action can be chosen from them; -inf marks forbidden
+    actions.
 
     Without this check, argmax would silently return the first action, STOP.
 
@@ -260,13 +263,13 @@ def check_logits(logits: Tensor, agent: Any) -> Tensor:
 
 
 def entropy_of(logits: Tensor) -> Tensor:
-    """Return the entropy of the distribution with ``logits`` [n]; -inf marks forbidden ones."""
+    """Return the entropy of the distribution with ``logits`` [n]; -inf marks forbidden actions."""
     chances = logits[torch.isfinite(logits)].log_softmax(-1)
     return -(chances.exp() * chances).sum()
 
 
 def stop_figures(logits: Tensor, target: Tensor) -> dict[str, Tensor]:
-    """Return the recall of STOP and the rate of false STOPs, for targets as in ``Decisions``."""
+    """Return the recall of STOP and the rate of false STOPs; ``target`` is as in ``Decisions``."""
     stop = target[:, STOP] > 0
     chosen = logits.argmax(-1) == STOP
     return {
@@ -287,7 +290,7 @@ class Decisions(Protocol):
     Attributes:
         target: [B, n], a distribution over the candidates of each decision, summing to 1.
         weight: [B], the weight of each decision.
-        episode_ids: episode of each decision, for error messages if the loss is not finite.
+        episode_ids: the episode of each decision, for the error message if a loss is not finite.
     """
 
     target: Tensor
@@ -304,7 +307,9 @@ class Trainable(Protocol):
     """
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the modules that can be frozen, trained and adapted; they hold all parameters."""
+        """Return the modules that can be frozen, trained and adapted; together they hold all
+        parameters.
+        """
 
     def collect(
         self,
@@ -335,13 +340,14 @@ class Trainable(Protocol):
     def decide(self, decisions: Any, *, clean: bool = False) -> Output:
         """Return the agent's output for ``decisions``.
 
-        With ``clean``, use the observations before corruption but the same candidates.
+        With ``clean``, the observations before corruption are used, but the candidates are the
+        same.
         """
 
 
 @runtime_checkable
 class KnowsEntropy(Protocol):
-    """An agent whose decisions have a known entropy, which test-time adaptation lowers."""
+    """An agent that can compute the entropy of its decisions, which test-time adaptation lowers."""
 
     def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor | None:
         """Return the entropy of the last decision, computed again with gradients.
@@ -359,8 +365,8 @@ class Seeing(Protocol):
     """A trainable agent whose encoders can be trained on single observations, without episodes.
 
     Attributes:
-        encoders: names of the parts that read a sensor, by sensor.
-        labels: the entry of a world's ``truth()`` that these parts are trained on, by sensor.
+        encoders: maps a sensor to the names of the parts that read it.
+        labels: maps a sensor to the entry of a world's ``truth()`` on which they are trained.
     """
 
     encoders: Mapping[str, tuple[str, ...]]
@@ -369,5 +375,5 @@ class Seeing(Protocol):
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return the features "views" [P, V, F] of frames [P, V, H, W, c].
 
-        With ``truth`` also return the loss "labels".
+        If ``truth`` is given, also return the loss "labels".
         """

@@ -12,7 +12,7 @@ from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 class Attention(nn.Module):
     """Multi-head attention; ``mask`` is bool, True where attention is allowed.
 
-    This does not use PyTorch's fused kernel, which took four times as long on a CPU for these short
+    PyTorch's fused kernel is not used, because it took four times as long on a CPU for these short
     sequences (torch 2.13).
     """
 
@@ -26,7 +26,9 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """Let x [B, n, width] attend to memory [B, m, width], or to ``memory[rows]``."""
+        """Return the result of x [B, n, width] attending to memory [B, m, width], or to
+        ``memory[rows]``.
+        """
 
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
@@ -40,7 +42,7 @@ class Attention(nn.Module):
 
 
 class Layer(nn.Module):
-    """Pre-norm transformer layer: [cross-attention], self-attention, feed-forward."""
+    """Pre-norm transformer layer: optional cross-attention, self-attention and feed-forward."""
 
     def __init__(self, width: int, heads: int, cross: bool, dropout: float) -> None:
         super().__init__()
@@ -59,8 +61,8 @@ class Layer(nn.Module):
         Args:
             x: [B, n, width].
             mask: bool [B, n], True where attention is allowed; None allows it everywhere.
-            text: text features [E, L, width], their mask [B, L], and the index of the text for each
-                x: int [B].
+            text: text features [E, L, width], their mask [B, L], and for each row of x the index of
+                its text (int [B]).
         """
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)

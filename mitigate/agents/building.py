@@ -1,4 +1,4 @@
-"""Build the agent of a run from its config, with the settings of the weights it starts from.
+"""Build the agent of a run from its config and the settings stored with its initial weights.
 
 ``loading.py`` loads agents from folders without a config; that module needs neither Hydra nor
 OmegaConf.
@@ -38,12 +38,13 @@ def build_agent(
         parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    # a huge width would fill the memory, and a pattern may run without end
+    # checked first, because a huge width would fill the memory, and a pattern may match endlessly
     if loading.is_ours(node["_target_"]):
         config = plain(node)
         known = schema.schema_of(config["_target_"]).settings
         config = {name: value for name, value in config.items() if name in known}
-        again = "Give it such a value, or leave it out."  # the class rejects unknown settings
+        # the agent's class rejects unknown settings
+        again = "Give it such a value, or leave it out."
         schema.check(config, "The options", node["_target_"], again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)
@@ -94,10 +95,10 @@ def settings_of(
 
 
 def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
-    """Return ``node`` with its unset settings (null or missing) taken from ``weights``.
+    """Return ``node``; settings that are null or missing are taken from ``weights``.
 
-    Examples of such settings are the adapters and the vocabulary. Without weights, ``node`` is
-    returned unchanged. Raises the errors of :func:`stored_settings`.
+    Examples of such settings are the adapters and the vocabulary. If ``weights`` is None, ``node``
+    is returned unchanged. Raises the errors of :func:`stored_settings`.
     """
     if weights is None:
         return node
@@ -116,7 +117,7 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     """
     place = find(weights)
     if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):
-        return {}  # load() of the safeguard's language model checks the LoRA adapter
+        return {}  # the safeguard's language model checks the LoRA adapter in its load()
     file = loading.config_of(place)
     if not file.is_file():
         return {}
@@ -132,20 +133,21 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
     """Return ``["agent=NAME"]`` for the kind of agent to which ``weights`` belong.
 
     This agent config also sets the world options that the agent needs. The result is empty if
-    ``options`` already choose an agent, or if the kind is the default one, not shipped, or unknown.
+    ``options`` already choose an agent, or if the kind of agent is the default kind, not shipped,
+    or unknown.
     """
     if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
         return []
     try:
         kind = loading.kind_of(loading.config_of(find(weights)))
-    except (OSError, ValueError):  # the error is reported later, when the weights are loaded
+    except (OSError, ValueError):  # loading the weights reports the error later
         return []
     name = "" if kind == loading.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []
 
 
 def with_kind(options: Sequence[str]) -> list[str]:
-    """Return the ``options`` of an evaluation, with ``agent=`` added for the weights in
+    """Return the ``options`` of an evaluation, with the ``agent=`` option that fits the weights in
     ``checkpoint=``.
     """
     weights = values(options, "checkpoint")

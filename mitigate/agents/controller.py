@@ -7,7 +7,7 @@ import numpy as np
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, TURN_DEGREES
 
 _ARRIVED = 0.18  # distance in metres at which a position counts as reached; a step is 0.25 m
-_STUCK = 0.05  # a forward step with less progress than this (metres) counts as blocked
+_STUCK = 0.05  # a forward step that moves less than this distance (metres) counts as blocked
 _PATIENCE = 2  # number of blocked steps before the agent skips a position
 
 
@@ -21,12 +21,12 @@ class Controller:
         self._budget = 0
 
     def follow(self, route: list[np.ndarray]) -> None:
-        """Start a route (list of [x, y] in plan metres)."""
+        """Start to follow a route (list of positions [x, y] in plan metres)."""
         self.route = [np.array(p, np.float64) for p in route]
         self._last, self._blocked, self._budget = None, 0, 40 * max(1, len(route))
 
     def action(self, pose: np.ndarray) -> int | None:
-        """Return the next low-level action from pose [3], or None on arrival."""
+        """Return the next low-level action from pose [3], or None at the end of the route."""
         # copied, because a world may change its pose array in place
         xy = np.array(pose[:2], np.float64)
         if self._last is not None:

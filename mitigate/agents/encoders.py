@@ -1,10 +1,10 @@
 """Encoders of views: small residual CNNs with GroupNorm for RGB and for depth, and their losses.
 
-Adapters are added after their ``stages``. All encoders take raw sensor data (uint8 RGB or float32
-metres, square views of any size) and resize and normalise it themselves. ``RGBEncoder`` and
-``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and ``CameraDepth`` read one camera and
-return features for four vertical strips ("columns") of the view, because an agent with one camera
-steers by the horizontal position of an object.
+Adapters are added after the modules in their ``stages``. All encoders take raw sensor data: square
+views of any size, as uint8 RGB or as depth in float32 metres. They resize and normalise the data
+themselves. ``RGBEncoder`` and ``DepthEncoder`` read the views of a panorama. ``CameraRGB`` and
+``CameraDepth`` read one camera and return features for four vertical strips ("columns") of the
+view, because an agent with one camera steers by the horizontal position of an object.
 """
 
 from __future__ import annotations
@@ -20,13 +20,15 @@ from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH, RGB
 
 SIZE = 64  # side in pixels of the views that the shipped agents were trained on
-# maximum depth in metres; farther surfaces do not matter for moves of at most 3 m
+# depth is clipped at this distance (metres); farther surfaces do not matter, because moves have at
+# most 3 m
 DEPTH_RANGE = 5.0
-GRID = 4  # rows and columns of the last feature map at 64 pixels
-# number of direction bins of free space over 90 degrees; metres per distance bin
+GRID = 4  # number of rows and columns of the last feature map for views of 64 pixels
+# free space: number of direction bins over 90 degrees, number of distance bins, metres per bin
 DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25
 LABELS = {RGB: "concepts", DEPTH: "free"}
-POSITIVE = 2.0  # weight of positive labels, because most concepts do not appear in a view
+# weight of positive labels, which are rare because most concepts do not appear in a view
+POSITIVE = 2.0
 
 
 class Block(nn.Module):
@@ -48,8 +50,8 @@ class Block(nn.Module):
 def halved(x: Tensor) -> Tensor:
     """Return the same result as ``F.avg_pool2d(x, 2)``, bit for bit.
 
-    Without gradients it is a sum of four slices, which takes a third of the time on a CPU (torch
-    2.13 pools one value at a time).
+    Without gradients, the result is computed as a sum of four slices. This takes a third of the
+    time on a CPU, because torch 2.13 pools one value at a time.
     """
     if torch.is_grad_enabled() or x.shape[-1] % 2 or x.shape[-2] % 2:
         return F.avg_pool2d(x, 2)
@@ -58,7 +60,7 @@ def halved(x: Tensor) -> Tensor:
 
 
 class Encoder(nn.Module):
-    """Base network with a stem and residual stages, which reduces views of ``size`` pixels to a 4x4
+    """Base network of a stem and residual stages that reduces views of ``size`` pixels to a 4x4
     map.
 
     Frames of a different size are resized.
@@ -103,7 +105,7 @@ class Encoder(nn.Module):
         return F.interpolate(x, (self.size, self.size), mode=self.resize, antialias=antialias)
 
     def maps(self, x: Tensor) -> Tensor:
-        """Return features ``[n, widths[-1], 4, 4]`` of normalised input ``[n, c, H, W]``."""
+        """Return features ``[n, widths[-1], 4, 4]`` for normalised input ``[n, c, H, W]``."""
         x = self.stem(x)
         for stage in self.stages:
             x = stage(x)
@@ -111,7 +113,7 @@ class Encoder(nn.Module):
 
 
 def depth_channels(z: Tensor) -> Tensor:
-    """Return the input ``[n, 2, H, W]`` of a depth encoder for metres ``[n, 1, H, W]``.
+    """Return the input ``[n, 2, H, W]`` of a depth encoder for depth ``[n, 1, H, W]`` in metres.
 
     Invalid depth (0, NaN or infinite) becomes 0 and is marked in the second channel.
     """
@@ -144,10 +146,10 @@ class RGBEncoder(Encoder):
 
 
 class DepthEncoder(Encoder):
-    """Encode float32 metres ``[n, H, W, 1]`` as features ``[n, width]`` of each view.
+    """Encode depth (float32 metres ``[n, H, W, 1]``) as features ``[n, width]`` of each view.
 
-    Frames are resized to the nearest pixel, because a mean across an edge or a hole would create a
-    surface that does not exist.
+    Frames are resized by taking the nearest pixel, because a mean across an edge or a hole would
+    create a surface that does not exist.
     """
 
     channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
@@ -171,7 +173,7 @@ def presence_loss(logits: Tensor, truth: Tensor) -> Tensor:
 
 
 def f1(logits: Tensor, targets: Tensor) -> Tensor:
-    """Return the micro F1 at probability 0.5."""
+    """Return the micro-averaged F1 score at a probability threshold of 0.5."""
     predicted, true = logits > 0, targets > 0.5
     return 2 * (predicted & true).sum() / torch.clamp(predicted.sum() + true.sum(), min=1)
 
@@ -183,7 +185,7 @@ def free_loss(logits: Tensor, target: Tensor) -> Tensor:
     return F.binary_cross_entropy_with_logits(logits.float(), target)
 
 
-LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # the loss on the labels, by sensor
+LABEL_LOSSES = {RGB: presence_loss, DEPTH: free_loss}  # loss function of each sensor's labels
 
 
 def agreement(logits: Tensor, target: Tensor) -> Tensor:
@@ -193,7 +195,7 @@ def agreement(logits: Tensor, target: Tensor) -> Tensor:
 
 
 def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
-    """Return the output of ``see``: the features "views", and with ``truth`` also losses and
+    """Return the output of ``see``: the features "views", and if ``truth`` is given, losses and
     figures.
     """
     out = Output(features={"views": views})
@@ -209,9 +211,9 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
 
 
 class CameraRGB(Encoder):
-    """Encode uint8 ``[n, H, W, 3]`` as features and concept logits of four columns per view.
+    """Encode RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits of four columns.
 
-    Features are ``[n, 4, width]``, logits ``[n, 4, C]``.
+    Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
     """
 
     channels, widths, resize = 3, (32, 48, 96, 160), "area"
@@ -230,10 +232,10 @@ class CameraRGB(Encoder):
 
 
 class CameraDepth(Encoder):
-    """Encode float32 metres ``[n, H, W, 1]`` as features of four columns, and free-space logits.
+    """Encode depth (metres ``[n, H, W, 1]``) as features of four columns and free-space logits.
 
-    Features are ``[n, 4, width]``. Logits ``[n, 30, 12]`` predict free space by angle (45 degrees
-    left to 45 right) and distance (0.25 to 3 m).
+    Features have the shape ``[n, 4, width]``. The logits ``[n, 30, 12]`` predict free space for
+    each angle (from 45 degrees left to 45 degrees right) and distance (0.25 to 3 m).
     """
 
     channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
@@ -253,15 +255,15 @@ class CameraDepth(Encoder):
 
 
 def free_metres(logits: Tensor) -> Tensor:
-    """Return the expected free distance in metres ``[n, 30]`` of logits ``[n, 30, 12]``."""
+    """Return the expected free distance ``[n, 30]`` in metres for logits ``[n, 30, 12]``."""
     return STEP * logits.sigmoid().cumprod(-1).sum(-1)
 
 
 def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
     """Return features [n, F] and logits for frames [n, H, W, c] of one camera.
 
-    The features contain all columns and the encoder's predictions (RGB: probabilities of concepts;
-    depth: free distances in metres).
+    The features consist of the features of all columns and the encoder's predictions. For RGB,
+    these are probabilities of concepts; for depth, these are free distances in metres.
     """
     features, logits = encoder(frames)
     predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)

@@ -1,9 +1,10 @@
 """Compute the fingerprint of an agent: a content hash of everything that determines its behaviour.
 
-It covers the kind of the agent, ``settings()``, weights, layers, sensors, and the user's source
-files. Result rows hold it in addition to a display name: agents with different fingerprints are
-different agents in tables, and rows are reused only for an equal fingerprint. Hooks, closures,
-TorchScript and other state that cannot be read (:attr:`Contents.unreadable`) need ``version=``.
+The fingerprint covers the kind of the agent, ``settings()``, weights, layers, sensors, and the
+user's source files. Result rows hold the fingerprint in addition to a display name. Tables treat
+agents with different fingerprints as different agents, and rows are reused only if the fingerprint
+is equal. Hooks, closures, TorchScript and other state that cannot be read
+(:attr:`Contents.unreadable`) need ``version=``.
 """
 
 from __future__ import annotations
@@ -28,11 +29,13 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Observation, Sensor
 
-# attribute of shipped classes: a name that stays the same if a module is moved
+# attribute of shipped classes that holds a name; it stays the same if a module is moved
 KIND = "fingerprint_kind"
-DEEPEST = 50  # depth of nested attributes (heuristic); deeper ones are probably a cycle
-_OWN_HOOKS = "mitigate.agents.adapters"  # its adapters are modules, so state_dict() holds them
-# attributes of torch modules, of adapters (handle of the hook, last output), and of adapters.py
+DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
+# hooks of this module are known: its adapters are modules, so state_dict() holds them
+_OWN_HOOKS = "mitigate.agents.adapters"
+# attributes that are left out: those of torch modules, of adapters (handle of the hook, last
+# output), and of adapters.py
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -67,7 +70,7 @@ def fingerprint(
         agent: any object.
         sensors: the sensors of the world.
         front: fingerprints of the guards between the world and the agent.
-        version: string with which the user identifies state that cannot be read.
+        version: a string, set by the user, that identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -75,8 +78,9 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    A shipped agent adds the attributes that differ from a new agent with the same
-    settings. An agent whose ``settings()`` is missing or inherited adds all its attributes.
+    For a shipped agent, this includes the attributes that differ from those of a new agent with the
+    same settings. For an agent whose ``settings()`` is missing or inherited, this includes all its
+    attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
@@ -109,7 +113,8 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 def says_all(agent: Any) -> bool:
     """Return whether ``settings`` describes all attributes.
 
-    An inherited ``settings`` does not, because a subclass may add attributes.
+    An inherited ``settings`` does not describe all attributes, because a subclass may add
+    attributes.
     """
     return _definer(agent) in (agent, type(agent))
 
@@ -117,7 +122,8 @@ def says_all(agent: Any) -> bool:
 def _definer(agent: Any) -> Any:
     """Return the object or class that defines ``settings``, or None.
 
-    A ``settings`` from ``__getattr__`` does not count, because it describes a different object.
+    If ``__getattr__`` returns ``settings``, they do not count, because they describe another
+    object.
     """
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
@@ -125,9 +131,9 @@ def _definer(agent: Any) -> Any:
 
 
 def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
-    """Return how the attributes and layers of a shipped agent differ from a new agent.
+    """Return the differences in attributes and layers between a shipped agent and a new agent.
 
-    Weights, the memory of an episode and further attributes are excluded.
+    Weights, and the attributes that ``run_state`` names, are excluded.
     """
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
@@ -146,13 +152,15 @@ def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
 def _entries(
     agent: Any, nets: Mapping[str, nn.Module], attributes: bool
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return text on attributes, layers and hooks by place, and reasons for unreadable ones.
+    """Return a text for each attribute, layer and hook by its place, and reasons for unreadable
+    state.
 
     Args:
         agent: the agent.
         nets: its networks.
-        attributes: whether attributes of the agent and of the user's modules count. Attributes of
-            other modules are always included, because ``settings()`` might not list them.
+        attributes: whether the attributes of the agent and of the user's modules are included.
+            Attributes of other modules are always included, because ``settings()`` might not list
+            them.
     """
     entries: dict[str, Any] = {}
     unreadable: dict[str, str] = {}
@@ -173,7 +181,7 @@ def _entries(
                 unreadable[inner] = "a replaced method"
             elif attributes or library:
                 entries[inner] = _described(part, inner, unreadable if attributes else {})
-    for place, net in nets.items():  # packed weights of quantised layers
+    for place, net in nets.items():  # the state also holds packed weights of quantised layers
         for name, part in net.state_dict().items():
             if not isinstance(part, torch.Tensor):
                 entries[_join(place, name)] = _described(part, place, unreadable)
@@ -183,7 +191,7 @@ def _entries(
 def _add_hooks(
     module: nn.Module, place: str, entries: dict[str, Any], unreadable: dict[str, str]
 ) -> None:
-    """Add hooks that describe themselves with ``fingerprint()``; others are unreadable."""
+    """Add hooks that describe themselves with ``fingerprint()``; all other hooks are unreadable."""
     if type(module).__module__.startswith("torch.jit"):
         unreadable[place] = "a TorchScript module"
         return
@@ -210,9 +218,9 @@ def attributes_of(thing: Any) -> list[tuple[str, Any]]:
 
 
 def code_of(*kinds: type) -> Contents:
-    """Return the source files of the user's classes among ``kinds``, and the values they name.
+    """Return the source files of the user's classes among ``kinds``, and the values in their code.
 
-    These are class attributes, and global variables that the methods refer to.
+    These values are class attributes and the global variables to which methods refer.
     """
     classes = dict.fromkeys(each for kind in kinds for each in kind.__mro__ if each is not object)
     users = [each for each in classes if is_users(each)]
@@ -251,7 +259,7 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
     if kind in _PLAIN:
         return value
     if isinstance(value, Observation):
-        return None  # the last observation changes no action
+        return None  # the last observation does not affect later actions
     if place.count(".") > DEEPEST:
         unreadable[place] = "nested too deeply"
         return None
@@ -280,7 +288,8 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
 def array_sha(array: Any) -> str:
     """Return the hash of an array's or tensor's type, shape and bytes.
 
-    "" if it is no array or has no readable bytes: sparse, on the meta device, or of objects.
+    Return "" if the value is not an array or has no readable bytes, because it is sparse, on the
+    meta device, or holds objects.
     """
     if type(array) not in (np.ndarray, torch.Tensor, nn.Parameter):
         return ""
@@ -296,7 +305,9 @@ def array_sha(array: Any) -> str:
 
 
 def class_name(kind: Any) -> str:
-    """Return the name of a class or function; with its module unless it is the user's code."""
+    """Return the name of a class or function; the module's name is included unless it is
+    user code.
+    """
     if isinstance(kind, types.BuiltinFunctionType):
         return f"{kind.__module__}.{kind.__qualname__}"
     return kind.__qualname__ if is_users(kind) else f"{kind.__module__}.{kind.__qualname__}"
@@ -314,7 +325,7 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 
 
 def code_sha(objective: nn.Module) -> str:
-    """Return the hash of the user's code in an objective and its agent; "" if there is no such
+    """Return the hash of the user's code in an objective and its agent, or "" if there is no user
     code.
     """
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
@@ -323,7 +334,7 @@ def code_sha(objective: nn.Module) -> str:
 
 
 def _plain(value: Any) -> Any:
-    """Return a setting as JSON data. Raises ValueError for a value that is not plain data."""
+    """Return a setting as JSON data; raise ValueError if it is not plain data."""
     if isinstance(value, (set, frozenset)):
         return sorted(value)
     if to_list := read(value, "tolist"):  # arrays and tensors

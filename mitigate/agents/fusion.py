@@ -11,8 +11,10 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-RATE = 4.0  # k: decay rate for a relative deviation of 1 (chosen on val_seen)
-CAP = 3.0  # largest exponent; the weight is at least exp(-3) = 0.05 of a typical view's (heuristic)
+RATE = 4.0  # decay rate k of a view's weight with its relative deviation (chosen on val_seen)
+# largest exponent (heuristic); a view has at least exp(-3) = 0.05 times the weight of a typical
+# view
+CAP = 3.0
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 
@@ -20,9 +22,10 @@ _TINY = 1e-6
 def reliability(
     views: Tensor, rate: float = RATE, cap: float = CAP, valid: Tensor | None = None
 ) -> Tensor:
-    """Return weights that fall with the deviation of a view's magnitude from the panorama's mean.
+    """Return weights of views that decrease as a view's feature magnitude deviates from the mean.
 
-    With m_v = |f_v| (Euclidean) and M = mean of m_v over the valid views,
+    In the formulas, m_v = |f_v| is the Euclidean norm of a view's features, and M is the mean of
+    m_v over the valid views:
 
         d_v = | m_v - M | / M,     w_v = exp(-min(rate * d_v, cap)) / sum over valid views.
 
@@ -51,21 +54,23 @@ def reliability(
 
 
 class LearnedReliability(nn.Module):
-    """Weight views by a learned score of their features and of the deviation from the mean.
+    """Weight views by a learned score of their features and of the features' deviation from the
+    mean.
 
         w_v = softmax over views of cap * tanh(score([f_v, f_v - mean f])).
 
-    ``score`` is initialised to zero, so all weights are equal before training. It is trained by the
-    loss on the fused features.
+    ``score`` is initialised to zero, so all weights are equal before training. The loss on the
+    fused features trains ``score``.
 
     Args:
         width: number of features F.
-        cap: >= 0; two weights differ at most by a factor of exp(2 cap).
+        cap: must be >= 0; the weights of two views differ at most by a factor of exp(2 cap).
 
     Raises:
         ValueError: ``cap`` is negative.
 
-    Source: this project. Unlike this score, the paper's rule reads only the magnitude of a view.
+    Source: this project. The paper's rule differs from this score: it uses only the magnitude of a
+    view's features.
     """
 
     def __init__(self, width: int, cap: float = CAP) -> None:
@@ -79,7 +84,7 @@ class LearnedReliability(nn.Module):
         nn.init.zeros_(self.score.bias)
 
     def forward(self, views: Tensor) -> Tensor:
-        """Return weights ``[..., V]``, summing to 1, of features ``[..., V, F]``."""
+        """Return weights ``[..., V]`` that sum to 1, for features ``[..., V, F]``."""
         x = self.norm(torch.cat([views, views - views.mean(-2, keepdim=True)], -1))
         score = self.score(nn.functional.gelu(self.hidden(x))).squeeze(-1)
         return (self.cap * score.float().tanh()).softmax(-1)
@@ -93,7 +98,7 @@ def weigher(
     The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
 
     Raises:
-        ValueError: ``learned`` is combined with ``rate``.
+        ValueError: ``learned`` and ``rate`` are both set.
     """
     if learned and rate is not None:
         raise ValueError(

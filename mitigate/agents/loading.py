@@ -2,8 +2,8 @@
 
 No code in a folder is run. Files are compared with the manifest (``core/folders.py``). Weights are
 safetensors files, and settings are plain YAML, which is checked by the schema of the agent's class.
-Only classes in ``schema.KINDS`` are built. For other classes the user builds the agent, and the
-functions here load the weights into it (``agent=``).
+Only classes in ``schema.KINDS`` are built. If the agent is of another class, the user builds it,
+and the functions here load the weights into it (``agent=``).
 
 ``mitigate export`` writes a *hardened* folder. Its ``card.json`` records how the agent was trained
 and the hash of its weights; see ``checkpoints/README.md``.
@@ -36,13 +36,16 @@ CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, INPUTS)  # files of an exported agent besides weights and programs
 ONNX = ("perceive.onnx", "decide.onnx")
-# files that an export may write; the manifest must list each of them that a folder holds
+# files that an export may write; if a folder holds such a file, its manifest must list the file
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
-LONGEST_PATH = 1000  # maximum length of the path of a base (heuristic; the limit of Linux is 4095)
-FREE_WEIGHTS = 1 << 25  # memory up to which an agent is built without a check (heuristic): 128 MiB
+# maximum length of a path to base weights (heuristic; the limit of Linux is 4095)
+LONGEST_PATH = 1000
+# number of weights up to which an agent is built without a check (128 MiB; heuristic)
+FREE_WEIGHTS = 1 << 25
 TARGET = schema.KINDS[0]
-PAGES = {  # documentation pages of models that are not agents and need no export, by package
+# for each package of models that are not agents and need no export, its documentation page
+PAGES = {
     "mitigate.encoders": "docs/encoder.md",
     "mitigate.guards.frames": "docs/restoration.md",
     "mitigate.guards.text": "docs/safeguard.md",
@@ -60,14 +63,14 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 
     Args:
         folder: a hardened folder (as in :func:`load_hardened`), shipped weights
-            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. It is searched first
-            in the current folder, then in this project.
-        agent: an agent of a user's class with the settings of the trained one, into which the
+            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. The folder is
+            searched first in the current folder, then in this project.
+        agent: an agent of a user's class with the settings of the trained agent, into which the
             weights are loaded in place. If it is None, a new agent of a shipped kind is built.
 
     Raises:
         FileNotFoundError, ValueError: Weights are missing or damaged; the settings of their agent
-            are missing; the agent's class is a user's and ``agent`` is missing; or ``agent`` has
+            are missing; the agent is of a user's class, but ``agent`` is missing; or ``agent`` has
             different settings. The error message names the file.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
@@ -97,17 +100,17 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: Any = None) -> Any:
     """Return the agent of a hardened checkpoint on the CPU, in eval mode, ready for ``reset``.
 
-    This needs neither Hydra nor the simulator. Warns if an attribute of ``agent`` has the name of a
-    setting but a different value.
+    This function needs neither Hydra nor the simulator. A warning is issued if an attribute of
+    ``agent`` has the name of a setting but a different value.
 
     Args:
         folder: a folder such as ``checkpoints/hardened/ts_distill``.
-        base: for a folder of adapters, the weights to which they belong (a file or folder). If
-            None, the path in the card is used; it is searched below the current folder, the folders
-            above ``folder``, and the checkout.
-        agent: an agent of a user's class with the settings of the exported one, into which the
-            weights are loaded in place. If this agent has no ``settings()``, it gets the settings
-            in the folder. If it is None, a new agent of a shipped kind is built.
+        base: if the folder holds only adapters, the file or folder of the weights to which they
+            belong. If None, the path in the card is used; it is searched below the current folder,
+            the folders above ``folder``, and the checkout.
+        agent: an agent of a user's class with the settings of the exported agent, into which the
+            weights are loaded in place. If this agent has no ``settings()``, it receives the
+            settings in the folder. If it is None, a new agent of a shipped kind is built.
 
     Raises:
         FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
@@ -182,7 +185,7 @@ def build_from(config: Path) -> Any:
 
 
 def _check_size(config: Path, weights: Path) -> None:
-    """Raise ValueError if the agent in ``config`` is large and has more numbers than ``weights``.
+    """Raise ValueError if a large agent in ``config`` has more weights than ``weights`` has bytes.
 
     The agent is built without allocating memory for its weights.
     """
@@ -190,7 +193,8 @@ def _check_size(config: Path, weights: Path) -> None:
     arguments = agent_settings(config, kind)
     try:
         with torch.device("meta"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # a backbone's weights cannot be copied to this device
+            # the warning that a backbone's weights cannot be copied here
+            warnings.simplefilter("ignore")
             agent = schema.class_of(kind)(**arguments)
     except (TypeError, RuntimeError):  # build_from explains it
         return
@@ -198,13 +202,13 @@ def _check_size(config: Path, weights: Path) -> None:
     size = weights.stat().st_size
     if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
         raise ValueError(
-            f"The agent's settings in {config} do not fit: they ask for {count} weights, but "
+            f"The agent's settings in {config} do not fit: they require {count} weights, but "
             f"{weights} has only {size} bytes. Do not use this folder."
         )
 
 
 def config_of(weights: Path) -> Path:
-    """Return the path of the config that belongs to ``weights`` (a file or folder).
+    """Return the path of the config that belongs to ``weights``, which is a file or a folder.
 
     Raises:
         FileNotFoundError: There are no weights.
@@ -225,7 +229,7 @@ def _weights_of(place: Path) -> Path:
 
 
 def reject_other_models(run: Path) -> None:
-    """Raise ValueError for a run (or its folder ``agent``) whose model is not a navigation
+    """Raise ValueError if the model of a run (or in its folder ``agent``) is not a navigation
     agent.
     """
     config = run / CONFIG
@@ -246,12 +250,13 @@ def reject_other_models(run: Path) -> None:
 def check_same(agent: Any, config: Path, again: str) -> None:
     """Compare the settings of ``agent`` with those in ``config``.
 
-    If the agent has no ``settings()``, its plain attributes with the names of settings are
-    compared. A difference then causes only a warning, because an attribute may mean something else.
+    If the agent has no ``settings()``, those of its plain attributes that have the name of a
+    setting are compared. In this case, a difference causes only a warning, because an attribute of
+    the same name may mean something else.
 
     Raises:
-        ValueError: The settings differ, or the file has no settings; the message for that ends with
-            ``again``.
+        ValueError: The settings differ, or the file has no settings (this message ends with
+            ``again``).
     """
     stored = _settings_in(config, again)
     stated = stated_settings(agent)
@@ -263,8 +268,8 @@ def check_same(agent: Any, config: Path, again: str) -> None:
     if not wrong:
         return
     text = (
-        f"{config} is of an agent with {wrong[0]}={stored[wrong[0]]!r:.60}, but the given agent "
-        f"has {actual[wrong[0]]!r:.60}. Build it with the settings in that file."
+        f"{config} belongs to an agent with {wrong[0]}={stored[wrong[0]]!r:.60}, but the given "
+        f"agent has {actual[wrong[0]]!r:.60}. Build it with the settings in that file."
     )
     if stated is not None:
         raise ValueError(text)
@@ -272,7 +277,7 @@ def check_same(agent: Any, config: Path, again: str) -> None:
 
 
 def give_settings(agent: Any, config: Path, again: str) -> None:
-    """Set ``settings`` of an agent that has none to the settings in ``config``.
+    """If an agent has no ``settings``, set them to the settings in ``config``.
 
     ``building.build_agent`` does the same, so the fingerprints are equal. Raises the errors of
     :func:`check_same`.
@@ -285,14 +290,12 @@ def give_settings(agent: Any, config: Path, again: str) -> None:
 def _settings_in(config: Path, again: str) -> dict[str, Any]:
     stored = settings.read(config).get("agent")
     if not isinstance(stored, dict):
-        raise ValueError(f"{config} has no settings of an agent. {again}")
+        raise ValueError(f"{config} contains no settings of an agent. {again}")
     return stored
 
 
 def _as_json(value: Any) -> Any:
-    """Return ``value`` as it would be after writing and reading it as JSON; a tuple becomes a
-    list.
-    """
+    """Return ``value`` as it would be after it is written and read as JSON; tuples become lists."""
     return json.loads(json.dumps(value, default=lambda one: read(one, "tolist", "__str__")()))
 
 
@@ -300,7 +303,7 @@ def _as_json(value: Any) -> Any:
 
 
 def kind_of(config: Path) -> str:
-    """Return the kind (in ``schema.KINDS``) of the agent in ``config``; the default is the first
+    """Return the kind (one of ``schema.KINDS``) of the agent in ``config``; by default the first
     kind.
     """
     node = settings.read(config).get("agent")
@@ -332,7 +335,7 @@ def is_hardened(folder: str | Path) -> bool:
 
 
 def adapters_only(folder: str | Path) -> bool:
-    """Return whether ``folder`` is hardened and holds adapters with a reference to their base.
+    """Return whether ``folder`` is hardened and holds only adapters, which refer to base weights.
 
     Raises the errors of :func:`read_card`.
     """
@@ -340,7 +343,7 @@ def adapters_only(folder: str | Path) -> bool:
 
 
 def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
-    """Load the weights of a hardened folder into ``agent``: adapters and base.
+    """Load the weights of a hardened folder into ``agent``, including adapters and base weights.
 
     Adapters of ``agent`` that are not in the folder are not changed. Arguments and errors are as in
     :func:`load_hardened`. ValueError is also raised if the agent has different adapters or weights.
@@ -399,7 +402,7 @@ def check_hardened(folder: Path) -> dict[str, Any]:
 
 
 def read_card(folder: Path) -> dict[str, Any]:
-    """Return the card of the hardened ``folder``. Errors as :func:`check_hardened`."""
+    """Return the card of the hardened ``folder``; raise the errors of :func:`check_hardened`."""
     file = folder / CARD
     if not file.is_file():
         raise FileNotFoundError(
@@ -435,9 +438,10 @@ def _is_path(value: Any) -> bool:
 
 
 def vocabulary_sha(agent: Any) -> str | None:
-    """Return the first 12 hex digits of the sha256 of an agent's words in the order of their ids.
+    """Return a hash of an agent's vocabulary, or None if the agent has no vocabulary.
 
-    If the agent has no vocabulary, the result is None.
+    The hash consists of the first 12 hex digits of the sha256 of the words, in the order of their
+    ids.
     """
     if not hasattr(agent, "vocabulary"):  # only some kinds of agents have a vocabulary
         return None
@@ -454,7 +458,7 @@ def _find_base(folder: Path, reference: dict[str, str], base: str | Path | None)
     for file in present:
         if sha256(file) == reference["sha256"]:
             return file
-    cause = f"{present[0]} has another" if present else f"{files[0]} does not exist"
+    cause = f"{present[0]} has a different one" if present else f"{files[0]} does not exist"
     raise (ValueError if present else FileNotFoundError)(
         f"The adapters in {folder} belong to the weights {reference['weights']} with sha256 "
         f"{reference['sha256']}, but {cause}. Name these weights: load_hardened(folder, base=...)."

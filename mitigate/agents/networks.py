@@ -13,12 +13,14 @@ from torch import nn
 
 from mitigate.agents.source import is_users, methods, named_values
 
-MOST_VALUES = 100_000  # values that are visited (heuristic: under a second)
+# maximum number of values that are visited (heuristic; takes less than a second)
+MOST_VALUES = 100_000
 _SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 
 
 def networks(agent: Any) -> dict[str, nn.Module]:
-    """Return the networks that ``agent`` is or holds, by place, without the networks inside them.
+    """Return the networks that ``agent`` is or holds, by their place in the agent; leave out
+    networks inside other networks.
 
     Attributes, containers, closures and the global variables that methods refer to are searched,
     without running the agent's code.
@@ -30,7 +32,7 @@ def networks(agent: Any) -> dict[str, nn.Module]:
         place, value = waiting.popleft()
         if id(value) in seen or isinstance(value, _SCALARS):
             continue
-        seen[id(value)] = value  # a reference, so that the id stays unique
+        seen[id(value)] = value  # holding a reference keeps the id unique
         if isinstance(value, nn.Module):
             by_place[place] = value
             seen |= {id(module): module for module in value.modules()}
@@ -64,8 +66,8 @@ def _parts(value: Any) -> Iterable[tuple[Any, Any]]:
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode, and restore the previous modes of all modules
-    at the end.
+    """Put every network of ``agent`` into eval mode, and restore the modes of all modules at the
+    end.
 
     Each network's ``eval()`` is called, because a class may override it.
     """

@@ -1,6 +1,7 @@
 """Check observations before an agent uses them.
 
-Otherwise a wrong unit or layout would raise no error: the agent would only navigate badly.
+Without these checks, a wrong unit or layout would raise no error, and the agent would navigate
+badly.
 """
 
 from __future__ import annotations
@@ -15,9 +16,10 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# metres (heuristic); indoors, some pixel of twelve views is always nearer, such as the floor
+# distance in metres (heuristic): indoors, some pixel of twelve views is always nearer, such as one
+# on the floor
 FARTHEST = 50.0
-NEAREST = 1.0  # metres (heuristic); in almost every room, some pixel is farther away
+NEAREST = 1.0  # metres (heuristic): in almost every room, some pixel is farther away
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 
@@ -49,8 +51,8 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
         views = sensor.shape[0] if len(sensor.shape) == 4 else 1
         if name in (RGB, DEPTH) and views != expected:
             raise ValueError(
-                f"The world {world} shows {views} of {VIEWS} views in {name}, but "
-                f"{type(agent).__name__} takes {expected}. Set env.views={expected}, as conf/agent "
+                f"The number of views in {name} is {views} in the world {world}, but "
+                f"{type(agent).__name__} needs {expected}. Set env.views={expected}, as conf/agent "
                 'does for this kind of agent (mitigate.benchmark: options=["env.views='
                 f'{expected}"]), or choose another agent.'
             )
@@ -64,7 +66,7 @@ def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
     """Return the entry "rgb" (uint8) or "depth" (float32 metres), ready for torch.
 
-    Warns about depth that looks normalised.
+    A warning is issued for depth that looks normalised.
 
     Args:
         observation: an observation of the world.
@@ -72,12 +74,13 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
         views: the number of views, 1 or 12.
 
     Returns:
-        [12, H, H, c] for 12 views, [H, H, c] for one; c-contiguous and writeable.
+        An array [12, H, H, c] for 12 views, or [H, H, c] for one view. The array is C-contiguous
+        and writeable.
 
     Raises:
         KeyError: The entry is missing.
         TypeError: RGB is not uint8, or depth is not floating point.
-        ValueError: The shape differs, or depth is in millimetres.
+        ValueError: The shape is not the expected shape, or depth is in millimetres.
     """
     array = _entry(observation, name)
     if name == RGB and array.dtype != np.uint8:
@@ -113,7 +116,7 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
     """Check the pose [3] and return it unchanged.
 
     Raises:
-        KeyError: It is missing.
+        KeyError: The pose is missing.
         ValueError: The pose does not consist of three finite numbers.
     """
     array = _entry(observation, POSE)
@@ -135,8 +138,8 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
         raise TypeError(f"instruction must be a string, got a {type(text).__name__}.")
     if set(vocabulary.encode(text)) == {UNKNOWN}:
         warnings.warn(
-            f"The agent knows no word of the instruction {text[:60]!r}, so it walks without one. "
-            "It was trained on English routes.",
+            f"The agent knows no word of the instruction {text[:60]!r}, so it acts without an "
+            "instruction. It was trained on English routes.",
             stacklevel=3,
         )
     return text
@@ -153,7 +156,7 @@ def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:
 
 
 def _check_unit(depth: np.ndarray, views: int) -> None:
-    """Raise ValueError for depth in millimetres; warn about normalised depth."""
+    """Raise ValueError if depth is in millimetres; warn if depth looks normalised."""
     if ((depth > NEAREST) & (depth <= FARTHEST)).any():
         return
     valid = depth[np.isfinite(depth) & (depth > 0)]

@@ -1,8 +1,8 @@
 """Define the allowed values of settings that are stored with weights.
 
 Each class in ``KINDS`` defines ``settings_schema`` next to its constructor. The settings of shipped
-agents are far below the limits. The limits prevent a file from allocating all memory, and from
-using patterns that take too long to match.
+agents are far below the limits. The limits ensure that a file can neither cause a huge memory
+allocation nor contain patterns that take too long to match.
 """
 
 from __future__ import annotations
@@ -20,9 +20,9 @@ SENSES = (RGB, DEPTH, "instruction")
 MOST_TARGETS = 64  # maximum number of patterns in a list
 MOST_WORDS = 50_000  # largest size of a vocabulary
 _WORD = re.compile(r"[a-z]{1,40}")
-# patterns contain no groups and no repetition counts
+# patterns of module names; groups and repetition counts are not allowed
 _PATTERN = re.compile(r"[\w.\\\[\]|*+?-]{1,200}", re.ASCII)
-_REPEATS = 2  # maximum number of quantifiers in a pattern; more can backtrack for too long
+_REPEATS = 2  # maximum number of quantifiers in a pattern; with more, matching can take too long
 
 
 def check_blind(blind: Sequence[str], senses: Sequence[str] = SENSES) -> None:
@@ -33,14 +33,14 @@ def check_blind(blind: Sequence[str], senses: Sequence[str] = SENSES) -> None:
 
 
 class Kind(NamedTuple):
-    """Allowed values: The text ``words`` describes the values that ``fits`` accepts."""
+    """A set of allowed values: ``fits`` accepts them, and the text ``words`` describes them."""
 
     words: str
     fits: Callable[[Any], bool]
 
 
 def whole(least: int, most: int) -> Kind:
-    """Return the type of integers from ``least`` to ``most`` inclusive, without booleans."""
+    """Return the kind of value that allows integers from ``least`` to ``most`` inclusive."""
     return Kind(
         f"a whole number from {least} to {most}",
         lambda value: type(value) is int and least <= value <= most,
@@ -48,7 +48,7 @@ def whole(least: int, most: int) -> Kind:
 
 
 def number(least: float, most: float) -> Kind:
-    """Return the type of numbers from ``least`` to ``most`` inclusive, without booleans."""
+    """Return the kind of value that allows numbers from ``least`` to ``most`` inclusive."""
     return Kind(
         f"a number from {least:g} to {most:g}",
         lambda value: type(value) in (int, float) and least <= value <= most,
@@ -56,12 +56,12 @@ def number(least: float, most: float) -> Kind:
 
 
 def one_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the type of values that are in ``allowed``."""
+    """Return the kind of value that allows only the members of ``allowed``."""
     return Kind(f"one of {', '.join(allowed)}", lambda value: value in allowed)
 
 
 def some_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the type of lists whose items are in ``allowed``."""
+    """Return the kind of value that allows lists whose items are in ``allowed``."""
     return Kind(
         f"a list of {', '.join(allowed)}",
         lambda value: isinstance(value, list) and all(item in allowed for item in value),
@@ -118,9 +118,9 @@ class Schema(NamedTuple):
 
     Attributes:
         settings: the allowed values by name; nested mappings describe the arguments of a part.
-        part: the setting with the arguments of the part that has attention heads, or "" if there is
-            no such part.
-        usual: default width and heads of that part.
+        part: the setting that holds the arguments of the part with attention heads, or "" if there
+            is no such part.
+        usual: default width and default number of heads of that part.
     """
 
     settings: dict[str, Any]
@@ -128,7 +128,7 @@ class Schema(NamedTuple):
     usual: tuple[int, int] = (1, 1)
 
 
-KINDS = (  # the only classes that a folder may name
+KINDS = (  # the only classes that the config in a folder may name
     "mitigate.agents.topological.TopologicalAgent",
     "mitigate.agents.recurrent.RecurrentAgent",
     "mitigate.agents.frontier.FrontierAgent",
@@ -139,7 +139,7 @@ def class_of(target: str) -> Any:
     """Import and return the class of one of ``KINDS``."""
     assert target in KINDS, target
     module, _, name = target.rpartition(".")
-    return getattr(import_module(module), name)  # always a name from KINDS
+    return getattr(import_module(module), name)  # the name comes from KINDS
 
 
 def schema_of(target: str) -> Schema:
@@ -159,7 +159,7 @@ def check(
         values: the settings.
         file: source of the settings, for messages.
         target: the kind of agent, one of ``KINDS``.
-        again: advice after an error.
+        again: advice that ends the error message.
 
     Raises:
         ValueError: A setting is unknown or has an invalid value; the message names the file and the

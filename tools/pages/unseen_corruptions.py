@@ -63,8 +63,8 @@ def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) ->
             f"{max(error):.2f} m (depth)"
         )
     return (
-        f"The standard suite has a PSNR or mean error of {ranges[0]}; the unseen corruptions have "
-        f"{ranges[1]}."
+        f"The PSNR and the mean depth error are {ranges[0]} for the standard suite, and "
+        f"{ranges[1]} for the unseen corruptions."
     )
 
 

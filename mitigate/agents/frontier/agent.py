@@ -1,8 +1,10 @@
-"""The frontier agent turns around, maps, goes to the most promising frontier, then to the object.
+"""The frontier agent searches for an object: it turns around, builds a map and follows frontiers.
 
-The method follows VLFM, L3MVN and WMNav. Only its RGB encoder, which recognises objects, is
-learned. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level
-action. ``begin`` and ``act_all`` do the same for several episodes at once.
+A frontier is the border between known and unknown space. The agent goes to the most promising
+frontier until the object is found, and then to the object. The method follows VLFM, L3MVN and
+WMNav. Only the RGB encoder, which recognises objects, is learned. ``reset(instruction)`` starts an
+episode; ``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same
+for several episodes at once.
 """
 
 from __future__ import annotations
@@ -45,22 +47,25 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-# number of initial turns: 270 degrees, which cover the full circle with a 90-degree camera
+# number of initial turns (270 degrees); a camera of 90 degrees then has seen the full circle
 TURNS = 18
 AGAIN = 8  # number of actions until the agent plans again
-LEG = 1.5  # metres that the agent goes straight before it checks its route again
-STUCK = 0.05  # a forward step shorter than this (metres) was blocked
-# a step shorter than this (metres) slid along an obstacle; such steps before the agent gives up
+LEG = 1.5  # distance in metres that the agent goes straight before it checks its route again
+STUCK = 0.05  # a forward step that moves less than this distance (metres) was blocked
+# a step that moves less than SLID metres slid along an obstacle; after BUMPS such steps the agent
+# gives up
 SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
-WORTH = 6.0  # path length in metres that equals a frontier value of 1 (chosen on val_seen_ogn)
-# minimum evidence for going to the object, before and after LAST actions
+WORTH = 6.0  # metres of path that outweigh a frontier value of 1 (chosen on val_seen_ogn)
+# minimum evidence with which the agent goes to the object: FOUND before LAST actions, MAYBE after
+# them
 FOUND, MAYBE = 4.0, 1.0
-TRIES = 12  # attempts to plan per step
+TRIES = 12  # maximum number of attempts to plan in one step
 # the agent stops if the predicted probability that the object is near exceeds this
 NEAR_ENOUGH = 0.4
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-# extra path in metres that is accepted per metre closer to the object's centre (heuristic)
+# a position may cost this many more metres of path per metre that it is closer to the object's
+# centre (heuristic)
 MIDDLE = 3.0
 # rooms in which each object is likely; L3MVN asks a language model for these
 LIKELY = {
@@ -71,7 +76,7 @@ LIKELY = {
     "office": ("desk", "chair", "bookshelf", "lamp"),
     "dining room": ("table", "chair", "cabinet", "painting"),
 }
-ROOM_SHARE = 0.3  # weight of a likely room relative to the object itself (heuristic)
+ROOM_SHARE = 0.3  # weight of seeing a likely room, relative to seeing the object itself (heuristic)
 _ROOMS = slice(len(CONCEPTS) - len(ROOM_NAMES), len(CONCEPTS))
 
 
@@ -89,7 +94,7 @@ class FrontierAgent(SideBySide, nn.Module):
         ValueError: A name in ``blind`` is unknown.
     """
 
-    # part of published fingerprints, so it must not change
+    # this name is part of published fingerprints, so it must not change
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"
 
     run_state = ("_started", "actions")
@@ -98,7 +103,7 @@ class FrontierAgent(SideBySide, nn.Module):
     )
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
-    # number of episodes at once (heuristic): encoding a frame alone takes twice as long
+    # number of episodes at once (heuristic): a frame takes twice as long if it is encoded alone
     together = 8
     encoders = {RGB: ("rgb_encoder",)}
     labels = {RGB: LABELS[RGB]}
@@ -128,7 +133,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return copy.deepcopy(self._settings)
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the encoder by its name."""
+        """Return a dict that maps the encoder's name to the encoder."""
         return {"rgb_encoder": self.rgb_encoder}
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
@@ -179,16 +184,14 @@ class FrontierAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return one low-level action.
 
-        Raises RuntimeError before the first ``reset``, and the errors of
+        Raises RuntimeError if ``reset`` was not called before, and the errors of
         ``agents/observation.py``.
         """
         check_started(self._started)
         return self.answers([observation], [self], 1)[0]
 
     def _act(self, observation: Mapping[str, np.ndarray], concepts: np.ndarray) -> int:
-        """Return an action; ``concepts`` [4, C] holds the probability of each concept in each
-        column.
-        """
+        """Return an action; ``concepts`` [4, C] holds each concept's probability in each column."""
         pose = checked.pose(observation).astype(np.float64)
         self._update_map(observation, pose, concepts)
         self.actions += 1
@@ -197,8 +200,8 @@ class FrontierAgent(SideBySide, nn.Module):
         return action
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the route after a motion that the agent did not choose, and plan again at the
-        next step.
+        """Discard the route after a motion that the agent did not choose; the next step plans
+        again.
         """
         self._planned = 0
         if action != FORWARD:
@@ -206,7 +209,9 @@ class FrontierAgent(SideBySide, nn.Module):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """The end of the current leg, plan metres [2], or None."""
+        """The end of the current straight part of the route (plan metres [2]), or None without a
+        route.
+        """
         return self.controller.route[-1] if self.controller.route else None
 
     def _update_map(
@@ -226,7 +231,9 @@ class FrontierAgent(SideBySide, nn.Module):
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
 
     def _check_progress(self, pose: np.ndarray, moved: float) -> None:
-        """Mark the cells ahead as blocked if a forward step of ``moved`` metres was too short."""
+        """Mark the cells ahead as blocked if the last forward step, of ``moved`` metres, was too
+        short.
+        """
         self._bumps += moved < SLID
         if moved < STUCK:
             self.grid.block(pose)
@@ -244,7 +251,7 @@ class FrontierAgent(SideBySide, nn.Module):
         """Return the next action of the plan; plan again if needed."""
         action = self.controller.action(pose) if self._planned > 0 else None
         self._planned -= 1
-        for _ in range(TRIES):  # a leg of the route may end at the agent's position
+        for _ in range(TRIES):  # a part of the route may end at the agent's position
             if action is not None:
                 return action
             action = self._plan(pose)
@@ -276,8 +283,8 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.controller.action(pose)
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
-        """Turn to the object's cells and stop if the object is visible nearby; else discard the
-        cells.
+        """Turn to the object's cells, and stop if the object is visible nearby. Otherwise discard
+        the evidence of these cells.
         """
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
@@ -312,9 +319,9 @@ class FrontierAgent(SideBySide, nn.Module):
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
-        """Choose the frontier with the highest value minus path cost.
+        """Return the nearest cell [2] of the best frontier, or None if there is no frontier.
 
-        Returns its nearest cell [2].
+        The best frontier has the highest difference between its value and its path cost.
         """
         best = -np.inf
         target = None
@@ -331,7 +338,8 @@ class FrontierAgent(SideBySide, nn.Module):
 def named(text: str) -> int | None:
     """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
 
-    A route ends at the object named last; "find a chair" names only one.
+    A route description ends at the object that it names last, and "find a chair" names only one
+    object.
     """
     ends = [
         (match.end(), len(name), i)
@@ -344,7 +352,8 @@ def named(text: str) -> int | None:
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
     """Return the likelihood [n] that the object lies in the direction of each column.
 
-    It depends on whether the object and likely rooms are visible.
+    The likelihood depends on whether the object, and rooms in which it is likely, are visible in
+    the column.
     """
     if thing is None:
         return np.zeros(len(concepts), np.float32)

@@ -1,9 +1,10 @@
-"""The map of one episode, and functions that plan on it.
+"""Define the map of one episode, and functions that plan on this map.
 
-``Grid`` holds square cells around the start, in the world's axes, with free space, value, and
-evidence for the object. Depth updates free and occupied cells by log-odds (Moravec and Elfes 1985).
-The evidence of the RGB encoder is projected onto the cells that are visible in each column of the
-view. The functions plan routes over free and unknown cells, and find frontiers and the object.
+``Grid`` holds square cells around the start position, aligned with the axes of the world. Each cell
+stores free space, a value, and evidence for the object. Depth updates free and occupied cells by
+log-odds (Moravec and Elfes 1985). The output of the RGB encoder is projected onto the cells that
+are visible in each column of the view. The functions plan routes over free and unknown cells, and
+find frontiers and the cells of the object.
 """
 
 from __future__ import annotations
@@ -21,28 +22,31 @@ from mitigate.core.observation import FORWARD_METRES
 
 CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
-REACH = 5.0  # maximum depth in metres that is used (VLFM: 5)
+REACH = 5.0  # maximum depth in metres that is used (as in VLFM)
 LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
 # surfaces between these heights in metres can belong to objects
 THINGS_LOW, THINGS_HIGH = 0.05, 2.3
-# log-odds of an occupied and of a free observation, and the bound of their sum
+# log-odds that an observation of an occupied cell adds and that an observation of a free cell
+# subtracts; bound of their sum
 HIT, MISS, MOST = 0.9, 0.4, 3.5
 NEAR = 2.0  # distance in metres up to which training labels call an object near (agents/text.py)
 SLACK = 0.3  # tolerance in metres for the distance NEAR (heuristic)
 SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
-RADIUS = 0.2  # clearance in metres from occupied cells
-TIGHT, WIDE = 3.0, 0.4  # cells with a clearance below WIDE metres cost TIGHT times as much
+RADIUS = 0.2  # distance in metres that the agent keeps from occupied cells
+# cells that are less than WIDE metres from an obstacle cost TIGHT times as much
+TIGHT, WIDE = 3.0, 0.4
 # cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
 UNKNOWN = 4.0
-MARGIN = 12  # planning also includes a margin of this many cells around the known area
-# cells with at least this fraction of the highest evidence belong to the object (heuristic)
+MARGIN = 12  # planning includes a margin of this many cells around the known area
+# cells whose evidence is above this fraction of the highest evidence belong to the object
+# (heuristic)
 SHARE = 0.7
 SMALLEST = 4  # minimum number of cells of a frontier
 
 
 class Grid:
-    """Map of one episode: arrays [SIDE, SIDE], rows along y.
+    """Map of one episode. All arrays have the shape [SIDE, SIDE], and rows run along y.
 
     Args:
         start: pose [3] of the first observation.
@@ -81,10 +85,10 @@ class Grid:
         """Add one observation.
 
         Args:
-            depth: float32 [H, W] metres, 90 degrees ahead.
+            depth: float32 [H, W] metres, of a forward view of 90 degrees.
             pose: [3].
-            seen: [n, 2], the probabilities that the object is visible, and that it is visible
-                within 2 m, for each column from left to right.
+            seen: [n, 2], for each column from left to right, the probability that the object is
+                visible and the probability that it is visible within 2 m.
             worth: [n], the likelihood that the object lies in the direction of each column.
         """
         self._looks += 1
@@ -96,7 +100,7 @@ class Grid:
         _scan(depth, camera, columns, free, (self.evidence, self._stamp, self._looks))
 
     def block(self, pose: np.ndarray) -> None:
-        """Mark the cells ahead of a pose [3] as blocked, regardless of depth."""
+        """Mark the cells ahead of a pose [3] as blocked, whatever depth shows."""
         ahead = np.array([-np.sin(pose[2]), np.cos(pose[2])])
         aside = np.array([ahead[1], -ahead[0]])
         for offset in (-2 * CELL, -CELL, 0.0, CELL, 2 * CELL):
@@ -104,7 +108,9 @@ class Grid:
             self.blocked[i, j] = self.known[i, j] = True
 
     def settle(self, cell: np.ndarray) -> None:
-        """Mark all cells within half a metre of ``cell`` as known, so that no frontier is left."""
+        """Mark all cells within half a metre of ``cell`` as known, so that no frontier remains
+        there.
+        """
         reach = int(0.5 / CELL)
         i, j = np.maximum(cell - reach, 0)
         self.known[i : i + 2 * reach + 1, j : j + 2 * reach + 1] = True
@@ -151,9 +157,10 @@ def _scan(depth, camera, columns, free, things):
                 floor = max(floor, r)
             if THINGS_LOW < up < THINGS_HIGH and r < REACH:
                 _witness(x + dx * r, y + dy * r, r, odds[column], seen[column], things)
-        met = second <= REACH  # a single reading may be noise
+        met = second <= REACH  # two readings are needed, because one may be noise
         end = second if met else min(floor, REACH)
-        conf = 1 / stretch**2  # VLFM: cos^2 of the angle from the centre of the view
+        # as in VLFM, the square of the cosine of the angle from the view's centre
+        conf = 1 / stretch**2
         for k in range(int(end / CELL)):
             i, c = int((y + dy * k * CELL) / CELL), int((x + dx * k * CELL) / CELL)
             if i < 0 or c < 0 or i >= occupied.shape[0] or c >= occupied.shape[1]:
@@ -182,18 +189,18 @@ def _witness(x, y, r, odds, seen, things):
     if seen[0] > 0.5 and (
         (seen[1] > 0.6 and r > NEAR + SLACK) or (seen[1] < 0.3 and r < NEAR - SLACK)
     ):
-        # in the other case, the object is visible but closer or farther than this surface
+        # the object is visible in this column, but it is closer or farther than this surface
         weight = -0.5
     evidence[i, j] = min(max(evidence[i, j] + weight, -SURE), SURE)
 
 
 @dataclass
 class Routes:
-    """Path costs from the agent over a window of the map.
+    """Costs of the paths from the agent to all cells in a window of the map.
 
     Attributes:
         cost: float [h, w] in metres.
-        before: int [h * w], the predecessor of each cell.
+        before: int [h * w], the predecessor of each cell on its path.
         corner: row and column of the window's first cell.
     """
 
@@ -211,7 +218,9 @@ class Routes:
         return np.stack([cells // width, cells % width], 1) + self.corner
 
     def at(self, cells: np.ndarray) -> np.ndarray:
-        """Return the costs [n] of cells [n, 2] of the map; infinite outside the window."""
+        """Return the path costs [n] of cells [n, 2] of the map; cells outside the window cost
+        infinity.
+        """
         local = np.asarray(cells) - self.corner
         inside = ((local >= 0) & (local < self.cost.shape)).all(1)
         out = np.full(len(local), np.inf)
@@ -220,7 +229,9 @@ class Routes:
 
 
 def clearance(grid: Grid) -> np.ndarray:
-    """Return metres from each cell to the nearest occupied cell: float32 [SIDE, SIDE]."""
+    """Return the distance in metres from each cell to the nearest occupied cell, float32 [SIDE,
+    SIDE].
+    """
     free = ((grid.occupied <= 0) & ~grid.blocked).astype(np.uint8)
     return cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL
 
@@ -244,8 +255,8 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """Return the 8-connected graph of open cells; the cost of an edge is its length times the mean
-    price of its cells.
+    """Return the 8-connected graph of open cells. The cost of an edge is its length times the mean
+    price of its two cells.
     """
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
@@ -275,8 +286,9 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 def object_cells(grid: Grid, least: float) -> np.ndarray:
     """Return the group of cells [n, 2] with the most evidence for the object.
 
-    A cell counts if its evidence is above ``least`` and above ``SHARE`` of the highest evidence.
-    So each observation that agrees with earlier ones makes the group of cells smaller.
+    A cell is in the group if its evidence is above ``least`` and above the fraction ``SHARE`` of
+    the highest evidence. So each observation that confirms earlier observations makes the group
+    smaller.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():

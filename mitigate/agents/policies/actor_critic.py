@@ -1,7 +1,7 @@
 """Policies of other libraries as actor-critics, for reinforcement learning.
 
 :class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
-estimate of the return from the current frame on.
+estimate of the return from the current frame to the end of the episode.
 """
 
 from __future__ import annotations
@@ -18,15 +18,16 @@ from torch.distributions import Categorical, Distribution, OneHotCategorical
 from mitigate.agents.policies.policy import Policy, copied
 from mitigate.agents.policies.stable_baselines import StableBaselinesPolicy
 
-_CATEGORICAL = (Categorical, OneHotCategorical)  # torchrl's OneHotCategorical is a Categorical
+# torchrl's OneHotCategorical is a subclass of Categorical
+_CATEGORICAL = (Categorical, OneHotCategorical)
 HIDDEN = 64  # width of a new critic, the default of stable-baselines3
 
 
 class Joint(Distribution):
     """The distribution of whole actions, made from the distributions of their parts.
 
-    A sample is [B] or [B, n] for whole numbers (indices, also of one-hot parts), and [B, ...] for
-    real numbers.
+    A sample of discrete actions has the shape [B] or [B, n] and holds indices, also for one-hot
+    parts. A sample of continuous actions has the shape [B, ...].
     """
 
     def __init__(self, parts: Sequence[Distribution]) -> None:
@@ -67,16 +68,18 @@ class ActorCritic(nn.Module):
     """A policy with a critic.
 
     The critic of an actor-critic of stable-baselines3 starts as a copy of the policy's own critic.
-    Other policies get a new one, a small network on the output of one of their modules. A critic
-    trains no module of the policy, so that wrong values cannot change the actions directly.
+    Other policies get a new critic, a small network that reads the output of one of the policy's
+    modules. Training the critic does not train modules of the policy, so that wrong values cannot
+    change the actions directly.
 
     Args:
         policy: the policy. It is not copied.
-        frames: an example of its frames by sensor, [1, ...], which gives the size of a new critic.
+        frames: an example of the policy's frames by sensor, [1, ...]; it determines the input size
+            of a new critic.
         module: name of the module of the network whose output a new critic reads.
 
     Raises:
-        ValueError: The policy has a memory, or gives no distribution of its actions.
+        ValueError: The policy has a memory, or returns no distribution of its actions.
     """
 
     def __init__(self, policy: Policy, frames: Mapping[str, np.ndarray], module: str) -> None:
@@ -91,8 +94,9 @@ class ActorCritic(nn.Module):
         network: Any = policy.network
         if isinstance(policy, StableBaselinesPolicy) and not hasattr(network, "predict_values"):
             raise ValueError(
-                f"{policy.name} has no critic of states, which method='ppo' needs: in "
-                "stable-baselines3 PPO and A2C have one. Use method='self_distil'."
+                f"{policy.name} has no critic that estimates the value of a state, but "
+                "method='ppo' needs one. In stable-baselines3, PPO and A2C have such a critic. Use "
+                "method='self_distil'."
             )
         with torch.no_grad():
             self.actions(frames)
@@ -121,7 +125,7 @@ class ActorCritic(nn.Module):
 
     @torch.no_grad()
     def _features(self, frames: Mapping[str, np.ndarray]) -> Any:
-        """Return what the critic reads, without gradients."""
+        """Return the input of the critic, without gradients."""
         if isinstance(self.policy, StableBaselinesPolicy):
             network: Any = self.policy.network
             arrays = {name: frames[name] for name in self.policy.sensors}
@@ -139,7 +143,7 @@ class ActorCritic(nn.Module):
 
 
 class _StableBaselinesCritic(nn.Module):
-    """A copy of the critic of an actor-critic of stable-baselines3, on extracted features."""
+    """A copy of the critic of a stable-baselines3 policy; the input is the extracted features."""
 
     def __init__(self, network: Any) -> None:
         super().__init__()
@@ -156,5 +160,5 @@ def _new_critic(size: int) -> nn.Module:
 
 
 def _per_action(values: Tensor) -> Tensor:
-    """Return values [B, ...] of the numbers of an action, summed to [B]."""
+    """Return values [B, ...], one per number in an action, summed over each action to [B]."""
     return values.flatten(1).sum(1) if values.dim() > 1 else values

@@ -1,4 +1,4 @@
-"""What a policy answers for a batch of frames, and how two answers are compared."""
+"""Define the answers of policies to a batch of frames, and compare two answers."""
 
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from torch.distributions import (
     kl_divergence,
 )
 
-# Either one distribution per part of the action, or actions or action values [B, ...]
+# either one distribution for each part of the action, or a tensor [B, ...] of actions or of action
+# values
 Answer = Sequence[Distribution] | Tensor
 
 
@@ -38,9 +39,9 @@ def mode(distribution: Any) -> Tensor:
 def divergence(teacher: Answer, student: Answer) -> Tensor:
     """Return the mean difference over the batch between the student's and the teacher's answers.
 
-    For distributions it is the KL divergence KL(teacher || student), summed over the parts of an
-    action. For plain actions or values it is the squared error divided by the teacher's variance
-    over the batch.
+    For distributions, the difference is the KL divergence KL(teacher || student), summed over the
+    parts of an action. For actions or action values without a distribution, it is the squared error
+    divided by the variance of the teacher's answers over the batch.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         assert isinstance(teacher, Tensor) and isinstance(student, Tensor)
@@ -50,7 +51,8 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
     for one, other in zip(teacher, student, strict=True):
         try:
             kl = kl_divergence(_base(one), _base(other))
-        except NotImplementedError:  # such as a fixed action given as a distribution
+        except NotImplementedError:
+            # raised, for example, if a fixed action is represented as a distribution
             return divergence(
                 torch.cat([mode(t) for t in teacher], -1), torch.cat([mode(s) for s in student], -1)
             )
@@ -59,12 +61,14 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
 
 
 def imitation(teacher: Answer, student: Answer) -> Tensor:
-    """Return how badly the student predicts the teacher's likeliest action, mean over the batch.
+    """Return the student's error in predicting the teacher's likeliest action, averaged over the
+    batch.
 
-    Cross-entropy for discrete actions. For continuous actions, and for values without a
-    distribution, the squared error divided by the teacher's variance over the batch. Unlike the KL
-    divergence, it matters where the teacher is undecided: a policy whose two best actions have
-    probabilities of 0.50 and 0.48 acts differently if these change places.
+    For discrete actions, the error is the cross-entropy. For continuous actions, and for values
+    without a distribution, it is the squared error divided by the variance of the teacher's answers
+    over the batch. Unlike the KL divergence, this error also counts differences where the teacher
+    is undecided: if the teacher's two best actions have probabilities of 0.50 and 0.48, a student
+    that swaps these probabilities acts differently.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         return divergence(teacher, student)
@@ -80,7 +84,9 @@ def imitation(teacher: Answer, student: Answer) -> Tensor:
 
 
 def _base(distribution: Any) -> Distribution:
-    """Remove bijective transforms from a distribution, which do not change the divergence."""
+    """Remove bijective transforms from a distribution, because they do not change the
+    divergence.
+    """
     while isinstance(distribution, (Independent, TransformedDistribution)):
         distribution = distribution.base_dist
     return distribution

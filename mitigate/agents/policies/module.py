@@ -21,11 +21,11 @@ Forward = Callable[..., Any]
 class ModulePolicy(Policy):
     """A plain ``nn.Module``.
 
-    ``forward(network, observation)``, or with ``recurrent`` ``forward(network, observation,
-    memory)``, returns logits of the actions [B, n] (discrete actions), actions [B, ...]
-    (continuous ones), a ``torch.distributions`` object, or a list of these; with ``recurrent``
-    also the new memory. By default, the network itself is called. ``observation`` holds tensors on
-    the network's device.
+    The policy calls ``forward(network, observation)``, or ``forward(network, observation, memory)``
+    if ``recurrent`` is set. For discrete actions, ``forward`` returns logits [B, n]; for continuous
+    actions, it returns actions [B, ...]. It may also return a ``torch.distributions`` object or a
+    list of these. If ``recurrent`` is set, it also returns the new memory. By default, the network
+    itself is called. ``observation`` holds tensors on the network's device.
     """
 
     def __init__(

@@ -1,8 +1,9 @@
-"""A trained policy as an agent: what all supported libraries have in common.
+"""Define an agent that wraps a trained policy; all supported libraries share this base class.
 
 The agent reads the frames of a world, converts them back to the environment's own observation
-format (``World.native``), and calls the policy. :meth:`Policy.answer` gives the action
-distributions for batches of frames, with gradients, which ``mitigate.harden`` trains.
+format (``World.native``), and calls the policy. :meth:`Policy.answer` returns the action
+distributions for batches of frames. They have gradients, so ``mitigate.harden`` can train the
+policy.
 """
 
 from __future__ import annotations
@@ -49,7 +50,7 @@ class Policy(Agent, nn.Module):
         self._before: Any = None  # memory before the last action
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
-        """Return the policy's answers to a batch, and its memory after it.
+        """Return the policy's answers to a batch of observations, and its memory after the batch.
 
         Args:
             observation: the environment's own observation, arrays with a first axis B.
@@ -60,8 +61,8 @@ class Policy(Agent, nn.Module):
     def action(self, answer: Answer) -> Any:
         """Return the most probable action for the first item of a batch.
 
-        If the answer is a tensor, it holds the value of each action for discrete actions, and
-        otherwise the action itself.
+        If the answer is a tensor, it holds the value of each action (discrete actions) or the
+        action itself (continuous actions).
         """
         if isinstance(self.space, MultiDiscrete):
             return self.executable(torch.stack([mode(part)[0] for part in answer]))
@@ -78,7 +79,9 @@ class Policy(Agent, nn.Module):
         return self.executable(first_answer)
 
     def executable(self, chosen: Tensor) -> Any:
-        """Return an action of the network, such as a sample of its distribution, for the world."""
+        """Convert an action of the network, such as a sample of its distribution, to one for the
+        world.
+        """
         if isinstance(self.space, MultiDiscrete):
             return chosen.long().cpu().numpy().reshape(self.space.counts.shape)
         if isinstance(self.space, Discrete):
@@ -102,7 +105,7 @@ class Policy(Agent, nn.Module):
 
     @property
     def sensors(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The entries of observations that it reads."""
+        """The entries of observations that the policy reads."""
         return tuple(self.native.entries)
 
     @property
@@ -111,7 +114,7 @@ class Policy(Agent, nn.Module):
         return next(self.network.parameters()).device
 
     def settings(self) -> dict[str, Any]:
-        """Return the settings that determine the policy's actions, besides its weights."""
+        """Return the settings that, together with the weights, determine the policy's actions."""
         return {"policy": self.name, "architecture": str(self.network), "native": repr(self.native)}
 
     def train(self, mode: bool = True) -> Any:
@@ -136,7 +139,7 @@ class Policy(Agent, nn.Module):
         """Return the entropy of the last action's distribution (``agents/agent.py``).
 
         Raises:
-            ValueError: The policy gives no distribution.
+            ValueError: The policy returns no distribution of actions.
         """
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]
@@ -148,8 +151,8 @@ class Policy(Agent, nn.Module):
         return torch.stack([part.entropy().sum() for part in answer]).sum()
 
     def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
-        """Return the answers to windows of consecutive frames, as a list with one batch per
-        position in the window.
+        """Return the answers to windows of consecutive frames, as a list with one batch of answers
+        for each position in the window.
 
         Args:
             frames: frames by sensor, [B * length, ...]; the frames of a window are consecutive.
@@ -170,7 +173,7 @@ class Policy(Agent, nn.Module):
 
     @contextmanager
     def recording(self, module: str) -> Iterator[list[Tensor]]:
-        """Yield a list in which the outputs of a module of the network are recorded."""
+        """Record the outputs of a module of the network in the list that is yielded."""
         outputs: list[Tensor] = []
         target = self.network.get_submodule(module)
         handle = target.register_forward_hook(lambda *call: outputs.append(first(call[2])))
@@ -192,17 +195,17 @@ def copied(policy: Policy) -> Policy:
         twin._modules = {"network": copy.deepcopy(policy.network)}
     except Exception as error:  # the user's code may raise any error
         raise ValueError(
-            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), which "
-            "the clean teacher needs. Give a policy without open files or environments."
+            f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), but "
+            "the clean teacher is a copy. Give a policy without open files or environments."
         ) from error
     return twin
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a network, or else of its first layer.
+    """Return the name of the last convolution of a network, or of its first layer if there is none.
 
     Raises:
-        ValueError: The network has neither.
+        ValueError: The network has neither a convolution nor a linear layer.
     """
     layers = [
         (name, isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d)))

@@ -17,8 +17,8 @@ from mitigate.core.spaces import ActionSpace, Box
 class StableBaselinesPolicy(Policy):
     """A policy of stable-baselines3 or sb3-contrib.
 
-    PPO, A2C, RecurrentPPO, SAC and TQC give a distribution of actions, DDPG and TD3 an action, and
-    DQN the values of all actions.
+    PPO, A2C, RecurrentPPO, SAC and TQC return a distribution of actions. DDPG and TD3 return an
+    action. DQN returns the values of all actions.
     """
 
     def __init__(self, network: Any, native: Any, space: ActionSpace) -> None:

@@ -17,7 +17,7 @@ from mitigate.core.spaces import ActionSpace
 class TorchrlPolicy(Policy):
     """A policy of torchrl or tensordict: a module with ``in_keys`` and ``out_keys``.
 
-    A probabilistic module gives a distribution of actions. Other modules give ``logits``,
+    A probabilistic module returns a distribution of actions. Other modules return ``logits``,
     ``action_value`` or ``action``.
     """
 
@@ -28,7 +28,7 @@ class TorchrlPolicy(Policy):
         outputs = {dotted(key) for key in network.out_keys}
         self._fed_back = [
             key for key in network.in_keys if f"next.{dotted(key)}" in outputs
-        ]  # recurrent modules return their new state in the entry "next"
+        ]  # recurrent modules write their new state to the entry "next"
         self.recurrent = bool(self._fed_back)
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:

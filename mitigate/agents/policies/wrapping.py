@@ -67,8 +67,8 @@ def as_policy(
     if not isinstance(network, nn.Module):
         raise TypeError(
             "policy must be a model of stable-baselines3, a module of torchrl, or a "
-            f"torch.nn.Module, got a {type(policy).__name__}. For a policy without weights only "
-            "mitigate.benchmark applies."
+            f"torch.nn.Module, got a {type(policy).__name__}. A policy without "
+            "weights can be used only with mitigate.benchmark."
         )
     if any(parameter.is_meta for parameter in network.parameters()):
         raise ValueError(
@@ -95,8 +95,8 @@ def _check_read(names: Any, world: Any) -> None:
     if missing:
         listed = ", ".join(f"{name!r}: {name!r}" for name in missing)
         raise ValueError(
-            f"The policy reads {', '.join(missing)}, which the world's entries leave out. Add "
-            f"them: entries={{..., {listed}}}."
+            f"The policy reads {', '.join(missing)}, but the world's entries do not contain "
+            f"this. Add: entries={{..., {listed}}}."
         )
 
 
@@ -104,8 +104,8 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
     """Load hardened weights (from ``mitigate.harden``) into ``policy``, in place, and return it.
 
     Args:
-        policy: a policy with the architecture of the hardened one; for adapters it must be the
-            original policy, because they fit only its weights.
+        policy: a policy with the architecture of the hardened policy. If the folder holds adapters,
+            it must be the original policy, because adapters fit only its weights.
         folder: the folder ``agent`` of the run.
 
     Raises:

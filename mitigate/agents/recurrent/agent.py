@@ -1,8 +1,9 @@
-"""The recurrent agent has one forward camera and a memory, and takes a low-level action per step.
+"""The recurrent agent has one forward camera and a memory, and chooses one action per step.
 
-It corresponds to VLN-CE's recurrent agents; with RGB only, it has the same input as vision-language
-models with one camera. ``reset(instruction)`` starts an episode; ``act(observation)`` returns one
-low-level action. ``begin`` and ``act_all`` do the same for several episodes at once.
+The agent corresponds to VLN-CE's recurrent agents. With RGB only, it has the same input as
+vision-language models with one camera. ``reset(instruction)`` starts an episode;
+``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same for several
+episodes at once.
 """
 
 from __future__ import annotations
@@ -47,7 +48,8 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
-LIMIT = 90  # maximum steps of a training rollout (heuristic): the expert takes 53 on average
+# maximum number of steps in a training rollout (heuristic): the expert takes 53 steps on average
+LIMIT = 90
 _SCALE = 5.0  # unit of the predicted distance, in metres
 
 POLICY = {  # allowed values of the keyword arguments of ``Policy``
@@ -60,7 +62,7 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """The memory of one episode holds its text, the state of the policy, and odometry.
+    """Memory of one episode: its text, the state of the policy, and odometry.
 
     ``before`` holds the state and the motion before the last decision.
     """
@@ -79,7 +81,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         rgb_width: number of RGB features per column of the view.
         depth_width: number of depth features per column of the view.
         policy: keyword arguments of ``Policy``.
-        blind: inputs to blank for ablations: names of its sensors, or "instruction".
+        blind: inputs that are blanked for ablations; names of sensors, or "instruction".
         adapters: keyword arguments of ``insert_adapters``, or None for no adapters.
         size: side in pixels to which frames are resized.
         vocabulary: the words that the agent knows, or None for the words of the shipped agents.
@@ -88,7 +90,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
     """
 
-    # part of published fingerprints, so it must not change
+    # this name is part of published fingerprints, so it must not change
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"
 
     run_state = ("_walk",)
@@ -107,7 +109,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
-    # number of episodes at once (heuristic): a single episode costs 2.5 times as much per step
+    # number of episodes at once (heuristic): an episode that runs alone takes 2.5 times as long
     together = 8
     loss_weights = LOSS_WEIGHTS
     _walk: Walk | None = None
@@ -186,9 +188,10 @@ class RecurrentAgent(SideBySide, nn.Module):
     ) -> Piece:
         """Run episodes and return the decisions with the expert's answers (``agents/agent.py``).
 
-        A rollout ends when the expert's STOP is taken, or after ``LIMIT`` steps. The agent's STOP
-        is never taken, so that it also learns from the steps after a wrong STOP. The result is
-        plain data. If the encoders are frozen, the result holds their features instead of frames.
+        A rollout ends when the expert's STOP is executed, or after ``LIMIT`` steps. A STOP of the
+        agent is never executed, so that the agent also learns from the steps after a wrong STOP.
+        The result is plain data. If the encoders are frozen, the result holds their features
+        instead of frames.
         """
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
@@ -216,7 +219,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         return piece_of(walks)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """With ``clean``, replace clean frames by their features."""
+        """If ``clean`` is set, replace clean frames by their features."""
         sensors = {f"clean_{name}": name for name in self.sensors}
         if clean and all(entry in piece["seen"] for entry in sensors):
             frames = {name: piece["seen"].pop(entry).numpy() for entry, name in sensors.items()}
@@ -274,7 +277,9 @@ class RecurrentAgent(SideBySide, nn.Module):
     def _perceive(
         self, frames: dict[str, Tensor], truth: dict[str, Tensor]
     ) -> tuple[Tensor, dict[str, Tensor]]:
-        """Return features [N, F] of frames, and with ``truth`` also the losses of the encoders."""
+        """Return features [N, F] of frames, and the losses of the encoders for labels in
+        ``truth``.
+        """
         views, losses = [], {}
         for sensor in (name for name in (RGB, DEPTH) if name in self.sensors):
             seen = torch.zeros_like(frames[sensor]) if sensor in self.blind else frames[sensor]
@@ -289,14 +294,14 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def begin(self, instruction: str) -> Walk:
-        """Return the memory of a new episode; warn if the agent knows no word of ``instruction``.
+        """Return the memory of a new episode; warn if all words of ``instruction`` are unknown.
 
         Raises:
             TypeError: ``instruction`` is not a string.
         """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
-        # all texts are padded to the same length
+        # pad to one length, so that texts of several episodes can be joined
         tokens = F.pad(tokens, (0, MAX_WORDS - tokens.shape[1]), value=PAD)
         text = self.policy.read(tokens)
         return Walk(text, State.start(text), Odometer())
@@ -333,7 +338,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the likeliest action.
 
-        Raises RuntimeError before the first ``reset``, and the errors of
+        Raises RuntimeError if ``reset`` was not called before, and the errors of
         ``agents/observation.py``.
         """
         check_started(self._walk is not None)
@@ -350,7 +355,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         on = {name: frame.to(self.device) for name, frame in frames.items()}
         columns = self.policy.look(self._perceive(on, {})[0])
         before, motion = walk.before
-        # copied, because tensors created in inference mode have no gradients
+        # copied, because tensors that were created in inference mode cannot be used with gradients
         text = Text(*(part.clone() for part in walk.text))
         state = State(*(part.clone() for part in vars(before).values()))
         moves = torch.from_numpy(motion)[None].to(self.device)

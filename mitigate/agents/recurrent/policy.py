@@ -1,10 +1,10 @@
 """The policy of the recurrent agent chooses a low-level action from views, motion and text.
 
 The structure follows VLN-CE's cross-modal attention model (Krantz et al. 2020). One recurrent cell
-stores views and actions. Attention selects the current words and then the part of the view that
-they describe, and a second cell stores both results. The attention over words also reads its
-earlier positions (location-sensitive attention, Chorowski et al. 2015), because routes are
-described in order.
+stores views and actions. Attention selects the current words, and then the part of the view that
+these words describe. A second recurrent cell stores both results. The attention over words also
+receives its earlier positions (location-sensitive attention, Chorowski et al. 2015), because
+instructions describe routes in order.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ from mitigate.agents.encoders import DIRECTIONS, GRID
 from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
-# features of motion: last action (none, or one of four), sine and cosine of heading, metres, steps
+# number of motion features: last action (5 values), sine and cosine of heading, metres, steps
 MOVES = 5 + 4
-_METRES, _STEPS = 5.0, 50.0  # units of the distance moved and of the number of steps
+_METRES, _STEPS = 5.0, 50.0  # divisors of the distance moved and of the number of steps
 ACTIONS = 4
-KEYS = 64  # width of the attention over words; a compromise with training time
-REACH = 7  # kernel size over words of the location-sensitive attention, must be odd
+KEYS = 64  # width of the attention over words; chosen small to limit the training time
+REACH = 7  # kernel size (in words) of the location-sensitive attention; must be odd
 
 
 class Odometer:
-    """Dead reckoning, which estimates an agent's motion from its actions without a sensor."""
+    """Dead reckoning: estimate an agent's motion from its actions, without a sensor."""
 
     def __init__(self) -> None:
         self.last = -1
@@ -47,7 +47,9 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Replace the last action by ``action`` (-1 for none) with the given motion."""
+        """Replace the last action by ``action`` (-1 for no action) and by the motion that really
+        happened.
+        """
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
         self.last = action
@@ -55,10 +57,11 @@ class Odometer:
         self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
-        """Return the motion as float32 [9].
+        """Return the features of the motion, float32 [9].
 
-        It holds the last action (one-hot; none, or one of four), sine and cosine of the heading
-        since the start, metres moved / 5 and steps / 50.
+        The first five values are a one-hot code of the last action (no action, or one of four). The
+        others are the sine and cosine of the heading relative to the start, the metres moved
+        divided by 5, and the number of steps divided by 50.
         """
         out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0
@@ -112,15 +115,13 @@ class State:
         return State(self.hidden[index], self.last[index], self.sum[index])
 
     def put(self, index: Tensor, fresh: State) -> None:
-        """Replace the rows ``index``, in place."""
+        """Replace the rows ``index`` of this state by ``fresh``, in place."""
         for name, value in vars(fresh).items():
             vars(self)[name][index] = value
 
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
-    """Return the next hidden state of ``cell``; ``inputs`` [E, 3 width] are its projected
-    inputs.
-    """
+    """Return the next hidden state of ``cell``, given its projected inputs [E, 3 * width]."""
     reset, update, new = inputs.chunk(3, -1)
     state = F.linear(hidden, cell.weight_hh, cell.bias_hh)
     state_reset, state_update, state_new = state.chunk(3, -1)
@@ -185,7 +186,7 @@ class Policy(TextReader):
         return Text(self.keys(values), values, mask)
 
     def look(self, views: Tensor) -> Tensor:
-        """Return columns [..., 4, width] of encoded views [..., F]."""
+        """Return the features of columns [..., 4, width] of encoded views [..., F]."""
         rgb, concepts, depth, free = views.split(self.sizes, -1)
         x = self.column
         if self.sizes[0]:
@@ -211,7 +212,7 @@ class Policy(TextReader):
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
-        """Return the part of both cells' inputs that needs no memory, [..., 6 width], for all
+        """Return the part of both cells' inputs that needs no memory, [..., 6 * width], for all
         steps.
         """
         x = self.whole(columns.flatten(-2)) + self.move(moves)
@@ -250,9 +251,9 @@ class Policy(TextReader):
             moves: [E, T, MOVES].
 
         Returns:
-            "logits" [E, T, 4]; "distance" [E, T], predicted metres to the goal divided by 5;
-            "grounding" [E, T, 4], logits that a column shows the goal's landmark; "state" [E, T,
-            width].
+            A dict with the entries "logits" [E, T, 4]; "distance" [E, T], the predicted metres to
+            the goal divided by 5; "grounding" [E, T, 4], one logit per column that it shows the
+            goal's landmark; and "state" [E, T, width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

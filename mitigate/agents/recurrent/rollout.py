@@ -18,8 +18,8 @@ from mitigate.core.observation import POSE, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world, expert_of
 
-INFLECTION = 3.2  # weight of a step at which the expert changes its action (VLN-CE)
-_FARTHEST = 25.0  # targets of the distance loss are clipped at this many metres
+INFLECTION = 3.2  # weight of a step at which the expert changes its action (as in VLN-CE)
+_FARTHEST = 25.0  # maximum target of the distance loss in metres; larger targets are clipped
 Piece = dict[str, Any]
 
 
@@ -34,9 +34,9 @@ class WalkDecisions:
         tokens: [E, L].
         target: [N, 4].
         weight: [N].
-        metres: [N] to the goal; NaN where unknown.
-        seen: the world's labels and observations by name. Observations are features "views" and
-            "clean_views" [N, F], or frames "rgb", "clean_rgb" and so on [N, H, W, c].
+        metres: [N], the distance to the goal; NaN where it is unknown.
+        seen: the world's labels and observations by name. Observations are either features [N, F]
+            ("views" and "clean_views") or frames [N, H, W, c] ("rgb", "clean_rgb" and so on).
         episode_ids: the episode of each step.
     """
 
@@ -58,13 +58,17 @@ class WalkDecisions:
         return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
 
     def padded(self, flat: Tensor) -> Tensor:
-        """Return an array [N, ...] as [E, T, ...], with zeros after the end of a rollout."""
+        """Return an array [N, ...] in the shape [E, T, ...], with zeros after the end of each
+        rollout.
+        """
         size = (len(self.tokens), int(self.time.max()) + 1)
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
 
 class TrainingWalk:
-    """One training rollout: the observation, action and expert's answer of each step."""
+    """One training rollout, with the observation, the action and the expert's answer of each
+    step.
+    """
 
     def __init__(self, world: World, episode: Episode, sensors: Sequence[str]) -> None:
         self.world, self.episode, self.sensors = as_world(world), episode, sensors
@@ -81,7 +85,7 @@ class TrainingWalk:
         return {n: checked.frame(observation, n, 1) for n in self.sensors}
 
     def record(self, features: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
-        """Add the current step with the expert's answer."""
+        """Add the current step, labelled with the expert's answer."""
         action = int(self.expert.action())
         seen = {n: np.array(f) for n, f in self.see().items()} if frames else {}
         seen |= features
