@@ -96,7 +96,7 @@ def test_two_ranks_train_the_weights_of_one(tmp_path, monkeypatch):
 
 
 def test_more_ranks_than_pieces_are_rejected():
-    with pytest.raises(ValueError, match="4 pieces, too few for 5 ranks"):
+    with pytest.raises(ValueError, match="4 pieces of work, too few for 5 ranks"):
         Ranks(0, 5).share([1, 2, 3, 4])
     with pytest.raises(ValueError, match=r"stage policy has 1 piece, .* \(make train NPROC=1\)"):
         Ranks(0, 2).check(1, "the stage policy")
