@@ -1,5 +1,4 @@
-"""Build the surfaces of an apartment from rectangles with colours, textures and baked shading.
-"""
+"""Build the surfaces of an apartment from rectangles with colours, textures and baked shading."""
 
 from __future__ import annotations
 
