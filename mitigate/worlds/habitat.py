@@ -77,7 +77,7 @@ def corrupt_habitat(
         )
     if fault := family(check_corruption(corruption).name):
         raise ValueError(
-            f"corrupt_habitat corrupts one instant, and {corruption.name!r} is a {fault} fault. "
+            f"corrupt_habitat corrupts one time step, but {corruption.name!r} is a {fault} fault. "
             "Use mitigate run, the gymnasium wrapper, or a FrameStream (docs/faults.md)."
         )
     if len(corruption.parts) > 1:
