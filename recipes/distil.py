@@ -207,7 +207,8 @@ def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
 
     Therefore the overall scale of a feature does not matter, but the relative scale of its parts
     does. If a feature contains both probabilities and larger values, the probabilities contribute
-    only 0.3 to 5 % of the error (measured for each encoder and corruption). Labels train them.
+    only 0.3 to 5 % of the error (measured for each encoder and corruption). Such probabilities are
+    trained by the label loss instead.
     """
     error = (student.float() - teacher.float()).square().mean()
     return error / teacher.float().var().clamp(min=1e-6)

@@ -61,7 +61,7 @@ class Ppo(Objective):
         clip: maximum relative change of the probability of an action in a round (the clipping
             parameter of PPO).
         w_critic, w_entropy: weights of the critic loss and of the entropy loss.
-        w_kl: weight of the KL divergence from the unchanged policy, which sees the clean frames.
+        w_kl: weight of the divergence from the unchanged policy, which sees the clean frames.
         critic_rounds: number of rounds at the start in which only the critic is trained.
         module: name of the module whose output a new critic reads. The default is the last
             convolution.
