@@ -104,7 +104,7 @@ class Dagger(Imitate):
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
             self._keep(step, number, piece)
-        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # rollouts per piece
+        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # number of rollouts per job
         again = self._drawn(step, -(-self.walks // size) - len(pieces))
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 

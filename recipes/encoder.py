@@ -1,5 +1,5 @@
-"""Harden an image encoder with frames only: it learns to output the clean features for corrupted
-frames.
+"""Harden an image encoder with frames only. The encoder learns to output the clean features for
+corrupted frames.
 
     L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
 

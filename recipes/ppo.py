@@ -1,4 +1,4 @@
-"""Reinforcement learning under corruption: PPO on the reward of the world.
+"""Reinforcement learning under corruption: train a policy with PPO on the reward of the world.
 
 An already trained policy runs episodes with corrupted frames and samples its actions. It learns
 from the reward of the environment with the clipped loss of PPO (Schulman et al. 2017).
@@ -107,8 +107,8 @@ class Ppo(Objective):
         self.training_episodes = training
         self.schedule = schedule
         self.rollout = rollout
-        self.parts = max(1, rollout // batch)  # steps per epoch
-        self.updates = epochs * self.parts  # steps per round
+        self.parts = max(1, rollout // batch)  # training steps per epoch
+        self.updates = epochs * self.parts  # training steps per round
         self.gamma = gamma
         self.lmbda = lmbda
         self.w_kl = w_kl
@@ -135,7 +135,7 @@ class Ppo(Objective):
         # standard deviation of the returns of the first round, by which rewards are divided
         self.register_buffer("scale", torch.ones(()))
         self._rollouts: dict[str, Any] = {}
-        self._number = -1  # the round in ``_rollouts``
+        self._number = -1  # index of the round that ``_rollouts`` contains
         self._steps_before = 0  # number of environment steps in all earlier rounds
         self._steps_now = 0  # number of environment steps in the newest round
         self._picture: np.ndarray | None = None

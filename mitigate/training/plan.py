@@ -56,7 +56,7 @@ OURS = "mitigate.recipes."
 
 @dataclass(frozen=True)
 class StagePlan:
-    """One stage that will run.
+    """The plan of one training stage.
 
     Attributes:
         name: name of the stage and of its subfolder.
@@ -78,7 +78,7 @@ class Plan:
     """The plan of a training run.
 
     Attributes:
-        config: the options, with the changes of this plan.
+        config: the options, as changed by the planning.
         folder: folder of the run.
         agent: the agent with its initial weights.
         stages: stages in order.

@@ -1,5 +1,5 @@
-"""States of a training: A checkpoint such as ``step-00001000.pt`` contains all state that is needed
-for a bit-identical resume.
+"""Checkpoints of training runs. A checkpoint such as ``step-00001000.pt`` contains all state that
+is needed for a bit-identical resume.
 
 Checkpoints are written atomically and rotated, and loading them runs no code. The sha256 of each
 checkpoint is in a sidecar file (``core/checksums.py``) and is checked before the checkpoint is

@@ -41,7 +41,7 @@ class SweepConfig:
     command: str = "train"
     runs: str = "sweeps/default"
     jobs: int = 1
-    launcher: Any = MISSING  # read: a LauncherConfig
+    launcher: Any = MISSING  # a LauncherConfig after the options are read
 
 
 conf.register("sweep", SweepConfig)
@@ -63,7 +63,7 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     configs, options = without_config_folder(options)
     runs = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
-    from mitigate.agents.building import with_kind  # brings torch
+    from mitigate.agents.building import with_kind  # imports torch, which is slow
     from mitigate.evaluation import evaluate  # noqa: F401 - registers its options
     from mitigate.training import train  # noqa: F401 - registers its options
 

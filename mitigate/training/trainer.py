@@ -179,7 +179,7 @@ class Trainer:
 
     @contextmanager
     def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
-        """If a signal interrupts the block, save the state after ``done`` steps.
+        """If a signal interrupts the code in the context, save the state after ``done`` steps.
 
         A second signal ends the run without saving.
         """

@@ -42,8 +42,8 @@ class Workers:
     """Context manager for ``count`` worker processes of a training run.
 
     Job i of a step runs on worker ``i % count``. If there are enough workers for several steps at
-    once, successive steps use different workers. In both cases, a worker always computes the same
-    part of the batch, so it opens only the scenes of that part.
+    once, successive steps use different workers. A worker always computes the same part of the
+    batch, so it opens only the scenes of that part.
 
     Workers run during all stages, so a stage reuses scenes that were built in an earlier stage.
     """
@@ -137,7 +137,7 @@ class _Worker:
         self.send(("job", message))
 
     def send(self, message: tuple) -> None:
-        with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices
+        with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices a dead worker
             self.connection.send(message)
 
     def receive(self) -> Any:
@@ -223,7 +223,7 @@ def _serve(connection: Connection) -> None:
     try:
         _work(connection, messages)
     except (BrokenPipeError, ConnectionResetError):
-        pass  # the parent is gone
+        pass  # the parent process has ended
     except Exception as error:  # for example, the objective cannot be unpickled in this process
         with suppress(OSError):
             connection.send(("error", portable(error)))

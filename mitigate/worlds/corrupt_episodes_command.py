@@ -99,7 +99,7 @@ def run(
     """
     check_for_file(corruption)
     severity = check_severity(severity)
-    Key(seed, "0")  # raises ValueError for an invalid seed
+    Key(seed, "0")  # this raises ValueError for an invalid seed
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
     _check_target(Path(source), Path(out))
     extras = read_extras(source)

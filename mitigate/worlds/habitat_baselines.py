@@ -144,15 +144,15 @@ class CorruptObservationConfig(ObsTransformConfig):
     """Options of ``CorruptObservation`` in a habitat-baselines config."""
 
     type: str = "CorruptObservation"
-    mode: str = "per_episode"  # see mitigate.corruptions.Schedule
+    mode: str = "per_episode"  # mitigate.corruptions.Schedule lists the modes
     # corruptions from which the schedule samples; an empty list means the standard suite
     names: tuple[str, ...] = ()
     severity: float = 0.6
-    severity_depth: float | None = None  # None: severity
+    severity_depth: float | None = None  # if None, equal to severity
     clean_share: float = 0.0
     seed: int = 0
-    depth_min: float = 0.0  # metres; RxR-CE 0.5
-    depth_max: float = 10.0  # metres; RxR-CE 5.0
+    depth_min: float = 0.0  # in metres; 0.5 for RxR-CE
+    depth_max: float = 10.0  # in metres; 5.0 for RxR-CE
     depth_missing: float = 0.0  # value in metres that marks missing depth
     turn: str = "left"  # direction from rgb to rgb_30
 

@@ -226,7 +226,7 @@ class HabitatWorld(World):
                 "episodes (mitigate export-scene writes the scenes of the apartments)."
             )
         settings = self._settings(file)
-        self._scene = ""  # self._scene stays empty if loading fails
+        self._scene = ""  # so that the attribute is empty if loading fails
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:

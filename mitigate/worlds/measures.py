@@ -109,7 +109,7 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
     If the episode starts at its goal (L* = 0) and the agent does not move, the result is S.
 
     Args:
-        succeeded: S.
+        succeeded: whether the episode succeeded (S).
         geodesic_distance: L*, distance in metres from start to goal.
         length: L, length of the agent's path in metres.
 

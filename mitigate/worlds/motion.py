@@ -51,7 +51,7 @@ class FaultyMotion(WorldWrapper):
 
     Args:
         world: The world.
-        fault: A fault of motion.
+        fault: A motion fault.
         seed: Corruption seed.
 
     Raises:

@@ -343,7 +343,7 @@ class SeededWorld(World):
         """
         try:
             yield
-        except MemoryError:  # explained by core/errors.py
+        except MemoryError:  # core/errors.py handles this error
             raise
         except Exception as error:
             place = own_place(error)

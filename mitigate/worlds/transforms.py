@@ -87,7 +87,7 @@ class CorruptObservation(Transform):
         self._normalised = normalised
         self._backend = check_backend(backend)
         self._hfov = dict.fromkeys((RGB, DEPTH), hfov)
-        self._streams: dict[int, FrameStream] = {}  # by row
+        self._streams: dict[int, FrameStream] = {}  # one stream per batch row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
         """Return the spec unchanged. Raise ValueError if depth seems to be normalised but would be

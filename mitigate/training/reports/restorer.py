@@ -182,8 +182,8 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw the time step with the greatest :func:`_far`: three views in their corrupted, restored
-    and clean versions.
+    """Draw three views of one time step in their corrupted, restored and clean versions. The time
+    step is the one whose drawn views show the least of near walls (:func:`_far`).
 
     Returns:
         A uint8 RGB picture with one row per corruption, or None if no corruption applies to the
@@ -208,7 +208,9 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the smallest mean depth of the drawn views, because near walls show little."""
+    """Return the smallest mean depth of the drawn views. If it is small, a view mostly shows a near
+    wall.
+    """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 

@@ -214,8 +214,8 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 MAGIC, VERSION = b"glTF", 2
-FLOAT, BYTE, INT = 5126, 5121, 5125  # component types
-VERTICES, INDICES = 34962, 34963  # buffer view targets
+FLOAT, BYTE, INT = 5126, 5121, 5125  # component types of glTF accessors
+VERTICES, INDICES = 34962, 34963  # targets of glTF buffer views
 # sample the nearest pixel, and repeat textures
 SAMPLER = {"magFilter": 9728, "minFilter": 9728, "wrapS": 10497, "wrapT": 10497}
 _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)

@@ -68,8 +68,8 @@ def view_labels(
     """Compute the labels of a panorama from its face ids.
 
     Returns:
-        The concepts, float32 ``[12, len(CONCEPTS)]`` with values 0 and 1. Also bool ``[12,
-        furniture]``: whether each piece of furniture is visible in the central band of each view.
+        The concepts, float32 ``[12, len(CONCEPTS)]`` with values 0 and 1. The second array is bool
+        ``[12, furniture]``: which pieces of furniture are visible in the central band of each view.
     """
     return _within(apartment, ids, depth, *band(ids.shape[2]))
 

@@ -53,9 +53,9 @@ ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
 ROOM_KINDS = tuple(ROOMS)
 
 
-WALL = 0.12  # wall thickness, metres
-DOOR = 1.0  # clear doorway width, metres
-HEIGHT = 2.5  # ceiling, metres
+WALL = 0.12  # wall thickness in metres
+DOOR = 1.0  # clear width of the doorways in metres
+HEIGHT = 2.5  # height of the ceiling in metres
 LINTEL = 2.05  # height of the doorways in metres
 _MIN_SIDE = 2.7
 Rect = tuple[float, float, float, float]  # x0, y0, x1, y1

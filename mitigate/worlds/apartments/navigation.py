@@ -10,7 +10,7 @@ from numba import njit
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-CELL = 0.1  # metres
+CELL = 0.1  # width of a grid cell in metres
 RADIUS = 0.18  # radius of the agent in metres (0.1 to 0.2 for the LoCoBot-like agent of VLN-CE)
 # number of cached graphs (heuristic); a graph takes half a megabyte, and 1.3 ms to build
 GRAPHS = 32
@@ -50,8 +50,8 @@ class FreeSpace:
         """The graph of the free cells, in which each cell is connected to its 8 neighbours. Edge
         weights are in metres.
 
-        Paths may cut the corner of a blocked cell by at most 0.06 m. On average, these paths are 5
-        % longer than exact shortest paths (docs/agents.md).
+        Paths along this graph may cut the corner of a blocked cell by at most 0.06 m. On average,
+        these paths are 5 % longer than exact shortest paths (docs/agents.md).
         """
         return _graph_of(self)
 

@@ -25,7 +25,7 @@ from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.faces import Faces, texture_coordinates
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
-EYE = 1.25  # camera height, metres (VLN-CE)
+EYE = 1.25  # height of the camera in metres, as in VLN-CE
 LEVEL = Mount()
 FARTHEST = 17.0  # distance in metres that is longer than any straight line through an apartment
 LEAST = 4  # minimum size of a view in pixels (heuristic)
@@ -92,7 +92,7 @@ class Renderer:
         # one list of display regions for the RGB views, and one for the id views
         self.regions: list[list[Any]] = []
         self.lenses: list[Any] = []
-        self.hfov = HFOV_DEGREES  # of all lenses
+        self.hfov = HFOV_DEGREES  # horizontal field of view of all lenses, in degrees
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
         self.capacity, self.current = scenes, -1

@@ -341,7 +341,7 @@ class RecordedWorld(World):
         ready = {
             name: values[index].astype(np.float32)
             for name, values in self.recording.signals.items()
-            if name.startswith(OBSERVED)  # not the recorded action
+            if name.startswith(OBSERVED)  # an agent must not read the recorded action
         }
         if poses is not None:
             ready[POSE] = poses[index].astype(np.float32)

@@ -173,8 +173,8 @@ def plan_pose(
     """Return the plan pose (x, y, heading) of an agent. The z axis points up.
 
     Args:
-        x: Metres.
-        y: Metres.
+        x: Position in metres.
+        y: Position in metres.
         quaternion: Rotation of the agent or its camera, as (x, y, z, w).
         axis: Forward direction [3] before the rotation is applied.
 

@@ -27,7 +27,7 @@ class Camera:
     """The camera of a sensor that faces forward.
 
     Attributes:
-        lens: Its lens.
+        lens: Lens of the camera.
         shape: Height and width of the images in pixels.
         format: Description of where and how the images are stored.
         border: Fraction of the pixels of a view that the camera does not cover.
