@@ -268,7 +268,7 @@ def test_check_stages_does_not_change_the_agent(tmp_path, capsys):
     ("recipe", "agent", "count", "words"),
     [
         ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece of work, too few"),
-        ("da_per_episode", "topological", 3, "stage perception_depth .* has 2 pieces, .*NPROC=2"),
+        ("da_per_episode", "topological", 3, "perception_depth .* has 2 pieces of work.*NPROC=2"),
         ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
     ],
 )
