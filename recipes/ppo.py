@@ -253,8 +253,8 @@ class Ppo(Objective):
     def _episode(self, number: int, index: int) -> list[dict[str, Any]]:
         """Run an episode with sampled actions, and return its environment steps.
 
-        If a step limit ends the episode, the last step also contains the frames after it, under
-        "last".
+        If the episode ends although the task is not over, the last step also contains the frames
+        after it, under "last".
         """
         policy = self.behaviour.policy
         episode = self.training_episodes.draw(

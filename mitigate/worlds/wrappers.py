@@ -142,8 +142,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:
             raise gymnasium.error.ResetNeeded(
-                "reset() must be called before step(): the name of the episode determines the "
-                "random numbers."
+                "reset() must be called before step(): the reset names the episode, and the name "
+                "determines the random numbers."
             )
         if self._over:
             self._begin()

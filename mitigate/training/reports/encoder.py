@@ -91,8 +91,8 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return the frames that fit the probe and the feature mean, and the unseen frames for the
-    measurement.
+    """Return two sets of frames: training frames, which fit the probe and give the mean features,
+    and unseen frames for the measurement.
     """
     recipe = next(iter(config.active_stages.values())).recipe
     frames = recipe["frames"]

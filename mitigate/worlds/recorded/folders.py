@@ -144,8 +144,8 @@ def _is_level(described: Mapping[str, Any], name: str) -> bool:
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera. It is read from ``cameras.json``, or computed from one of the
-    frames and ``hfov``.
+    """Return the lens of a camera. If ``cameras.json`` does not describe the camera, a frame
+    determines its kind, and ``hfov`` or a default is its field of view.
     """
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS

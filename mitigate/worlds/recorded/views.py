@@ -15,7 +15,7 @@ SUPERSAMPLING = 4  # enlargement factor of the canvas on which a partially cover
 
 
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
-    """Return half of the largest square field of view that all cameras cover, as a tangent.
+    """Return the tangent of half of the largest square field of view that all cameras cover.
 
     The maximum is 1, which means 90 degrees.
 
