@@ -1,1 +1,1 @@
-"""Training methods, with one file per method; ``README.md`` lists them."""
+"""Training methods, with one file per method. ``README.md`` lists them."""

@@ -1,8 +1,8 @@
 """Train residual adapters in a frozen agent, so that corrupted frames give the clean features.
 
-Only the adapters are trained; no bit of the backbone changes. A setting of the agent inserts them
-after any module that returns a map (``agents/adapters.py``). ``Adapt`` trains any trainable agent
-on episodes; ``AdaptViews`` trains on random poses.
+Only the adapters are trained; the backbone stays bit-identical. A setting of the agent inserts
+adapters after any module that returns a feature map (``agents/adapters.py``). ``Adapt`` trains any
+trainable agent on episodes, and ``AdaptViews`` trains encoders on random poses.
 """
 
 from __future__ import annotations
@@ -24,14 +24,15 @@ from mitigate.training.parts import ADAPTERS, START
 from mitigate.training.poses import Poses
 from mitigate.training.rollouts import Rollouts
 
-HELD, FRESH = 1_000_000, 2_000_000  # step numbers that are never reached in training
+# step numbers that training never reaches, so their views are not trained on
+HELD, FRESH = 1_000_000, 2_000_000
 
 
 class Adapt(Distil):
-    """Train adapters on rollouts; the teacher is the agent without its adapters.
+    """Train adapters on rollouts. The teacher is the agent without its adapters.
 
-    The arguments are the same as for ``Distil``. By default, w_il and w_kl are 0, so that only
-    features are matched.
+    The arguments are the same as for ``Distil``. By default, ``w_il`` and ``w_kl`` are 0, so only
+    the teacher's features are matched.
 
     Raises:
         ValueError: The agent has no adapters.
@@ -68,12 +69,12 @@ class Adapt(Distil):
         check_backbone(self.agent, self.backbone)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return 1 if the backbone has not changed, else 0."""
+        """Return whether the backbone is unchanged, as 1 or 0."""
         return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
 
 
 class AdaptViews(DistilViews):
-    """Train adapters on random poses; the teacher is the agent without its adapters.
+    """Train adapters on random poses. The teacher is the agent without its adapters.
 
     ``finish`` sets the thresholds of gates, if the encoders have any, and scales the adapters.
 
@@ -83,9 +84,10 @@ class AdaptViews(DistilViews):
         poses: the source of views.
         w_labels: same as in ``DistilViews``.
         w_feat: same as in ``DistilViews``.
-        w_gate: weight of the gates' cross-entropy (whether a view is corrupted).
-        touched: fraction of clean views for which a gate opens after training.
-        held: number of held-out clean panoramas for setting the thresholds.
+        w_gate: weight of the gate loss, the cross-entropy of predicting whether a view is
+            corrupted.
+        touched: fraction of clean views for which a gate may open after training.
+        held: number of held-out clean panoramas with which the thresholds are set.
         strength: fraction of the learned correction that the adapters apply after training
             (``agents.adapters.scale_adapters``).
 
@@ -152,10 +154,11 @@ class AdaptViews(DistilViews):
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the backbone is unchanged, and the fractions of views for which gates
+        """Return whether the backbone is unchanged, and for which fractions of views the gates
         open.
 
-        These views differ from the ones for setting the thresholds, which are set at the end.
+        The views differ from the views that :meth:`finish` uses to set the thresholds at the end of
+        training.
         """
         values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
         for gate in self.gates:
@@ -167,7 +170,9 @@ class AdaptViews(DistilViews):
         return values
 
     def _judged(self, gate: FrameGate, step: int, count: int, clean: bool) -> tuple[Tensor, Tensor]:
-        """Return a gate's logits for the views of ``count`` panoramas, and which are corrupted."""
+        """Return a gate's logits for the views of ``count`` panoramas, and a mask of the corrupted
+        views.
+        """
         poses = copy.copy(self.poses)
         poses.panoramas = count
         logits, corrupted = [], []
@@ -181,20 +186,22 @@ class AdaptViews(DistilViews):
 
 
 def differ(frames: Tensor, clean: Tensor) -> Tensor:
-    """Return a mask [P * V] of the views that differ between two batches [P, V, H, W, c]."""
+    """Return a bool mask [P * V] of the views that differ between two batches of shape [P, V, H, W,
+    c].
+    """
     other = (frames != clean) & ~(frames.isnan() & clean.isnan())
     return other.flatten(0, 1).flatten(1).any(1)
 
 
 def share(values: Tensor, where: Tensor) -> Tensor:
-    """Return the mean of ``values`` [n] where the mask ``where`` [n] is true, or 0 if it is never
-    true.
+    """Return the mean of those ``values`` [n] for which the mask ``where`` [n] is true. Return 0 if
+    the mask is false everywhere.
     """
     return (values * where).sum() / where.sum().clamp(min=1)
 
 
 def check_backbone(agent: nn.Module, expected: str) -> None:
-    """Raise ValueError unless ``agent`` without its adapters has the sha256 ``expected``."""
+    """Raise ValueError if the sha256 of ``agent`` without its adapters is not ``expected``."""
     if backbone_sha(agent) != expected:
         raise ValueError(
             f"The backbone of {type(agent).__name__} has changed, although only its adapters "

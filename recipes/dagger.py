@@ -1,10 +1,11 @@
 """Imitate an expert on new rollouts and on stored rollouts of earlier steps (DAgger).
 
-Rollouts cost more time than learning. So the current policy runs some episodes every few steps, and
-their rollouts are stored on disk. Each step learns from a random sample of all stored rollouts.
-They form an aggregated data set, as in Ross et al. 2011, that grows during training. The fraction
-of decisions by the oracle falls over time. The loss is defined in ``recipes/imitate.py``. The
-rollouts of the agent must be plain data (tensors, lists, text).
+Running episodes takes more time than learning from them. Therefore the current policy runs episodes
+only every few steps, and their rollouts are stored on disk. Each step learns from a random sample
+of all stored rollouts. The stored rollouts are an aggregated data set that grows during training,
+as in Ross et al. 2011. During training, the fraction of decisions that follow the expert falls. The
+loss is defined in ``recipes/imitate.py``. The rollouts of the agent must be plain data, such as
+tensors, lists and text.
 """
 
 from __future__ import annotations
@@ -28,24 +29,24 @@ from mitigate.training.rollouts import Rollouts, batch_of
 class Dagger(Imitate):
     """Imitate the expert on new rollouts and on stored rollouts.
 
-    The rollouts of a step depend only on the weights at that step and are stored before they are
-    used, so a resumed run samples the same ones.
+    The rollouts of a step depend only on the weights at that step, and they are stored before they
+    are used. Therefore a resumed run samples the same rollouts.
 
     Args:
         agent: the agent, which is trained in place.
         rollouts: source of rollouts, used every ``every`` steps. Its ``follow_oracle`` is the final
-            fraction of decisions by the expert, which falls from 1 during the first 0.6 of
-            ``steps``.
-        folder: folder of the stored rollouts, one file per piece.
+            fraction of decisions that follow the expert; the fraction falls from 1 during the first
+            60 % of ``steps``.
+        folder: folder of the stored rollouts, with one file per job.
         steps: number of training steps.
         train_parts: same as in ``Imitate``.
         every: number of steps between two rounds of rollouts.
-        walks: number of rollouts (new and stored) per step.
+        walks: number of rollouts per step, both new and stored.
         losses: same as in ``Imitate``.
 
     Raises:
-        ValueError: The rollouts of the agent are not plain data, or the schedule is
-            success-distributed, which needs a trained agent.
+        ValueError: The rollouts of the agent are not plain data, or the schedule samples
+            corruptions by success rate, which needs a trained agent.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {
@@ -81,8 +82,8 @@ class Dagger(Imitate):
         self.walks = walks
 
     def jobs(self, step: int) -> list[tuple]:
-        """Return the jobs of ``Rollouts`` with the oracle's share, or no jobs in steps without
-        rollouts.
+        """Return the jobs of ``Rollouts``, each extended by the fraction of expert decisions.
+        Return no jobs in steps without new rollouts.
         """
         if step % self.every:
             return []
@@ -90,7 +91,7 @@ class Dagger(Imitate):
         return [(*job, expert) for job in jobs]
 
     def pieces(self) -> int:
-        """Return 1 piece per step, because each process trains on the rollouts that it stored."""
+        """Return 1, because each process trains only on the rollouts that it stored."""
         return 1
 
     def work(self, job: tuple) -> Any:
@@ -103,12 +104,12 @@ class Dagger(Imitate):
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
             self._keep(step, number, piece)
-        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # rollouts per piece
+        size = -(-self.rollouts.episodes // self.rollouts.pieces)  # number of rollouts per job
         again = self._drawn(step, -(-self.walks // size) - len(pieces))
         return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
 
     def _drawn(self, step: int, count: int) -> list[Any]:
-        """Return ``count`` stored pieces, sampled from earlier steps."""
+        """Return ``count`` randomly chosen groups of stored rollouts from earlier steps."""
         pieces = range(self.rollouts.pieces)
         known = [(s, n) for s in range(0, step, self.every) for n in pieces]
         rng = generator(self.rollouts.seed, "kept walks", step)
@@ -120,7 +121,7 @@ class Dagger(Imitate):
         return self.folder / f"{step:06d}-{number}.pt"
 
     def _keep(self, step: int, number: int, piece: Any) -> None:
-        """Store a piece, with floating tensors as float16."""
+        """Store the rollouts of one job, with floating-point tensors as float16."""
         if not _is_plain(piece):
             raise ValueError(
                 f"{type(self.rollouts.agent).__name__}.collect must return plain data, got "
@@ -134,10 +135,10 @@ class Dagger(Imitate):
 
 
 def _read(file: Path) -> Any:
-    """Read a stored piece; raise ValueError if it is missing or damaged."""
+    """Read a file of stored rollouts. Raise ValueError if it is missing or damaged."""
     try:
         return _floats(torch.load(file, weights_only=True), torch.float32)
-    except Exception as error:  # a damaged file may raise any error
+    except Exception as error:  # reading a damaged file may raise any kind of error
         raise ValueError(
             f"The stored rollout {file} is missing or damaged. DAgger cannot resume without its "
             "stored rollouts. Restore the file if you have a copy, or delete the folder of the run "
@@ -154,7 +155,7 @@ def _is_plain(data: Any) -> bool:
 
 
 def _floats(data: Any, dtype: torch.dtype) -> Any:
-    """Convert the floating tensors in ``data`` to ``dtype``."""
+    """Convert the floating-point tensors in ``data`` to ``dtype``."""
     if isinstance(data, torch.Tensor):
         return data.to(dtype) if data.is_floating_point() else data
     if isinstance(data, dict):

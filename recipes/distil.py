@@ -1,13 +1,13 @@
-"""Distil a frozen teacher, which sees clean frames, into a student, which sees corrupted ones.
+"""Distil a frozen teacher that sees clean frames into a student that sees corrupted frames.
 
 ``Distil`` works on episodes of any trainable agent:
 
     L = w_il L_imitation + w_kl T^2 KL(pi_T || pi_S) + w_feat sum of MSE(f_S, f_T)
 
-Under corruption, the student may find different candidates than the teacher: for example, without
-depth it finds different places to go to. Therefore both score the candidates of the student.
-``DistilViews`` works on random poses: the student's encoders learn to give the teacher's clean
-features for corrupted views.
+Under corruption, the candidate actions of the student may differ from those of the teacher. For
+example, missing depth changes the places to which the student can go. Therefore both networks score
+the candidates of the student. ``DistilViews`` works on random poses. The student's encoders learn
+to output, for corrupted views, the teacher's features of the clean views.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from mitigate.training.rollouts import OnEpisodes, Rollouts
 
 
 class Distil(OnEpisodes):
-    """Distil a teacher on rollouts, with losses for imitation, the teacher's policy and its
-    features.
+    """Distil a teacher on rollouts. The loss combines imitation of the expert, the teacher's policy
+    and the teacher's features.
 
-    With ``w_kl = w_feat = 0``, this equals imitation bit for bit.
+    With ``w_kl = w_feat = 0``, the result is bit-identical to imitation.
 
     Args:
         agent: the student, which is trained in place.
@@ -43,8 +43,8 @@ class Distil(OnEpisodes):
         w_kl: weight of the policy loss.
         w_feat: weight of the feature loss.
         temperature: temperature of the policy loss.
-        match: names of the features to match, or None for all. Features that do not depend on a
-            trained weight are not matched.
+        match: names of the features that are matched, or None for all features. Features that do
+            not depend on a trained weight are not matched.
 
     Raises:
         FileNotFoundError: The teacher is missing.
@@ -114,7 +114,7 @@ class Distil(OnEpisodes):
         return {**values, "loss": loss}
 
     def _check(self, features: Mapping[str, Tensor]) -> None:
-        """Raise ValueError if the loss depends on no trained weight."""
+        """Raise ValueError if no trained weight affects the loss."""
         learned = any(feature.requires_grad for feature in features.values())
         if torch.is_grad_enabled() and not (self.w_il or self.w_kl or learned):
             raise ValueError(
@@ -182,7 +182,9 @@ class DistilViews(OnViews):
 
 
 def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:
-    """Return the features with ``names`` (all if None); raise ValueError for an unknown name."""
+    """Return the features with the given ``names``, or all if None. Raise ValueError for an unknown
+    name.
+    """
     unknown = sorted(set(names or ()) - set(features))
     if unknown:
         raise ValueError(f"match must be names of {', '.join(features)}, got {unknown}.")
@@ -192,7 +194,7 @@ def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict
 def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
     """Return the batch mean of KL(pi_T || pi_S) for logits [B, n] at ``temperature``.
 
-    Entries of -inf are not candidates; both logits must have the same candidates.
+    Entries of -inf are not candidates. The logits of both networks must have the same candidates.
     """
     p = (teacher / temperature).log_softmax(-1)
     q = (student / temperature).log_softmax(-1)
@@ -203,9 +205,10 @@ def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
 def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
     """Return the mean squared error divided by the variance of the teacher's values.
 
-    So the overall scale does not matter, but the relative scale of parts does. Probabilities next
-    to larger features contribute little (0.3 to 5 % of the error, measured for each encoder and
-    corruption). Labels train them.
+    Therefore the overall scale of a feature does not matter, but the relative scale of its parts
+    does. If a feature contains both probabilities and larger values, the probabilities contribute
+    only 0.3 to 5 % of the error (measured for each encoder and corruption). Such probabilities are
+    trained by the label loss instead.
     """
     error = (student.float() - teacher.float()).square().mean()
     return error / teacher.float().var().clamp(min=1e-6)

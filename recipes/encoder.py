@@ -1,11 +1,13 @@
-"""Harden an image encoder using only frames: corrupted frames must give the clean features.
+"""Harden an image encoder with frames only. The encoder learns to output the clean features for
+corrupted frames.
 
     L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
 
-f0 is the original encoder, and v the variance of its clean features between frames, so features
-that are independent of the frame have a loss of 1. No label, action, instruction or policy is
-needed. Some frames stay clean (``schedule.clean_share``), because the rest of an agent expects
-unchanged clean features. Adapters with a gate learn not to change these frames.
+f0 is the original encoder, and v is the variance of its clean features between frames. Therefore
+features that do not depend on the frame have a loss of 1. No label, action, instruction or policy
+is needed. A fraction ``schedule.clean_share`` of the frames stays clean, because the rest of an
+agent expects that the features of clean frames do not change. Adapters with a gate learn to leave
+these frames unchanged.
 """
 
 from __future__ import annotations
@@ -34,9 +36,9 @@ from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
 
 SHOWN = 12  # number of frames in the logged picture
-# maximum bytes of cached clean features; beyond this, they are computed at each step
+# maximum number of bytes of cached clean features; larger amounts are computed again at each step
 MOST_KEPT = 1 << 30
-# number of frames for estimating the variance if not all features are cached (heuristic)
+# number of frames from which the variance is estimated if features are not cached (heuristic)
 LOOKED_AT = 48
 
 
@@ -47,33 +49,33 @@ def frame_source(
     split: str = "val_unseen",
     label: str | None = None,
 ) -> Source:
-    """Return the source of an encoder's frames (``source_of``)."""
+    """Return the source of the frames for an encoder (see ``source_of``)."""
     return source_of(world, agent.sensor, episodes, split, label)
 
 
 class HardenEncoder(Objective):
-    """Train an encoder to output the features of clean frames for corrupted frames.
+    """Train an encoder to output the clean features for corrupted frames.
 
     Args:
-        agent: the encoder; its adapters, or all of its weights, are trained in place.
+        agent: the encoder. Its adapters, or all of its weights, are trained in place.
         source: source of the frames.
-        schedule: schedule of corruptions; only corruptions of the encoder's sensor are used.
-        frames: number of frames, which are read once from the training scenes. Unseen files are
-            also read, so that an invalid file is found at once.
+        schedule: schedule of corruptions. Only corruptions of the encoder's sensor are used.
+        frames: number of frames, which are read once from the training scenes. Held-out files are
+            also read at the start, so that invalid files are found early.
         batch: number of frames per step.
-        micro_batch: number of frames in memory at once.
+        micro_batch: number of frames that are processed at once.
         seed: seed of frames and corruptions.
         w_feat: weight of the feature loss.
         w_gate: weight of the gate loss.
-        per_channel: Whether the loss is divided by the variance of each channel, so that all
-            channels count equally, or by the mean variance.
+        per_channel: whether the loss is divided by the variance of each channel, so that all
+            channels have equal weight. If false, it is divided by the mean variance.
 
     Raises:
         ValueError: A number is invalid, or the schedule has no corruption of the encoder's sensor.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"source": frame_source}
-    here = True  # jobs run here because the frames are in this process
+    here = True  # jobs run in this process, because it holds the frames
     needs = ("choose_trained", "sensor", "model")
     otherwise = (
         "This recipe trains an image encoder: set agent=efficientnet_lite0, or agent=encoder with "
@@ -104,7 +106,8 @@ class HardenEncoder(Objective):
         self.agent = agent
         self.batch_size = batch
         self.micro = micro_batch
-        agent.requires_grad_(False)  # trainable TorchScript parameters cannot be copied
+        # freeze first, because trainable TorchScript parameters cannot be copied
+        agent.requires_grad_(False)
         self.teacher = as_agent(agent).as_teacher().eval()
         agent.choose_trained()
         names = tuple(name for name in schedule.names if modality(name) == agent.sensor)
@@ -159,14 +162,14 @@ class HardenEncoder(Objective):
         return self.teacher(frames).float()
 
     def jobs(self, step: int) -> list[tuple[int, int, int]]:
-        """Return (step, position in the batch, index of the frame) of each frame."""
+        """Return one job per frame: a tuple (step, position in the batch, index of the frame)."""
         assert self.frames is not None, "start() reads the frames"
         rng = generator(self.seed, "encoder batch", step)
         chosen = rng.integers(len(self.frames), size=self.batch_size).tolist()
         return [(step, place, index) for place, index in enumerate(chosen)]
 
     def work(self, job: tuple[int, int, int]) -> tuple[int, np.ndarray]:
-        """Return the index of a frame and the corrupted frame."""
+        """Return the index of a frame, and the corrupted frame."""
         step, place, index = job
         assert self.frames is not None
         corruption, key = self.schedule.draw(self.seed, f"{step}-{place}", 0)
@@ -177,7 +180,7 @@ class HardenEncoder(Objective):
         chosen = [index for index, _ in pieces]
         changed = [frame for _, frame in pieces]
         clean = [self.frames.frames[index] for index in chosen]
-        # The corruption black-out leaves some frames unchanged.
+        # Compare pixels, because the corruption black-out leaves some frames unchanged.
         hit = [float(not np.array_equal(a, b)) for a, b in zip(changed, clean, strict=True)]
         self._last = np.stack(changed[:SHOWN])
         return {
@@ -188,17 +191,21 @@ class HardenEncoder(Objective):
         }
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of frames."""
+        """Return the number of frames in the batch."""
         return float(len(batch["frames"]))
 
     def _targets(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
-        """Return the clean features of a step's frames, or the clean frames."""
+        """Return the cached clean features of a step's frames. If features are not cached, return
+        the clean frames.
+        """
         if self.targets is None:
             return {"clean": torch.from_numpy(np.stack(clean))}
         return {"target": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Split the frames of a step into parts, each with its fraction of the frames."""
+        """Split the frames of a step into parts of at most ``micro_batch`` frames, and return each
+        part with its fraction of all frames.
+        """
         tensors = {name: batch[name].split(self.micro) for name in batch if name != "episode_ids"}
         parts = [
             dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
@@ -230,7 +237,9 @@ class HardenEncoder(Objective):
         return {name: value * batch.get("share", 1.0) for name, value in values.items()}
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return 1 if the encoder's own weights are unchanged (required with adapters), else 0."""
+        """Return whether the encoder's own weights are unchanged, as 1 or 0. With adapters, they
+        must be unchanged.
+        """
         return {"backbone_unchanged": float(backbone_sha(self.agent.model) == self.backbone)}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -241,9 +250,9 @@ def variance(clean: Tensor, per_channel: bool) -> Tensor:
     """Return the variance of features between frames at the same position.
 
     Args:
-        clean: features [n, C], [n, C, h, w] or [n, T, C].
+        clean: features of shape [n, C], [n, C, h, w] or [n, T, C].
         per_channel: whether to return the variance of each channel, in a shape that broadcasts and
-            at least a hundredth of the mean; otherwise return the mean of all variances.
+            limited to at least a hundredth of the mean. If false, return the mean of all variances.
     """
     each = clean.var(0)
     channel = 0 if each.dim() == 3 else each.dim() - 1
@@ -254,5 +263,5 @@ def variance(clean: Tensor, per_channel: bool) -> Tensor:
 
 
 def cosine(features: Tensor, target: Tensor) -> Tensor:
-    """Return the cosine similarity [n] between two features of each frame."""
+    """Return the cosine similarity [n] of two features for each of n frames."""
     return nn.functional.cosine_similarity(features.float().flatten(1), target.float().flatten(1))

@@ -1,10 +1,10 @@
-"""Imitate a world's expert with scheduled sampling, on corrupted frames.
+"""Imitate the expert of a world on corrupted frames, with scheduled sampling.
 
-Every step runs a few training episodes with the current weights under the schedule's corruptions,
-and trains on all their decisions. The loss is the cross-entropy to the expert plus the auxiliary
-losses of the agent. The same recipe with three schedules gives ``da_per_frame``, ``da_per_episode``
-and ``da_success``. This objective trains any agent of ``agents/agent.py`` in any world with an
-expert.
+Every training step runs a few episodes with the current weights under the corruptions of the
+schedule, and trains on all decisions of these episodes. The loss is the cross-entropy with the
+expert's decisions plus the auxiliary losses of the agent. The recipes ``da_per_frame``,
+``da_per_episode`` and ``da_success`` use this objective with different schedules. This objective
+trains any agent with the interface of ``agents/agent.py`` in any world that has an expert.
 """
 
 from __future__ import annotations
@@ -19,17 +19,19 @@ from mitigate.training.objective import check_weights
 from mitigate.training.parts import train_only
 from mitigate.training.rollouts import OnEpisodes, Rollouts
 
-DECAY = 0.6  # fraction of the steps after which the expert's share equals follow_oracle (heuristic)
+# fraction of the steps after which the share of expert decisions equals follow_oracle (heuristic)
+DECAY = 0.6
 
 
 class Imitate(OnEpisodes):
-    """Imitates the expert on rollouts of the agent.
+    """Imitate the expert on rollouts of the agent.
 
     Args:
         agent: the agent, which is trained in place.
         rollouts: the source of its decisions.
         train_parts: names of the agent's ``parts()``, or "adapters"; other parts stay frozen.
-            "policy" means all parts except the encoders, None means all except the adapters.
+            "policy" selects all parts except the encoders, and None selects all parts except the
+            adapters.
         losses: weights of auxiliary losses by name, which override the agent's defaults.
 
     Raises:
@@ -57,12 +59,13 @@ class Imitate(OnEpisodes):
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
-    """Return the imitation loss: weighted cross-entropy with the expert minus the expert's entropy.
+    """Return the imitation loss, which is the weighted cross-entropy with the expert minus the
+    expert's entropy.
 
-    Auxiliary losses are added with their ``weights`` (default 1).
+    Auxiliary losses are added, multiplied by their ``weights`` (default 1).
 
     Returns:
-        A dict with "loss" and values to log.
+        A dict with the entry "loss" and with values that are logged.
     """
     assert out.logits is not None, "decide() gave no logits"
     logits, target = masked(out.logits, out.mask), decisions.target
@@ -84,7 +87,7 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
 
 
 def falling_share(step: int, steps: int, least: float) -> float:
-    """Return the fraction of decisions by the expert at ``step``.
+    """Return the fraction of decisions at ``step`` that follow the expert.
 
     The fraction falls from 1 to ``least`` during the first ``DECAY`` of ``steps``.
     """
@@ -97,7 +100,7 @@ def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
 
 
 def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, float]:
-    """Return the weights of an agent's auxiliary losses, which are its defaults overridden by
+    """Return the weights of an agent's auxiliary losses: the agent's defaults, overridden by
     ``weights``.
 
     Raises ValueError if ``weights`` is not a mapping, or if a weight is below 0.
@@ -111,7 +114,7 @@ def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, f
 
 
 def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
-    """Raise ValueError for the weight of a loss that ``agent`` does not have."""
+    """Raise ValueError if ``weights`` contains a loss that ``agent`` does not have."""
     known = [*out.losses, *(n for n in as_agent(agent).loss_weights if n not in out.losses)]
     for name in weights:
         if name not in known:

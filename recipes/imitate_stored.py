@@ -1,6 +1,7 @@
-"""Imitate an expert on stored features, without rendering, with hundreds of decisions per step.
+"""Imitate an expert on stored features. No rendering is needed, so a step can use hundreds of
+decisions.
 
-The encoders are frozen; their features on a grid of poses of every scene are computed once. The
+The encoders are frozen. Their features are computed once, on a grid of poses in every scene. The
 agent must have a method ``store``. The loss is defined in ``recipes/imitate.py``.
 """
 
@@ -25,25 +26,25 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 @dataclass(eq=False, repr=False)
 class StoredRollouts:
-    """Source of batches with decisions on stored features.
+    """Source of batches of decisions that are made on stored features.
 
     Args:
         agent: the agent, which acts with its current weights and has a method ``store``.
-        world: function that constructs a world with the scenes whose features are stored.
+        world: function that constructs a world; the features of its scenes are stored.
         training: source of the episodes.
-        folder: folder of the stores.
+        folder: folder of the stored features.
         steps: number of training steps.
         episodes: number of episodes per step.
-        follow_oracle: final fraction of decisions by the expert, which falls from 1 during the
-            first 0.6 of ``steps``.
+        follow_oracle: final fraction of decisions that follow the expert. The fraction falls from 1
+            during the first 60 % of ``steps``.
         seed: seed of episodes, corruptions and actions.
-        schedule: schedule of corruptions of the variants.
+        schedule: schedule that selects the corruptions of the corrupted copies.
         variants: number of corrupted copies of each scene's features, in addition to the clean
             features.
 
     Raises:
-        ValueError: There are no episodes, the fraction is invalid, or the schedule is
-            success-distributed.
+        ValueError: There are no episodes, the fraction is invalid, or the schedule samples
+            corruptions by success rate.
     """
 
     agent: Any
@@ -63,7 +64,7 @@ class StoredRollouts:
         success.refuse(self.schedule if self.variants else None)
 
     def start(self, workers: int | None) -> None:
-        """Compute the stored features, in the precision of the training run."""
+        """Compute and store the features, in the precision of the training run."""
         variants = {"schedule": self.schedule, "variants": self.variants, "seed": self.seed}
         self.store = self.agent.store(
             self.world, self.folder, **(variants if self.variants else {})
@@ -76,12 +77,14 @@ class StoredRollouts:
         return min(PIECES, self.episodes)
 
     def jobs(self, step: int) -> list[tuple]:
-        """Return one job per piece: (step, piece, pieces, episodes)."""
+        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
+        episodes).
+        """
         parts = np.array_split(np.arange(self.episodes), self.pieces)
         return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
 
     def work(self, job: tuple) -> Any:
-        """Return the decisions of a piece."""
+        """Run the episodes of a job and return their decisions."""
         step, piece, pieces, count = job
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]

@@ -1,15 +1,16 @@
-"""Reinforcement learning under corruption: PPO on the reward of the world.
+"""Reinforcement learning under corruption: train a policy with PPO on the reward of the world.
 
-A trained policy runs episodes with corrupted frames, samples its actions, and learns from the
-reward of the environment with the clipped loss of PPO (Schulman et al. 2017; ``ClipPPOLoss`` and
-generalised advantages of torchrl). With ``w_kl`` it also stays near the unchanged policy, which
-sees the clean frames.
+An already trained policy runs episodes with corrupted frames and samples its actions. It learns
+from the reward of the environment with the clipped loss of PPO (Schulman et al. 2017).
+``ClipPPOLoss`` and the generalised advantages come from torchrl. If ``w_kl`` is above 0, the policy
+also stays near the unchanged policy, which sees the clean frames.
 
-A round of rollouts is a number of whole episodes. Each round gives a fixed number of steps. The
-collectors of torchrl are not used, because their environments keep running between rounds: a
-resumed training could not return to their state. Here each episode starts from its seed, and a
-resumed run repeats the interrupted round with the weights that this round began with. So it ends
-with the same bits if the environment gives the same episode for the same seed and actions.
+Training alternates between rounds of rollouts and updates. A round consists of whole episodes, and
+a fixed number of training steps follows each round. The collectors of torchrl are not used, because
+their environments keep running between rounds, and a resumed run could not restore the state of the
+environments. In this implementation, each episode starts from its seed, and a resumed run repeats
+the interrupted round with the weights at the start of that round. Therefore the resumed run gives
+bit-identical weights if the environment is deterministic for a given seed and actions.
 """
 
 from __future__ import annotations
@@ -38,33 +39,37 @@ from mitigate.recipes.self_distil import (
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
-CHUNK = 256  # frames whose values are computed at once
+CHUNK = 256  # number of frames whose values are computed at once
 
 
 class Ppo(Objective):
     """Train a policy by PPO while its frames are corrupted.
 
     Args:
-        agent: trained in place; with adapters only these train. It must give a distribution of its
-            actions and have no memory.
-        world: makes a world with a ``reward`` (``GymWorld``, ``EnvWorld``).
+        agent: the policy, which is trained in place. If it has adapters, only these are trained.
+            The policy must give a distribution of actions and must have no memory.
+        world: function that constructs a world with a ``reward``, such as ``GymWorld`` or
+            ``EnvWorld``.
         training: source of the episodes.
-        schedule: draws the corruption of each episode or frame.
-        rollout: fewest environment steps of a round; the episode that reaches it is finished.
-        epochs: how often each environment step of a round is used.
-        batch: fewest environment steps per step of the training.
-        gamma: discount of rewards.
-        lmbda: decay of generalised advantages (GAE).
-        clip: largest change of the probability of an action in a round, as a share.
-        w_critic, w_entropy: weights of the losses of the critic and of the entropy.
-        w_kl: weight of the divergence from the unchanged policy on the clean frames.
-        critic_rounds: rounds at the start in which only the critic learns.
-        module: name of the module whose output a new critic reads; None: the last convolution.
+        schedule: schedule that selects the corruption of each episode or frame.
+        rollout: minimum number of environment steps per round. The episode that reaches this number
+            is run to its end.
+        epochs: number of times that each environment step of a round is used.
+        batch: minimum number of environment steps per training step.
+        gamma: discount factor of rewards.
+        lmbda: decay factor of the generalised advantage estimation (GAE).
+        clip: maximum relative change of the probability of an action in a round (the clipping
+            parameter of PPO).
+        w_critic, w_entropy: weights of the critic loss and of the entropy loss.
+        w_kl: weight of the divergence from the unchanged policy, which sees the clean frames.
+        critic_rounds: number of rounds at the start in which only the critic is trained.
+        module: name of the module whose output a new critic reads. The default is the last
+            convolution.
         seed: seed of episodes, corruptions and actions.
 
     Raises:
-        ValueError: A number is out of its range, the policy reads no frames, has a memory or gives
-            no distribution, or the world has no reward.
+        ValueError: A number is out of range, the policy reads no frames, has a memory or gives no
+            distribution of actions, or the world has no reward.
     """
 
     loss: Any  # ClipPPOLoss
@@ -102,14 +107,15 @@ class Ppo(Objective):
         self.training_episodes = training
         self.schedule = schedule
         self.rollout = rollout
-        self.parts = max(1, rollout // batch)  # steps per epoch
-        self.updates = epochs * self.parts  # steps per round
+        self.parts = max(1, rollout // batch)  # training steps per epoch
+        self.updates = epochs * self.parts  # training steps per round
         self.gamma = gamma
         self.lmbda = lmbda
         self.w_kl = w_kl
         self.critic_rounds = critic_rounds
         self.seed = seed
-        self.world: Any = world()  # made once, because making an environment takes time
+        # constructed only once, because constructing an environment takes time
+        self.world: Any = world()
         if read(self.world, "reward") is None:
             raise ValueError(
                 f"{type(self.world).__name__} has no reward, which method='ppo' maximises. "
@@ -122,15 +128,16 @@ class Ppo(Objective):
         }
         with _random(agent.device, seed, "ppo critic"):
             self.actor = ActorCritic(agent, example, module or last_convolution(agent))
-        self.behaviour = self.actor.copied()  # the weights that run the current round
+        # a copy with the weights that run the episodes of the current round
+        self.behaviour = self.actor.copied()
         self.teacher = clean_teacher(agent) if w_kl else None
         self.loss = _loss(self.actor, clip, w_critic, w_entropy)
-        # standard deviation of the returns of the first round: the unit of the critic
+        # standard deviation of the returns of the first round, by which rewards are divided
         self.register_buffer("scale", torch.ones(()))
         self._rollouts: dict[str, Any] = {}
-        self._number = -1  # the round in ``_rollouts``
-        self._steps_before = 0  # environment steps of earlier rounds
-        self._steps_now = 0  # environment steps of the newest round
+        self._number = -1  # index of the round that ``_rollouts`` contains
+        self._steps_before = 0  # number of environment steps in all earlier rounds
+        self._steps_now = 0  # number of environment steps in the newest round
         self._picture: np.ndarray | None = None
 
     def identity(self) -> dict[str, str]:
@@ -139,15 +146,17 @@ class Ppo(Objective):
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
     def pieces(self) -> int:
-        """Return 1 piece per step, because each process trains on the episodes that it ran."""
+        """Return 1, because each process trains only on the episodes that it ran."""
         return 1
 
     @torch.no_grad()
     def batch(self, step: int) -> dict[str, Any]:
-        """Return a part of the environment steps of the round, each once per epoch."""
+        """Return some of the environment steps of the round. Each environment step is used once per
+        epoch.
+        """
         number, within = divmod(step, self.updates)
         if number != self._number:
-            if within == 0:  # otherwise a resumed training repeats the round
+            if within == 0:  # if not 0, a resumed run repeats the interrupted round
                 self.behaviour.load_state_dict(self.actor.state_dict())
                 self._steps_before += self._steps_now
             self._rollouts = self._run(number)
@@ -197,7 +206,7 @@ class Ppo(Objective):
         return {} if self._picture is None else {"seen": self._picture}
 
     def _run(self, number: int) -> dict[str, Any]:
-        """Run the episodes of a round and return their environment steps, with advantages."""
+        """Run the episodes of a round, and return their environment steps with advantages."""
         steps: list[dict[str, Any]] = []
         returns: list[float] = []
         with _random(self.behaviour.policy.device, self.seed, "ppo actions", number):
@@ -242,9 +251,10 @@ class Ppo(Objective):
         }
 
     def _episode(self, number: int, index: int) -> list[dict[str, Any]]:
-        """Run an episode with sampled actions and return its steps.
+        """Run an episode with sampled actions, and return its environment steps.
 
-        A step that ends an episode which the task did not end holds the "last" frames.
+        If the episode ends although the task is not over, the last step also contains the frames
+        after it, under "last".
         """
         policy = self.behaviour.policy
         episode = self.training_episodes.draw(
@@ -277,7 +287,7 @@ class Ppo(Objective):
         return steps
 
     def _values(self, frames: dict[str, np.ndarray]) -> Tensor:
-        """Return the values [N, 1] of the current round's critic."""
+        """Return the values [N, 1] that the critic of the current round predicts."""
         count = len(next(iter(frames.values())))
         return torch.cat(
             [
@@ -295,7 +305,7 @@ class Ppo(Objective):
 
 
 class _Actor:
-    """The policy in the form of torchrl's losses."""
+    """The policy, with the interface that torchrl's losses expect."""
 
     in_keys = ("frames",)
 
@@ -307,7 +317,7 @@ class _Actor:
 
 
 class _Critic:
-    """The critic in the form of torchrl's losses."""
+    """The critic, with the interface that torchrl's losses expect."""
 
     in_keys = ("frames",)
 
@@ -349,14 +359,16 @@ def _advantages(
     gamma: float,
     lmbda: float,
 ) -> tuple[Tensor, Tensor]:
-    """Return generalised advantages and targets of values, [N, 1] like all arguments."""
+    """Return the generalised advantages and the targets of the values. All arrays have the shape
+    [N, 1].
+    """
     from torchrl.objectives.value.functional import generalized_advantage_estimate
 
     return generalized_advantage_estimate(gamma, lmbda, value, next_value, reward, done, terminated)
 
 
 def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarray:
-    """Return the discounted return from each step to the end of its episode, [N]."""
+    """Return the discounted returns [N], from each step to the end of its episode."""
     returns = np.zeros(len(rewards))
     following = 0.0
     for place in reversed(range(len(rewards))):
@@ -367,7 +379,7 @@ def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarr
 
 @contextmanager
 def _random(device: torch.device, *key: int | str) -> Iterator[None]:
-    """Draw torch's random numbers from ``key`` within the context."""
+    """Seed torch's random numbers with ``key`` inside the context."""
     with torch.random.fork_rng([device] if device.type == "cuda" else []):
         torch.manual_seed(digest(*key) & (2**63 - 1))
         yield

@@ -1,8 +1,8 @@
 """Train an agent's encoders on random poses with labels from the simulator.
 
-In the apartments, RGB labels describe visible things, near things, colours and rooms in the middle
-of each view. Depth labels are the directions in which the agent can go straight. The encoders of
-the two sensors are independent, so each has its own stage.
+In the apartments, RGB labels describe the furniture, near furniture, colours and rooms that are
+visible in the middle of each view. Depth labels are the directions in which the agent can move
+straight ahead. The encoders of the two sensors are independent, so each has its own stage.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from mitigate.training.poses import OnViews, Poses
 
 
 class Pretrain(OnViews):
-    """Trains encoders on labels of the world.
+    """Train encoders on labels of the world.
 
     Args:
         agent: the agent, whose encoders for the sensor in ``poses`` are trained in place. It must
@@ -41,8 +41,8 @@ class Pretrain(OnViews):
 def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> dict[str, Any]:
     """Unfreeze the encoders of ``modality``, or only their adapters.
 
-    For RGB, every second view is used, because neighbours overlap. Ring adapters read all views of
-    a panorama, so for an agent with adapters all views are used.
+    For RGB, every second view is used, because neighbouring views overlap. If the agent has
+    adapters, all views are used, because ring adapters read all views of a panorama.
 
     Returns:
         The arguments of ``Poses.learn``.

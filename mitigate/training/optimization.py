@@ -19,13 +19,13 @@ def check(schedule: str) -> None:
 
 
 def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: float) -> AdamW:
-    """Return AdamW for those parameters of ``groups`` that are not frozen.
+    """Return an AdamW optimizer of the parameters in ``groups`` that are not frozen.
 
     Args:
         groups: parameter groups, which may set ``lr`` and ``weight_decay``.
-        name: name of the stage, for the error.
-        lr: learning rate of groups without ``lr``.
-        weight_decay: weight decay of groups without ``weight_decay``.
+        name: name of the stage, used in the error message.
+        lr: learning rate of groups that do not set ``lr``.
+        weight_decay: weight decay of groups that do not set ``weight_decay``.
 
     Raises:
         ValueError: Every parameter is frozen.
@@ -43,13 +43,15 @@ def scheduler(optimizer: AdamW, steps: int, warmup: int, schedule: str) -> Lambd
     """Return the schedule of the learning rate.
 
     The learning rate rises from 0 during ``warmup`` updates, and then follows ``schedule``. Unless
-    the schedule is constant, it ends at 0 after ``steps``.
+    the schedule is constant, the learning rate is 0 after ``steps`` updates.
     """
     return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup, schedule))
 
 
 def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
-    """Return the factor on the learning rate at update ``step`` (from 0)."""
+    """Return the factor by which the learning rate is multiplied at update ``step`` (counted from
+    0).
+    """
     if step < warmup:
         return (step + 1) / (warmup + 1)
     if schedule == "constant":

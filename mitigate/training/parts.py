@@ -1,4 +1,4 @@
-"""Choose which parts of an agent are trained, and make teachers from agents."""
+"""Choose which parts of an agent are trained, and build teachers from agents."""
 
 from __future__ import annotations
 
@@ -19,13 +19,14 @@ from mitigate.core.names import unknown
 from mitigate.core.pretrained import LORA
 
 ADAPTERS = "adapters"  # name of the part that contains all adapters of the agent
-POLICY = "policy"  # value that means all parts except the encoders, instead of a list of parts
+# value that selects all parts except the encoders; used instead of a list of parts
+POLICY = "policy"
 # members that an agent needs for training on episodes
 TRAINABLE = ("parts", "collect", "join", "decide")
 # members that an agent needs for training its encoders on single observations
 SEEING = ("parts", "encoders", "labels", "see")
 OWN = "Choose an agent that has these (docs/agents.md), or give it these (docs/bring-your-own.md)."
-START = "start"  # value of teacher= for a copy of the agent at the start of the stage
+START = "start"  # value of teacher= that selects a copy of the agent at the start of the stage
 
 
 def policy_parts(agent: Any) -> list[str]:
@@ -41,12 +42,12 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 
     Args:
         agent: the agent.
-        parts: names from ``agent.parts()``; "policy" means all parts except the encoders, None
-            means all.
+        parts: names from ``agent.parts()``; "policy" selects all parts except the encoders, and
+            None selects all parts.
 
     Raises:
-        ValueError: A part is unknown, a parameter is in no part, adapters to be trained have gates
-            (which cannot be trained on episodes), or the agent is not trainable.
+        ValueError: A part is unknown, a parameter belongs to no part, adapters that are to be
+            trained have gates (gates cannot be trained on episodes), or the agent is not trainable.
     """
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)
@@ -64,7 +65,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     if missing:
         raise ValueError(
             f"parts() of {type(agent).__name__} leaves out {', '.join(missing[:4])}: every "
-            "parameter must belong to a part, so that it is clear whether it trains."
+            "parameter must belong to a part, so that it is clear whether it is trained."
         )
     if ADAPTERS in parts:
         refuse_gates(agent)
@@ -100,15 +101,15 @@ def freeze(agent: nn.Module) -> None:
 
 
 def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
-    """Put frozen normalisations with running statistics (BatchNorm) in ``module`` in eval mode.
+    """Set eval mode for the frozen BatchNorm layers in ``module``.
 
-    In training mode, every batch would change the statistics, although no weight is trained. A
-    normalisation without weights is treated as frozen if all weights (except adapters) of the
-    nearest enclosing module with weights are frozen.
+    In training mode, every batch would change their running statistics, although no weight is
+    trained. A normalisation layer may have no weights. It is then treated as frozen if the nearest
+    enclosing module with weights has only frozen weights; adapters are ignored.
 
     Args:
         module: the module.
-        around: weights of the enclosing module.
+        around: weights of the module that contains ``module``.
     """
     weights = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
     around = weights or around
@@ -129,7 +130,7 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
             weights.
 
     Raises:
-        ValueError: The weights are only adapters, or do not match the agent.
+        ValueError: The weights contain only adapters, or do not match the agent.
         FileNotFoundError: The weights do not exist.
     """
     if weights is None:

@@ -1,13 +1,13 @@
-"""Plan a training run, which includes all decisions before the first step.
+"""Plan a training run: make all decisions that are needed before the first step.
 
 :func:`check` rejects options that are invalid for every agent. :func:`plan` then decides, in
 the order of the functions below:
 
-1. It builds the agent, with the settings that it inherits from its initial weights.
-2. It skips stages that have nothing to train in this agent, and corruptions of sensors that the
-   agent does not read, and reports this.
-3. It plans each stage, which has an objective with arguments and the settings of the trainer.
-4. It checks that agent, world, folder and stages are compatible.
+1. It builds the agent, which inherits settings from its initial weights.
+2. It skips stages that would train nothing in this agent, drops corruptions of sensors that the
+   agent does not read, and reports both.
+3. It plans the objective and the trainer settings of each stage.
+4. It checks that the agent, the world, the folder and the stages are compatible.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
 from mitigate.worlds.world import Placeable
 
-# name of a file in a stage's folder that identifies initial weights, settings, code and teacher
+# name of the file in a stage's folder that records which initial weights, settings, code and
+# teacher the stage uses
 IDENTITY = "identity.json"
 NOT_IDENTITY = ("workers", "folder")  # arguments that do not affect the result of a stage
 OURS = "mitigate.recipes."
@@ -55,13 +56,13 @@ OURS = "mitigate.recipes."
 
 @dataclass(frozen=True)
 class StagePlan:
-    """One stage that will run.
+    """The plan of one training stage.
 
     Attributes:
         name: name of the stage and of its subfolder.
         folder: folder of its checkpoints and logs.
         objective: the objective, with its arguments.
-        trainer: those settings of the Trainer that are set.
+        trainer: the settings of the Trainer that the recipe or the user set.
         identity: the settings part of the stage's fingerprint; a run is not resumed if it differs.
     """
 
@@ -74,10 +75,10 @@ class StagePlan:
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan of a training.
+    """The plan of a training run.
 
     Attributes:
-        config: the options, with the changes of this plan.
+        config: the options, as changed by the planning.
         folder: folder of the run.
         agent: the agent with its initial weights.
         stages: stages in order.
@@ -111,7 +112,8 @@ def check(config: TrainConfig) -> None:
             "experiment=camera only harden, ts_distill, stacked and self_distill)."
         )
     listed = config.report == REPORT or env.episodes
-    if config.evaluation.enabled and listed:  # this finds mistakes before training starts
+    # check this before training starts, so that mistakes are found early
+    if config.evaluation.enabled and listed:
         count = config.evaluation.episodes
         episodes(env, config.evaluation.split, count if count is None else min(count, 1))
         measured = conditions(config.suite.conditions, config.severity, config.severity_depth)
@@ -124,12 +126,13 @@ def _target_of(stage: StageConfig) -> str:
 
 
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
-    """Plan a training with checked options (:func:`check`).
+    """Plan a training run from options that :func:`check` has accepted.
 
-    A line is printed for each decision that a user may not expect.
+    Print a line for each decision that a user may not expect.
 
     Raises:
-        ValueError: Options, recipe, agent, world or folder are not compatible.
+        ValueError: The options, the recipe, the agent, the world and the folder are not compatible
+            with each other.
         FileNotFoundError: Weights are missing.
     """
     config = copy.deepcopy(config)
@@ -150,7 +153,7 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
 
 
 def check_teacher(config: TrainConfig) -> None:
-    """Raise ValueError for a teacher that no stage uses."""
+    """Raise ValueError if the options name a teacher that no stage uses."""
     taught = any("teacher" in stage.recipe for stage in config.active_stages.values())
     if config.teacher is not None and not taught:
         raise ValueError(
@@ -160,17 +163,15 @@ def check_teacher(config: TrainConfig) -> None:
 
 
 def warn_unused_schedule(config: TrainConfig) -> None:
-    """Warn if no stage uses the ``schedule``, or if the schedule does not use a severity option
-    that was given.
-    """
+    """Warn if no stage uses the ``schedule``, or if the schedule ignores a severity option."""
     schedule = config.schedule or {}
     mode = schedule.get("mode")
     if mode is None or (mode == "clean" and not schedule.get("broad_share")):
         return
     if not _contains([s.recipe for s in config.active_stages.values()], schedule["_target_"]):
         say(
-            f"the schedule (mode {mode}) has no effect: recipe={config.name} draws no corruptions "
-            f"in {', '.join(config.stages)}. To train under corruptions, choose "
+            f"the schedule (mode {mode}) has no effect: recipe={config.name} samples no "
+            f"corruptions in {', '.join(config.stages)}. To train under corruptions, choose "
             "recipe=da_per_episode"
         )
         return
@@ -186,18 +187,18 @@ def warn_unused_schedule(config: TrainConfig) -> None:
 
 
 def _contains(node: Any, target: str) -> bool:
-    """Return whether ``node`` contains the ``_target_`` ``target`` at any depth."""
+    """Return whether ``_target_`` equals ``target`` at any depth of ``node``."""
     if isinstance(node, dict):
         return node.get("_target_") == target or _contains([*node.values()], target)
     return isinstance(node, list) and any(_contains(part, target) for part in node)
 
 
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
-    """Replace each stage that trains nothing in ``agent`` by None, and print its name.
+    """Set each stage that would train no part of ``agent`` to None, and print its name.
 
     Raises:
-        ValueError: No stage is left. An agent without one of its sensors may have no stage left; it
-            is then only evaluated.
+        ValueError: No stage is left. If ``agent.blind`` is set and evaluation is enabled, there is
+            no error and the agent is only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -217,9 +218,10 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
-    """Return why a stage has nothing to train in this kind of agent, or None.
+    """Return why a stage would train nothing in this kind of agent; return None if it trains
+    something.
 
-    The agent lacks the sensor, stores no features, or can only train encoders.
+    Possible reasons: the agent lacks the sensor, stores no features, or can only train encoders.
     """
     sensor = recipe.get("modality")
     kind = type(agent).__name__
@@ -257,7 +259,9 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:
-    """Return why an objective cannot train ``agent``, or "" if it can or if it is not a class."""
+    """Return why an objective cannot train ``agent``. Return "" if it can, or if ``kind`` is not a
+    class.
+    """
     return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
@@ -277,16 +281,17 @@ def warn_warmup(config: TrainConfig) -> None:
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
     """Remove corruptions of sensors that ``agent`` does not read from the stages' schedules.
 
-    Such corruptions would leave the agent's frames clean. Prints the removed corruptions.
+    Such corruptions would leave the agent's frames clean. The removed corruptions are printed.
 
     Raises:
-        ValueError: A schedule contains no other corruptions.
+        ValueError: A schedule would contain no corruptions after the removal.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
     unread = [sensor for sensor in (RGB, DEPTH) if sensor not in sensors]
     cause = f"{type(agent).__name__} reads no {' or '.join(unread)}"
-    dropped: dict[str, None] = {}  # a dict preserves the order of the schedules
+    # a dict instead of a set, because it preserves the order of the corruptions
+    dropped: dict[str, None] = {}
     for name, stage in config.active_stages.items() if unread else ():
         node = stage.recipe.get("schedule")
         if not isinstance(node, dict):
@@ -297,7 +302,7 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
         remaining = [n for n in schedule.names if modality(n) not in unread]
         if not remaining:
             raise ValueError(
-                f"{cause}, and the schedule of the stage {name} draws only "
+                f"{cause}, and the schedule of the stage {name} samples only "
                 f"{', '.join(schedule.names)}: it would train on clean frames. Choose from "
                 f"{', '.join(names(*sensors))} (schedule.names=[...]), or choose another agent "
                 "(docs/agents.md)."
@@ -349,16 +354,16 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
 
 
 def _settings_of(agent: Any) -> dict[str, Any]:
-    """Return the settings of an agent; users' agents may have no ``settings()``."""
+    """Return the settings of an agent, or an empty dict if the agent has no ``settings()``."""
     return dict(getattr(agent, "settings", dict)())
 
 
 def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Check world, folder and stages against the agent before the first step.
+    """Check before the first step that the world, the folder and the stages fit the agent.
 
     Raises:
-        ValueError: The world has a different number of views, the folder contains a different run,
-            or there are more ``ranks`` than pieces per step.
+        ValueError: The number of views differs between the world and the agent, the folder contains
+            a different run, or there are more ``ranks`` than pieces of work per step.
     """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
@@ -385,28 +390,29 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
         ):  # the trainer also compares the complete identity, but only at the start of the stage
             try:
                 recorded = read_object(file, states.OTHER_FOLDER)
-            except ValueError:  # if the file is damaged, the checkpoints also contain this data
+            # a damaged file is skipped, because the checkpoints contain the same data
+            except ValueError:
                 continue
             identity = states.as_json(planned[name].identity)
             states.check_same(file.parent, {key: recorded.get(key) for key in identity}, identity)
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Build the objectives of all stages on a copy of ``agent``, up to the first objective of a
-    user.
+    """Build the objectives of all stages on a copy of ``agent``.
 
-    This finds a mistake in a later stage before the first stage is trained. Before training, it is
-    unknown which parts of the agent a user's objective changes.
+    This finds a mistake in a later stage before the first stage is trained. The check stops at an
+    objective that a user wrote, because it is unknown how such an objective changes the agent.
 
     Raises:
-        ValueError: There are more ``ranks`` than pieces, or an objective raised this error.
-        FileNotFoundError: an objective raised this error.
+        ValueError: There are more ``ranks`` than pieces of work per step, or an objective raised
+            this error.
+        FileNotFoundError: An objective raised this error.
     """
-    if len(stages) < 2 and ranks.count == 1:  # if there is only one stage, it is built next anyway
+    if len(stages) < 2 and ranks.count == 1:  # a single stage is built immediately after this check
         return
     try:
         copied = copy.deepcopy(agent)
-    # all errors are ignored, because an agent that cannot be copied may still be trained
+    # ignore any error, because an agent that cannot be copied may still be trainable
     except Exception:
         return
     for stage in stages:
@@ -419,10 +425,11 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 
 
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
-    """Return the config that is written with the weights of ``agent``.
+    """Return the config that is saved together with the weights of ``agent``.
 
-    The config contains the agent's ``settings()``, such as its vocabulary. It contains no class
-    names of the agent's parts. The program that loads the agent takes them from its own config.
+    The config contains the agent's ``settings()``, such as its vocabulary. It does not contain the
+    class names of the agent's parts, because the program that loads the agent takes these names
+    from its own config.
     """
 
     def data(value: Any) -> Any:

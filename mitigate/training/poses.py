@@ -1,6 +1,6 @@
-"""Make batches of corrupted panoramas from random poses, with labels, to train encoders.
+"""Make batches of corrupted panoramas at random poses, with labels, to train encoders.
 
-The batches do not depend on weights, so workers compute them in advance.
+The batches do not depend on the agent's weights, so worker processes compute them in advance.
 """
 
 from __future__ import annotations
@@ -35,27 +35,29 @@ VIEWS_ALONE = (
 
 @dataclass(eq=False, repr=False)
 class Poses(DrawsBySuccess):
-    """Source of batches with corrupted and clean panoramas from random poses.
+    """Source of batches that contain corrupted and clean panoramas at random poses.
 
     Args:
-        agent: the agent that is measured if a success-distributed schedule has no success rates.
+        agent: the agent whose success rates are measured if the schedule samples corruptions by
+            success rate and has no rates yet.
         world: function that constructs a world with random poses (``Placeable`` in
             ``worlds/world.py``).
-        training: episodes for measuring success rates.
+        training: episodes on which success rates are measured.
         modality: the sensor, "rgb" or "depth".
         schedule: chooses the corruption of each panorama; None keeps frames clean.
         panoramas: number of panoramas per batch.
         seed: seed of poses and corruptions.
-        refresh_episodes: episodes per corruption when success rates are measured.
-        own: whether to sample only corruptions of this sensor; otherwise corruptions of other
-            sensors leave its frames clean.
-        camera_share: fraction of panoramas that a displaced camera sees (``random_mount`` in
-            ``corruptions/faults/camera.py``). Their clean frames and labels are those of the
-            undisplaced camera.
+        refresh_episodes: number of episodes per corruption when success rates are measured.
+        own: whether to sample only corruptions of this sensor. If false, corruptions of other
+            sensors are also sampled, and they leave the frames of this sensor clean.
+        camera_share: fraction of panoramas that are rendered from a displaced camera
+            (``random_mount`` in ``corruptions/faults/camera.py``). For these panoramas, the clean
+            frames and the labels still come from the undisplaced camera.
 
     Raises:
         ValueError: The sensor is unknown, there are no panoramas, the world has no random poses, or
-            ``camera_share`` is invalid or above 0 in a world that cannot displace its camera.
+            ``camera_share`` is invalid. ``camera_share`` must be 0 in a world that cannot displace
+            its camera.
     """
 
     agent: Any
@@ -84,12 +86,13 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Choose the targets and views of later batches; without this call, targets are empty.
+        """Choose which targets and views later batches contain. Without this call, targets are
+        empty.
 
         Args:
             label: entry of the world's truth to use as targets.
-            every: use every n-th view of a panorama; with 2, every second view, because neighbours
-                overlap.
+            every: use every n-th view of a panorama. The value 2 is useful because neighbouring
+                views overlap.
         """
         self.label = label
         self.every = every
@@ -99,7 +102,7 @@ class Poses(DrawsBySuccess):
 
     @property
     def placed(self) -> Placeable:
-        """The world of this process."""
+        """The world, which each process constructs once."""
         if self._placed is None:
             world = self.world()
             if not isinstance(world, Placeable):
@@ -123,10 +126,10 @@ class Poses(DrawsBySuccess):
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return one job per piece: a tuple (step, piece, pieces, panoramas, state of the
-        schedule).
+        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
+        panoramas, state of the schedule).
 
-        If the schedule needs success rates and has none, they are measured with ``workers``
+        If the schedule needs success rates but has none, this method measures them with ``workers``
         processes.
         """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
@@ -137,7 +140,7 @@ class Poses(DrawsBySuccess):
         return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
-        """Return (corrupted frames, clean frames, labels) for each random pose in a piece."""
+        """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
         step, piece, pieces, count, state = job
         self.set_schedule(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
@@ -145,7 +148,7 @@ class Poses(DrawsBySuccess):
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
     def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
-        """Join the pieces to the tensors "frames", "clean" and "targets"."""
+        """Join the results of all jobs into the tensors "frames", "clean" and "targets"."""
         rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")
         self._last = rows[-1][0]
@@ -155,7 +158,7 @@ class Poses(DrawsBySuccess):
         }
 
     def figures(self) -> dict[str, np.ndarray]:
-        """Return the last views of the last batch side by side, with depth drawn as grey."""
+        """Return the last panorama of the last batch as one picture; depth is shown as grey."""
         return {} if self._last is None else {"views": side_by_side(self._last)}
 
     def _panorama(self, rng: np.random.Generator, scenes: Any, name: str) -> tuple[np.ndarray, ...]:
@@ -169,7 +172,7 @@ class Poses(DrawsBySuccess):
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
         clean, seen, truth = self._put(xy, heading, views, Key(self.seed, name, 0))
-        # A corruption may replace a view by a different view, so views that were not rendered are
+        # A corruption may replace one view by another. Therefore views that were not rendered are
         # filled with copies of rendered views.
         sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
         seen = {**seen, self.sensor: seen[self.sensor][sources]}
@@ -192,7 +195,9 @@ class Poses(DrawsBySuccess):
     def _put(
         self, xy: np.ndarray, heading: float, views: list[int] | None, key: Key
     ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return the frames of the camera in its place and of this instant's camera, and labels."""
+        """Return the frames of the undisplaced camera, the frames of the possibly displaced camera,
+        and the labels.
+        """
         rgb = self.sensor == RGB
         clean, truth = self.placed.put(xy, heading, views=views, rgb=rgb)
         if uniform(digest(key, "camera_share")) >= self.camera_share:
@@ -227,7 +232,9 @@ class OnViews(Objective):
         return self.poses.collate(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of panoramas, or of views of a single camera."""
+        """Return the number of panoramas in the batch, or the number of views if there is a single
+        camera.
+        """
         return float(len(batch["frames"]))
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -241,6 +248,6 @@ class OnViews(Objective):
 
 
 def check_panoramas(panoramas: int) -> None:
-    """Raise ValueError for less than one panorama per step."""
+    """Raise ValueError if there is less than one panorama per step."""
     if panoramas < 1:
         raise ValueError(f"recipe.panoramas must be >= 1 per step, got {panoramas}.")

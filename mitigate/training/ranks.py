@@ -1,8 +1,7 @@
 """Train one agent with several processes: ``torchrun --nproc-per-node 2 -m mitigate.train``.
 
-Each rank processes some of the pieces of a step and computes their gradients. Gradients are
-averaged, so all ranks take the same step. With one rank, which is the usual case, this module adds
-no cost.
+Each rank computes the gradients for its part of a step's batch. The gradients are averaged, so all
+ranks make the same update. With one rank, which is the usual case, this module adds no cost.
 """
 
 from __future__ import annotations
@@ -25,7 +24,7 @@ WAIT = timedelta(hours=2)  # time limit for a rank that builds a cache or evalua
 
 
 class Ranks:
-    """Rank ``number`` of ``count`` processes, used as a context manager around training.
+    """One of ``count`` training processes, with the index ``number``; a context manager.
 
     It opens and closes the process group (gloo for CPU tensors, nccl for GPU tensors) and silences
     the output of all ranks except the first.
@@ -37,14 +36,16 @@ class Ranks:
 
     @classmethod
     def of_environment(cls) -> Ranks:
-        """Return the rank from torchrun's environment variables, or else a single rank."""
+        """Return the rank that torchrun's environment variables describe, or a single rank if they
+        are not set.
+        """
         return cls(int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1)))
 
     def __enter__(self) -> Ranks:
         if self.count > 1:
             if torch.cuda.is_available():
                 torch.cuda.set_device(int(os.environ.get("LOCAL_RANK", 0)))
-            # After this timeout, ranks exit and torchrun restarts them.
+            # If this timeout expires, the ranks exit and torchrun restarts them.
             backend = "cpu:gloo,cuda:nccl" if torch.cuda.is_available() else "gloo"
             dist.init_process_group(backend, timeout=FIND)
             _set_pg_timeout(WAIT)
@@ -67,13 +68,13 @@ class Ranks:
         return jobs[self.number :: self.count]
 
     def check(self, pieces: int, stage: str = "this recipe") -> None:
-        """Raise ValueError if a step of ``stage`` has fewer pieces than there are ranks."""
+        """Raise ValueError if a step of ``stage`` has fewer pieces of work than there are ranks."""
         if self.count > 1 and pieces < self.count:
             most = max(1, pieces)
             raise ValueError(
-                f"A step of {stage} has {counted(pieces, 'piece')}, too few for {self.count} "
-                "ranks: start "
-                f"torchrun with --nproc-per-node {most} or fewer (make train NPROC={most})."
+                f"A step of {stage} has {counted(pieces, 'piece')} of work, too few for "
+                f"{self.count} ranks: start torchrun with --nproc-per-node {most} or fewer (make "
+                f"train NPROC={most})."
             )
 
     def average(
@@ -81,10 +82,10 @@ class Ranks:
     ) -> None:
         """Replace gradients and logged values by their weighted means over the ranks.
 
-        A loss that is a mean weighted by ``Objective.weight`` gets the gradient that a
-        single process would compute from all pieces. Other losses are averaged over ranks: the KL
-        divergence of distillation, auxiliary losses of agents, and errors that are divided by a
-        batch's variance.
+        If the loss is a mean weighted by ``Objective.weight``, the result equals the gradient that
+        a single process would compute from the whole batch. Other losses are only averaged over
+        ranks, which is not identical: the KL divergence of distillation, auxiliary losses of
+        agents, and errors that are divided by the variance of a batch.
         """
         if self.count == 1:
             return
@@ -99,14 +100,15 @@ class Ranks:
         ):
             if (
                 not any_gradient
-                # the optimizer skips the parameter, as in a single process
+                # without a gradient, the optimizer skips the parameter, as it does in a single
+                # process
             ):
                 continue
-            if parameter.grad is None:  # the pieces of this rank did not use this parameter
+            if parameter.grad is None:  # this rank's part of the batch did not use this parameter
                 parameter.grad = torch.zeros_like(parameter)
             dist.all_reduce(parameter.grad.mul_(share))
         template = next(iter(values.values()))
-        # a rank may lack some values
+        # a rank may have no value for some names
         for name in sorted({name for entry in weights for name in entry}):
             factor = weight / max(sum(entry.get(name, 0.0) for entry in weights), 1e-12)
             value = values[name] * factor if name in values else torch.zeros_like(template)
@@ -114,7 +116,7 @@ class Ranks:
             values[name] = value
 
     def of_first(self, value: Any) -> Any:
-        """Return the ``value`` that the first rank has."""
+        """Return the ``value`` of the first rank on all ranks."""
         if self.count == 1:
             return value
         values = [value]

@@ -22,7 +22,9 @@ GROUP = 12  # number of frames in a folder that count as one panorama of a batch
 
 
 class PosePairs(Poses):
-    """Source of panoramas (or single views) from random poses (``training/poses.py``)."""
+    """Source of corrupted and clean panoramas, or single views, at random poses
+    (``training/poses.py``).
+    """
 
     ring = False  # whether the views of a time step form a panorama
 
@@ -39,7 +41,7 @@ class PosePairs(Poses):
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
     def identity(self) -> dict[str, str]:
-        """Return an empty dict, because poses are determined by the settings."""
+        """Return an empty dict, because the settings determine the poses and no file is read."""
         return {}
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
@@ -50,18 +52,18 @@ class PosePairs(Poses):
 
 @dataclass(eq=False, repr=False)
 class FramePairs:
-    """Source of frames in a folder, each corrupted as a separate time step
-    (``encoders/sources.py``).
+    """Source of corrupted and clean frames from a folder (``encoders/sources.py``). Each frame is
+    corrupted as a separate time step.
 
     Attributes:
         source: source of the frames.
         schedule: schedule of corruptions of ``sensor``.
         sensor: "rgb" or "depth".
         count: number of frames, which are read once.
-        panoramas: groups of ``GROUP`` frames per step.
+        panoramas: number of groups per step; a group has ``GROUP`` frames.
         seed: seed of frames and corruptions.
-        depth: properties of depth in the frames.
-        frames: the frames after :meth:`start`.
+        depth: properties of the depth sensor that recorded the frames.
+        frames: the frames, which :meth:`start` reads.
     """
 
     source: Source
@@ -89,13 +91,13 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for pickling without frames; workers receive only the frames of their
-        jobs.
+        """Return the state for pickling without the frames. Workers receive only the frames of
+        their jobs.
         """
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
-        """Return one job per group: (step, group, its frames)."""
+        """Return one job per group: a tuple (step, index of the group, frames of the group)."""
         assert self.frames is not None, "start() reads the frames"
         jobs = []
         for group in range(self.panoramas):
@@ -118,7 +120,7 @@ class FramePairs:
         return {"frames": torch.from_numpy(frames), "clean": torch.from_numpy(clean)}
 
 
-# the source of "frames" and "clean", each [time steps, views, H, W, c]
+# type of a source of batches with "frames" and "clean", each of shape [time steps, views, H, W, c]
 Pairs = PosePairs | FramePairs
 
 
@@ -134,10 +136,10 @@ def pairs_of(
 ) -> Pairs:
     """Return the source of pairs for an ``env`` config, which is a world or a folder of frames.
 
-    A folder has no ``training`` episodes; ``frames`` of its frames are read once.
+    A folder of frames has no ``training`` episodes. From a folder, ``frames`` frames are read once.
 
     Raises:
-        ValueError: The schedule is success-distributed.
+        ValueError: The schedule samples corruptions by success rate.
     """
     success.refuse(schedule)
     if training is None:
@@ -149,8 +151,8 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs`` in which a fraction ``share`` stays clean; call before
-    ``start``.
+    """Return a copy of ``pairs`` in which a fraction ``share`` of the frames stays clean. Call this
+    function before ``start``.
     """
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)

@@ -27,23 +27,24 @@ PIECES = 4  # number of jobs into which the episodes of a step are divided (heur
 
 @dataclass(eq=False, repr=False)
 class Rollouts(DrawsBySuccess):
-    """Source of batches with decisions from rollouts of ``agent`` under a schedule of corruptions.
+    """Source of batches of decisions, collected in rollouts of ``agent`` under a schedule of
+    corruptions.
 
     Args:
         agent: the agent, which acts with its current weights and collects its decisions
             (``agents/agent.py``).
         world: function that constructs a world.
         training: source of the episodes.
-        schedule: chooses the corruption of each frame; a success-distributed schedule uses success
-            rates of ``agent``. None keeps frames clean.
+        schedule: chooses the corruption of each frame, possibly by the success rates of ``agent``.
+            If None, frames stay clean.
         episodes: number of episodes per step.
         follow_oracle: fraction of decisions that follow the expert.
         seed: seed of episodes, corruptions and actions.
-        prior: rows of an earlier evaluation, from which the initial success rates of the schedule
-            are computed.
-        refresh_every: number of steps between two measurements of success rates; 0 measures only if
-            there are no rates.
-        refresh_episodes: training episodes per corruption in a measurement.
+        prior: file with result rows of an earlier evaluation, which give the initial success rates
+            of the schedule.
+        refresh_every: number of steps between two measurements of success rates; with 0, they are
+            measured only if there are no rates yet.
+        refresh_episodes: number of training episodes per corruption in each measurement.
 
     Raises:
         ValueError: There are no episodes, a fraction is invalid, or ``prior_rates`` raised this
@@ -72,7 +73,9 @@ class Rollouts(DrawsBySuccess):
             self.schedule.refresh(prior_rates(self.prior))
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Also keep clean observations, from which ``teachers`` precompute their fixed features."""
+        """Also keep the clean observations, from which ``teachers`` compute their fixed features in
+        advance.
+        """
         self.clean = True
         self.teachers = teachers
 
@@ -84,14 +87,15 @@ class Rollouts(DrawsBySuccess):
     def identity(self) -> dict[str, str]:
         """Return hashes of the files on which the batches depend."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        # users' episodes do not necessarily come from files
+        # a user's source of episodes may not use files
         files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return one job per piece: a tuple (step, piece, pieces, episodes, state of the schedule).
+        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
+        episodes, state of the schedule).
 
-        When new success rates are due, they are measured with ``workers`` processes.
+        If new success rates are due, this method measures them with ``workers`` processes.
         """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
         due = due and not (step == 0 and self.prior)
@@ -102,8 +106,8 @@ class Rollouts(DrawsBySuccess):
         return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
-        """Return the decisions in the episodes of a piece, and a picture of the last "
-        "observation.
+        """Run the episodes of a job; return their decisions and a picture of the last
+        observation.
         """
         step, piece, pieces, count, state = job
         self.set_schedule(state)
@@ -121,7 +125,7 @@ class Rollouts(DrawsBySuccess):
         return decisions, picture(worlds[0].last)
 
     def collate(self, pieces: list[tuple]) -> Decisions:
-        """Join the decisions of all pieces."""
+        """Join the decisions of all jobs."""
         self.picture = pieces[0][1] if pieces[0][1] is not None else self.picture
         return self.agent.join([piece for piece, _ in pieces])
 
@@ -131,7 +135,7 @@ class Rollouts(DrawsBySuccess):
 
 
 class OnEpisodes(Objective):
-    """Base class of objectives that learn from the ``rollouts`` that the constructor receives."""
+    """Base class of objectives that learn from rollouts."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
     needs = TRAINABLE
@@ -154,7 +158,7 @@ class OnEpisodes(Objective):
         return batch_of(self.rollouts.collate(pieces))
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return the weights in the schedule, for the log."""
+        """Return the sampling weights of the schedule, which are logged."""
         return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
@@ -168,11 +172,11 @@ class OnEpisodes(Objective):
 
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
-    """Wrap decisions as a batch for the trainer."""
+    """Put decisions into a batch for the trainer."""
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}
 
 
 def check_episodes(episodes: int) -> None:
-    """Raise ValueError for less than one episode per step."""
+    """Raise ValueError if there is less than one episode per step."""
     if episodes < 1:
         raise ValueError(f"episodes per step must be >= 1, got {episodes}. Set e.g. rollouts=20.")

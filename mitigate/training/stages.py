@@ -49,7 +49,8 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
 def train_stage(
     plan: Plan, stage: StagePlan, agent: nn.Module, workers: Workers | None, ranks: Ranks
 ) -> str:
-    """Train ``agent`` in place in one stage, and return the floating-point precision that was used.
+    """Train ``agent`` in place in one stage, and return the floating-point precision of the
+    training.
 
     If a stage is already finished, its result is loaded from its folder.
     """
@@ -61,7 +62,7 @@ def train_stage(
     code = code_sha(objective)
     known_code = {"code_sha256": code} if code else {}
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
-    # if there are checkpoints, the trainer compares the identity
+    # if there are checkpoints, the trainer compares their recorded identity with this one
     if ranks.first and not states.checkpoints(stage.folder):
         with atomic_text(stage.folder / IDENTITY) as file:
             json.dump(identity, file, indent=2)

@@ -1,5 +1,5 @@
-"""States of a training: A checkpoint such as ``step-00001000.pt`` contains all state for a
-bit-identical resume.
+"""Checkpoints of training runs. A checkpoint such as ``step-00001000.pt`` contains all state that
+is needed for a bit-identical resume.
 
 Checkpoints are written atomically and rotated, and loading them runs no code. The sha256 of each
 checkpoint is in a sidecar file (``core/checksums.py``) and is checked before the checkpoint is
@@ -44,8 +44,8 @@ def steps_done(path: Path) -> int:
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
-    ``keep`` checkpoints stay. A checkpoint of a later step, which was damaged when the run resumed,
-    is also kept.
+    ``keep`` checkpoints stay. Also keep a checkpoint of a later step, which exists if it was
+    damaged when the run resumed.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
@@ -58,7 +58,7 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
 
 
 def load(path: Path) -> dict[str, Any]:
-    """Return the state in ``path`` (tensors on the CPU).
+    """Return the state that is stored in ``path``, with tensors on the CPU.
 
     Raises:
         FileNotFoundError: The file is missing.
@@ -75,8 +75,9 @@ def load(path: Path) -> dict[str, Any]:
         raise Damaged(_broken(path, f"{problem}: the file or its checksum is cut short or damaged"))
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
-    except Exception as error:  # torch may raise any error for a file that it did not write
-        if has_sum:  # the file is intact, but memory ran out or it contains more than plain data
+    except Exception as error:  # torch may raise any kind of error for a file that it did not write
+        # the file is intact, but memory ran out or the file contains more than plain data
+        if has_sum:
             cause = " ".join(str(error).split())[:300]
             what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error
@@ -90,11 +91,11 @@ def load(path: Path) -> dict[str, Any]:
 
 
 def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
-    """Return the newest intact checkpoint in ``folder`` and its state, or None if the folder has
-    no intact checkpoint.
+    """Return the newest intact checkpoint in ``folder`` and its state, or None if the folder has no
+    checkpoint.
 
-    A line is printed for each damaged checkpoint that is skipped. Raises Damaged if all checkpoints
-    are damaged (none is deleted), and the errors of :func:`load`.
+    Print a line for each damaged checkpoint that is skipped. Raises Damaged if all checkpoints are
+    damaged, and the errors of :func:`load`. No checkpoint is deleted.
     """
     damaged: list[Path] = []
     for path in reversed(checkpoints(folder)):
@@ -117,7 +118,7 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
 
 
 def differences(old: Any, new: Any, path: str = "") -> list[str]:
-    """Return one text ``key: old -> new`` for each value in which two JSON configs differ."""
+    """Return a text ``key: old -> new`` for each value that differs between two JSON configs."""
     if isinstance(old, dict) and isinstance(new, dict):
         names = [*old, *(name for name in new if name not in old)]
         return [
@@ -141,7 +142,7 @@ def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
 
 
 def as_json(config: dict[str, Any]) -> dict[str, Any]:
-    """Return ``config`` as it would be after writing and reading it as JSON.
+    """Return ``config`` as it would be after it is written to JSON and read again.
 
     A checkpoint must contain only plain data, because it is read without running code.
     """

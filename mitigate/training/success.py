@@ -1,4 +1,4 @@
-"""Measure success rates per corruption, for success-distributed schedules."""
+"""Measure success rates per corruption, for schedules that sample corruptions by success rate."""
 
 from __future__ import annotations
 
@@ -19,7 +19,9 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class DrawsBySuccess:
-    """Base class of batch sources whose schedule may use success rates of the agent."""
+    """Base class of batch sources whose schedule may sample corruptions by the agent's success
+    rates.
+    """
 
     agent: Any
     world: Callable[[], Any]
@@ -29,8 +31,8 @@ class DrawsBySuccess:
     refresh_episodes: int
 
     def refresh(self, step: int, workers: int | None = None) -> None:
-        """Measure the success under every corruption on training episodes, and update the "
-        "schedule.
+        """Measure the success rate under every corruption on training episodes, and update the
+        schedule.
         """
         rates = measure(
             self.agent,
@@ -46,7 +48,7 @@ class DrawsBySuccess:
         hold_statistics(self.agent.train())
 
     def set_schedule(self, state: dict[str, Any]) -> None:
-        """Restore the state that the schedule had when a job was requested."""
+        """Restore the state that the schedule had when the job was created."""
         if state != self.schedule.state_dict():
             self.schedule.load_state_dict(state)
 
@@ -62,7 +64,7 @@ def measure(
     step: int,
     workers: int | None = None,
 ) -> dict[str, float]:
-    """Measure the success of ``agent`` under every corruption of ``schedule``.
+    """Measure the success rate of ``agent`` under every corruption of ``schedule``.
 
     The same episodes, which are sampled from (seed, step), are run under every corruption.
 
@@ -75,8 +77,8 @@ def measure(
         seed: seed of episodes and corruptions.
         step: training step.
         workers: number of processes, which does not affect the rates; with 0, only this process is
-            used. None uses one process per core if that saves time, but only this process for an
-            agent on a GPU.
+            used. None means one process per core if that saves time, but only this process if the
+            agent is on a GPU.
 
     Returns:
         The success rate in [0, 1] by corruption.
@@ -103,7 +105,9 @@ def measure(
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError for a schedule that samples by success, in a recipe that measures none."""
+    """Raise ValueError if ``schedule`` samples by success rate, because the calling recipe measures
+    no success rates.
+    """
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "
@@ -114,12 +118,12 @@ def refuse(schedule: Schedule | None) -> None:
 def prior_rates(path: Path | str) -> dict[str, float]:
     """Return the success rate per corruption in a file of result rows.
 
-    The split of the rows is printed, because training that uses them must be evaluated on other
-    episodes.
+    The split of the rows is printed, because an agent that is trained with these rates must be
+    evaluated on other episodes.
 
     Raises:
         FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or mixes agents, splits or severities.
+        ValueError: The file is damaged, or its rows belong to several agents, splits or severities.
     """
     rows = read(path)
     kinds = {
@@ -142,7 +146,9 @@ def prior_rates(path: Path | str) -> dict[str, float]:
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
-    """Return the mean success per corruption of rows or measures, without clean ones."""
+    """Return the mean success rate per corruption, from result rows or measures; clean episodes are
+    left out.
+    """
     names = {row["corruption"] for row in results} - {"clean"}
     return {
         n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))

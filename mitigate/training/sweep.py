@@ -1,9 +1,9 @@
 """Run many training runs or evaluations: ``mitigate sweep recipe=imitation,stacked seed=0,1``.
 
 Each combination of values is run in its own folder, on this machine or on the machines of
-``launcher``. A failed run does not stop the others; if the command is run again, it resumes missing
-runs. All results are written to one table. ``--config-dir FOLDER`` names a folder with your own
-configs.
+``launcher``. A failed run does not stop the others. Run the same command again to resume the
+missing runs. All results are written to one table. ``--config-dir FOLDER`` names a folder with your
+own configs.
 """
 
 from __future__ import annotations
@@ -36,12 +36,12 @@ LONGEST = 100  # maximum characters of a log's name (heuristic)
 
 @dataclass
 class SweepConfig:
-    """Types of the options in ``conf/sweep.yaml``, which documents each of them."""
+    """Types of the options in ``conf/sweep.yaml``. That file documents each option."""
 
     command: str = "train"
     runs: str = "sweeps/default"
     jobs: int = 1
-    launcher: Any = MISSING  # read: a LauncherConfig
+    launcher: Any = MISSING  # a LauncherConfig after the options are read
 
 
 conf.register("sweep", SweepConfig)
@@ -52,8 +52,9 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
     Raises:
-        ValueError: An option is unknown (raised before anything runs), or runs failed (raised after
-            all other runs are finished and the table is written).
+        ValueError: An option is unknown, or runs failed. An unknown option is reported before
+            anything runs. Failed runs are reported after all other runs are finished and the table
+            is written.
     """
     if config.command not in COMMANDS:
         raise ValueError(unknown("command", config.command, COMMANDS))
@@ -62,7 +63,7 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     configs, options = without_config_folder(options)
     runs = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)
-    from mitigate.agents.building import with_kind  # brings torch
+    from mitigate.agents.building import with_kind  # imports torch, which is slow
     from mitigate.evaluation import evaluate  # noqa: F401 - registers its options
     from mitigate.training import train  # noqa: F401 - registers its options
 
@@ -87,12 +88,13 @@ def run_chains(
     jobs: int,
     place: Any,
 ) -> list[str]:
-    """Run ``chains``, ``jobs`` at a time, on the machines of the launcher ``place``.
+    """Run ``chains`` of programs on the machines of the launcher ``place``, at most ``jobs`` at a
+    time.
 
-    Prints a line for each chain that ended.
+    Print a line for each chain of programs that has ended.
 
     Returns:
-        A list with one line for each failed chain.
+        A list with one line for each chain of programs that failed.
     """
     problems = []
     with Progress(title, len(chains), unit=unit) as progress:
@@ -147,8 +149,8 @@ def chain(
 ) -> programs.Chain:
     """Return the programs of one combination.
 
-    If a different combination in ``combined`` would have the same name (such as ``checkpoint=a/b``
-    and ``checkpoint=a_b``), the name ends in a digest.
+    Different combinations may give the same name, for example ``checkpoint=a/b`` and
+    ``checkpoint=a_b``. Then a digest is appended to the name.
     """
     _, named = without_config_folder(options)
     name = _name(options)

@@ -1,8 +1,8 @@
 """Compare kinds of agent: ``mitigate table1 table=objects jobs=2``.
 
-``table=routes`` and ``table=objects`` correspond to Table I of the paper: plain and hardened agents
-under all conditions. ``routes_ablations`` and ``objects_ablations`` remove their sensors one by
-one. Run the same command again to resume.
+``table=routes`` and ``table=objects`` correspond to Table I of the paper: they evaluate plain and
+hardened agents under all conditions. ``routes_ablations`` and ``objects_ablations`` evaluate these
+agents with one sensor removed at a time. Run the same command again to resume.
 """
 
 from __future__ import annotations

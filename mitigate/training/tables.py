@@ -1,10 +1,10 @@
 """Compute tables of columns and seeds, as in Table I (agents) and Table II (methods) of the paper.
 
-Every column is trained and evaluated for every seed, several cells at a time. Each cell runs in its
-own processes, on this machine or on the machines of ``launcher``. If the command is run again, it
-resumes unfinished training runs and evaluations and keeps finished cells. At the end, the report is
-written from the rows of all cells. ``evaluations=beyond`` also measures each cell under other
-suites; each suite has its own report.
+A cell of the table is one column with one seed; it is trained and evaluated in its own processes.
+Several cells run at a time, on this machine or on the machines of ``launcher``. If the command is
+run again, it resumes unfinished training runs and evaluations and keeps finished cells. At the end,
+the report is written from the rows of all cells. ``evaluations=beyond`` also evaluates each cell
+under other corruption suites, and writes one report per suite.
 """
 
 from __future__ import annotations
@@ -39,18 +39,19 @@ REPORT = "overview.md"
 
 
 def run(cfg: DictConfig) -> Path:
-    """Compute the table for composed options; see :func:`make_table`."""
+    """Compute the table from the options that Hydra composed; see :func:`make_table`."""
     return make_table(read_options(cfg))
 
 
 def make_table(config: TablesConfig) -> Path:
     """Compute all cells and the report; return the path of the report.
 
-    With ``config.rows``, the report is computed from those rows, and no cell is run.
+    If ``config.rows`` is set, the report is computed from those rows, and no cell is run.
 
     Raises:
-        ValueError: Settings are invalid (raised before a cell runs), or a cell failed (raised after
-            the others are finished; the message contains the end of its log).
+        ValueError: Settings are invalid, or a cell failed. Invalid settings are reported before any
+            cell runs. A failed cell is reported after the others are finished; the message contains
+            the end of its log.
         FileNotFoundError: Rows are missing.
     """
     out = Path(config.out)
@@ -63,7 +64,9 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Compute the cells and write the report into ``out``; errors are as in :func:`make_table`."""
+    """Compute the cells and write the report into ``out``. The errors are those of
+    :func:`make_table`.
+    """
     failed = make(table_cells, config) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
@@ -85,7 +88,7 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
 
 
 def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
-    """Train and evaluate all cells, ``config.jobs`` at a time; return the problems."""
+    """Train and evaluate all cells, ``config.jobs`` at a time; return one line per failed cell."""
     chains = [cell.chain(config) for cell in table_cells]
     for cell in table_cells:
         cell.keep()
@@ -105,7 +108,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
         section
         for section in sections(rows)
         if section.grid.split == config.split
-        # clean rows have no corruption
+        # rows of clean episodes have no corruption
         and (section.severity == config.severity or not section.blocks)
     ]
     if not chosen:
@@ -124,9 +127,10 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_additional_reports(
     table_cells: Sequence[Cell], config: TablesConfig, out: Path
 ) -> list[Path]:
-    """Write ``NAME/table.md`` with pictures for each additional evaluation, and return the paths.
+    """Write ``NAME/table.md`` and its pictures for each additional evaluation, and return the
+    paths.
 
-    Each evaluation has its own table, because its episodes may differ.
+    Each evaluation has its own table, because evaluations may use different episodes.
     """
     from mitigate.evaluation import report  # brings matplotlib
 
@@ -143,10 +147,11 @@ def write_additional_reports(
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Draw episodes that the first column of ``config.walks`` fails and the last column solves.
+    """Draw episodes in which the first column of ``config.walks`` fails and the last column
+    succeeds.
 
-    These episodes are run again with the agents of the first seed and the guards of their cells.
-    Nothing is drawn if a column has no cell.
+    These episodes are run again with the agents of the first training seed and the guards of their
+    cells. Draw nothing if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
@@ -183,9 +188,9 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
 
 
 def _named(folder: Path) -> str:
-    """Return the name that a cell has in its rows, which includes guards.
+    """Return the agent name in the result rows of a cell. The name includes guards.
 
-    For a cell without rows, this is the name of its folder.
+    If the cell has no rows, return the name of its folder.
     """
     rows = _rows(folder / "evaluation")
     return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]

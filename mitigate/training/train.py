@@ -1,8 +1,8 @@
 """Train an agent with a recipe: ``mitigate train recipe=da_per_episode severity=0.6``.
 
 A recipe has one or more stages, which train the same agent one after the other. Each stage has a
-subfolder in the run. Run the same command again to resume. At the end, the agent is evaluated as it
-was before and after training.
+subfolder in the folder of the run. Run the same command again to resume. At the end, the agents
+before and after training are both evaluated.
 """
 
 from __future__ import annotations
@@ -46,7 +46,7 @@ def run(cfg: DictConfig) -> Path:
 
 @hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="train")
 def hydra_main(cfg: DictConfig) -> None:
-    """Name the folder after the options that differ from the defaults, and run."""
+    """Name the output folder after the options that differ from the defaults, and train."""
     if cfg.folder is None:
         cfg.folder = options.default_folder(cfg, HydraConfig.get().job.override_dirname)
     try:
@@ -54,7 +54,7 @@ def hydra_main(cfg: DictConfig) -> None:
     except Exception as error:
         if (
             HydraConfig.get().mode == RunMode.MULTIRUN
-        ):  # otherwise Hydra continues and shows only the first error
+        ):  # otherwise Hydra continues with the next run and shows only the first error
             print(printable(f"failed: {cfg.folder}: {error}"), file=sys.stderr, flush=True)
         raise
 

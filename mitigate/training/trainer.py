@@ -1,8 +1,9 @@
-"""Define the training loop for all objectives: step, log, evaluate, save and resume.
+"""The training loop of all objectives, which steps, logs, evaluates, saves and resumes.
 
-Data order and noise are functions of (seed, step): the global generators are reset at each step. So
-logging, evaluating, or killing and resuming a run does not change a bit of the weights (on the same
-machine, with the same number of threads, and without a lag: recipes/README.md).
+Data order and noise are functions of (seed, step): the global generators are reset at each step.
+Therefore the weights are bit-identical whether or not a run logs, evaluates, or is killed and
+resumed. This holds on the same machine, with the same number of threads, and without a lag
+(recipes/README.md).
 """
 
 from __future__ import annotations
@@ -31,12 +32,14 @@ from mitigate.training.objective import Objective, accumulate
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-# settings that affect the weights, so a run is not resumed if they differ
+# settings that affect the weights; a run is not resumed if one of them differs
 FIXED = ("steps", "lr", "weight_decay", "warmup", "schedule", "grad_clip", "seed", "precision")
 
 
 class LossNotFinite(ValueError):
-    """Raised if the loss or its gradient is not finite; that step did not change the weights."""
+    """Raised if the loss or its gradient is not finite. The weights are still those before that
+    step.
+    """
 
 
 @dataclass(eq=False, repr=False)
@@ -46,26 +49,26 @@ class Trainer:
     Args:
         objective: objective to train; see :class:`mitigate.training.objective.Objective`.
         steps: number of updates.
-        folder: folder for ``step-*.pt`` and TensorBoard files; training resumes from a checkpoint
-            in it.
-        lr, weight_decay: values for parameter groups that set none.
+        folder: folder for ``step-*.pt`` and TensorBoard files. If it contains a checkpoint,
+            training resumes from it.
+        lr, weight_decay: values for parameter groups that do not set their own.
         warmup: number of updates during which the learning rate rises from 0.
-        schedule: learning rate after warm-up, one of ``optimization.SCHEDULES``; it ends at 0
-            unless constant.
+        schedule: schedule of the learning rate after warm-up, one of ``optimization.SCHEDULES``.
+            Unless the schedule is constant, the learning rate ends at 0.
         grad_clip: maximum global gradient norm; 0 disables clipping.
         log_every, save_every, eval_every, figure_every: intervals in updates; 0 means never (a
             checkpoint is always written at the end).
         keep: number of checkpoints to keep.
-        lag: batches may be computed with weights that are up to this many updates old, so that
-            workers can compute several steps at once; with 0, training waits for each batch. The
-            result depends on the lag but not on the number of workers.
+        lag: maximum age, in updates, of the weights that compute a batch. A value above 0 lets
+            workers compute several steps at once; with 0, training waits for each batch. The result
+            depends on the lag but not on the number of workers.
         seed: seed of data order and noise.
         precision: one of ``precision.CHOICES``, used for all network computations; bf16 uses
             autocast, and weights stay float32. A checkpoint records the value that "auto" selected;
             a resumed run keeps this value.
         device: "auto" (CUDA if available), or any torch device.
-        workers: worker processes that compute batches (``Objective.jobs``); None computes the same
-            batches in this process.
+        workers: worker processes that compute batches (``Objective.jobs``). If None, this process
+            computes the same batches.
         ranks: processes that train together; the first one logs and saves.
         name: name of the stage in messages; the default is the class of the objective.
         config: JSON-compatible description of the run. A checkpoint with a different description is
@@ -118,10 +121,11 @@ class Trainer:
         )
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
         self._saved = 0  # number of steps in the newest checkpoint
-        self._finished = False  # whether that checkpoint is complete
+        self._finished = False  # whether the newest checkpoint is marked as finished
 
     def fit(self) -> Objective:
-        """Train (from the newest checkpoint in the folder, if any) and return the objective.
+        """Train the objective and return it. If the folder has a checkpoint, resume from the newest
+        one.
 
         Raises:
             LossNotFinite: The loss, its gradient or the weights are not finite.
@@ -140,13 +144,14 @@ class Trainer:
             with computing(self.precision, self.device):
                 self.objective.start()
             self.objective.train()
-            with delay_signals(self.ranks.count == 1) as ending:  # torchrun has ended its ranks
+            # torchrun has terminated its ranks
+            with delay_signals(self.ranks.count == 1) as ending:
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
         return self.objective
 
     def _train(self, start: int, journal: Journal, ending: SignalDelay) -> None:
-        """Train from step ``start``; the last checkpoint is saved as unfinished."""
+        """Train from step ``start``, and save the last checkpoint as unfinished."""
         batches = Batches(
             self.objective,
             self.workers,
@@ -174,7 +179,7 @@ class Trainer:
 
     @contextmanager
     def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
-        """If a signal interrupts the block, save the state after ``done`` steps.
+        """If a signal interrupts the code in the context, save the state after ``done`` steps.
 
         A second signal ends the run without saving.
         """
@@ -205,7 +210,7 @@ class Trainer:
         return bool(every) and (done % every == 0 or done == self.steps)
 
     def _batch(self, step: int, batches: Batches) -> tuple[dict[str, Any], float]:
-        """Return the batch of ``step``, and the seconds that were spent waiting for it."""
+        """Return the batch of ``step``, and the time in seconds spent waiting for it."""
         began = time.monotonic()
         # seeded per rank, because dropout must differ between ranks
         rank = (self.ranks.number,) if self.ranks.number else ()
@@ -288,7 +293,7 @@ class Trainer:
         give_back()
 
     def _keep_precision(self, config: dict[str, Any]) -> None:
-        """Keep the precision of the checkpoint, unless the user chose one."""
+        """Keep the precision of the checkpoint, unless the user chose a precision."""
         precision = config.get("trainer", {}).get("precision")
         if self.requested_precision != "auto" or precision in (None, self.precision):
             return

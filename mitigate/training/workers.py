@@ -1,8 +1,9 @@
-"""Run worker processes that compute the pieces of an objective's batches.
+"""Run worker processes that compute parts of an objective's batches.
 
-An objective defines the jobs of a step (``objective.py``). A job is a pure function of its content,
-the seed and the weights, and runs on one thread. Workers of ``core/workers.py`` end with their
-task. The workers here run during all stages of training and receive new weights.
+An objective divides each training step into jobs (``objective.py``). A job is a pure function of
+its content, the seed and the weights, and runs on one thread. The workers of ``core/workers.py``
+exit when their task is done. In contrast, the workers of this module run during all stages of
+training and receive new weights.
 """
 
 from __future__ import annotations
@@ -25,12 +26,13 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-# more workers do not help: a step has only 2 to 4 pieces of work, and few steps are made in
+# more workers do not help, because a step has only 2 to 4 jobs and few steps are computed in
 # advance
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
-STUCK = 60.0  # seconds of silence after which an awaited worker is reported (heuristic)
-# jobs between two releases of memory; after every job it costs 7 % of the time, after 8 jobs 1 %
+STUCK = 60.0  # seconds without an answer after which a slow worker is reported (heuristic)
+# number of jobs between two releases of memory; a release after every job costs 7 % of the time,
+# after every 8 jobs 1 %
 TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
 DEATHS = 1  # number of times that a worker is replaced before training stops
@@ -39,9 +41,9 @@ DEATHS = 1  # number of times that a worker is replaced before training stops
 class Workers:
     """Context manager for ``count`` worker processes of a training run.
 
-    Worker ``i % count`` runs job i of a step. If there are enough workers for several steps at
-    once, the worker also depends on the step's turn. In both cases, a worker always receives the
-    same piece of a step, so it opens only the scenes of that piece.
+    Job i of a step runs on worker ``i % count``. If there are enough workers for several steps at
+    once, successive steps use different workers. A worker always computes the same part of the
+    batch, so it opens only the scenes of that part.
 
     Workers run during all stages, so a stage reuses scenes that were built in an earlier stage.
     """
@@ -60,7 +62,8 @@ class Workers:
             worker.close()
 
     def take(self, objective: Objective, kind: str) -> None:
-        """Send a copy of ``objective`` to every worker, to compute in the precision ``kind``.
+        """Send a copy of ``objective`` to every worker; the workers compute in the precision
+        ``kind``.
 
         Raises ValueError if the objective cannot be pickled.
         """
@@ -82,39 +85,43 @@ class Workers:
             worker.renew(weights)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
-        """Start ``jobs``, whose results :meth:`receive` returns.
+        """Send ``jobs`` to the workers. Their results are returned by :meth:`receive`.
 
-        If ``turn`` increases by one per call, several simultaneous requests use all workers.
+        If ``turn`` increases by one per call, consecutive calls use different workers.
         """
         for worker, job in zip(self._of(len(jobs), turn), jobs, strict=True):
             worker.order(job)
 
     def receive(self, count: int, turn: int = 0) -> list[Any]:
-        """Return the results of the next ``count`` jobs, in the order of one call of :meth:`order`.
+        """Return the results of the next ``count`` jobs, in the order in which :meth:`order`
+        received them.
 
         Raises WorkersDied, or the error of a job.
         """
         return [worker.receive() for worker in self._of(count, turn)]
 
     def _of(self, jobs: int, turn: int) -> list[_Worker]:
-        """Return the worker of each of ``jobs``."""
+        """Return the worker for each of ``jobs`` jobs."""
         first = jobs * (turn % max(1, len(self) // max(1, jobs)))
         return [self._all[(first + index) % len(self)] for index in range(jobs)]
 
 
 class _Worker:
-    """One worker process and its pending jobs, each with the weights that it needs."""
+    """One worker process and its pending jobs. Each pending job is stored with the weights that it
+    needs.
+    """
 
     def __init__(self, number: int) -> None:
         self.number = number
         self.deaths = 0
         self.objective: tuple[bytes, str] | None = None
-        self.weights: bytes | None = None  # None means the weights of the objective
+        # if None, the worker uses the weights of the pickled objective
+        self.weights: bytes | None = None
         self.pending: deque[tuple[bytes | None, bytes]] = deque()
         self._start()
 
     def take(self, packed: bytes, kind: str) -> None:
-        if self.pending:  # skips jobs of an abandoned objective
+        if self.pending:  # the pending jobs belong to an objective that was abandoned
             self._restart()
             self.pending.clear()
         self.objective, self.weights = (packed, kind), None
@@ -130,7 +137,7 @@ class _Worker:
         self.send(("job", message))
 
     def send(self, message: tuple) -> None:
-        with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices
+        with suppress(BrokenPipeError, ConnectionResetError):  # receive() notices a dead worker
             self.connection.send(message)
 
     def receive(self) -> Any:
@@ -140,7 +147,8 @@ class _Worker:
                 for_long = duration(time.monotonic() - waited)
                 say(f"worker {self.number} ({self.process.pid}) has been silent for {for_long}")
             kind, value = self.connection.recv()
-        except (EOFError, OSError):  # includes a worker that died in the middle of a message
+        # this also catches a worker that died in the middle of a message
+        except (EOFError, OSError):
             self._replace()
             return self.receive()
         self.pending.popleft()
@@ -215,8 +223,8 @@ def _serve(connection: Connection) -> None:
     try:
         _work(connection, messages)
     except (BrokenPipeError, ConnectionResetError):
-        pass  # the parent is gone
-    except Exception as error:  # for example an objective that cannot be unpickled here
+        pass  # the parent process has ended
+    except Exception as error:  # for example, the objective cannot be unpickled in this process
         with suppress(OSError):
             connection.send(("error", portable(error)))
 
@@ -240,10 +248,10 @@ def _work(connection: Connection, messages: SimpleQueue) -> None:
 
 
 def _listen(connection: Connection, messages: SimpleQueue) -> None:
-    """Receive messages from the parent in a thread, and put None into the queue at the end.
+    """Receive messages from the parent in a thread, and put None into the queue when the connection
+    ends.
 
-    The parent may send weights while the worker sends a result. Without the thread, both would wait
-    for each other.
+    The thread prevents a deadlock: the parent may send weights while the worker sends a result.
     """
     try:
         while True:

@@ -4,15 +4,16 @@
 [tokenizer=vocabulary|NAME] [mask_token=[MASK]] [tagger=own]``
 
 Corruptions (docs/instructions.md): friendly, novice, professional, formal, capitalize, mask,
-black_box. The option ``split`` is for black_box, ``mask_token`` for mask, and ``tagger`` for
-capitalize and mask.
+black_box. The option ``split`` applies only to black_box, ``mask_token`` only to mask, and
+``tagger`` only to capitalize and mask.
 
 The clean text is kept as ``original_text``. ``tokenizer`` computes the tokens of the new text:
-``vocabulary`` uses the ``instruction_vocab`` of the file, NAME is a folder or hub name for
-transformers. Without it, the tokens of changed instructions are removed, because they encode the
-clean text. Instructions that are not in English, and those without a word, are copied and counted.
-The command also writes ``OUT.summary.json``. It never overwrites an OUT that it did not write, or
-that was changed later.
+``vocabulary`` uses the ``instruction_vocab`` of the file, and NAME selects a tokenizer of
+transformers by its folder or hub name. Without the option ``tokenizer``, the tokens of changed
+instructions are removed, because they encode the clean text. Instructions that are not in English
+or contain no word are copied unchanged, and the command reports their number. The command also
+writes ``OUT.summary.json``. It overwrites an existing OUT only if it wrote that file and the file
+has not changed since.
 """
 
 from __future__ import annotations
@@ -40,16 +41,16 @@ from mitigate.corruptions.language.tokens import VOCABULARY, Tokenizer, tokenize
 from mitigate.corruptions.suite import INSTRUCTION, SUITE_VERSION, check_name, check_severity
 from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_episodes
 
-ORIGINAL = "original_text"  # key of the clean text in the output file
-STALE = ("timed_instruction",)  # key in RxR files for the clean words with their times
-SUMMARY = ".summary.json"  # suffix that is added to the name of the output file
+ORIGINAL = "original_text"  # key under which the output file stores the clean text
+STALE = ("timed_instruction",)  # key in RxR files that stores the clean words and their times
+SUMMARY = ".summary.json"  # suffix that is added to the name of the output file to name its summary
 NAMES = tuple(name for name in INSTRUCTION if name != "white_box")
 USES = {"black_box": ("split",), "mask": ("mask_token", "tagger"), "capitalize": ("tagger",)}
 
 
 @dataclass
 class Counts:
-    """Counts of what happened to the episodes of a file."""
+    """Numbers of episodes that were changed, skipped or otherwise processed."""
 
     episodes: int = 0
     changed: int = 0
@@ -72,21 +73,23 @@ def run(
     tagger: str = "own",
     rewrite: Rewrite | None = None,
 ) -> dict[str, Any]:
-    """Corrupt the file ``source`` into ``out``, and return the summary, which is also written.
+    """Corrupt the instructions of the file ``source``, write the result to ``out``, and write and
+    return a summary.
 
-    The summary records the options that the corruption uses (``USES``).
+    The summary records only options that the corruption uses (``USES``).
 
     Args:
         source: A VLN-CE episode file.
-        out: The file to write.
+        out: The output file.
         corruption: One of ``NAMES``.
-        severity: s in [0, 1].
-        seed: Seed, which together with the episode id forms the random key, as in an evaluation.
+        severity: Severity in [0, 1].
+        seed: Seed of the corruption. The seed and the episode id form the random key, as in an
+            evaluation.
         split: See ``corrupt_instruction``.
-        tokenizer: "vocabulary" for the vocabulary of the file, or a folder or hub name for
-            transformers. If it is None, the tokens of changed instructions are removed.
-        mask_token: Text that replaces a word; None means the mask token of the tokenizer, or
-            "[MASK]" if it has none.
+        tokenizer: "vocabulary" for the vocabulary of the file, or the folder or hub name of a
+            tokenizer of transformers. If None, the tokens of changed instructions are removed.
+        mask_token: Text that replaces a word. If None, it is the mask token of the tokenizer, or
+            "[MASK]" if the tokenizer has no mask token.
         tagger: See ``corrupt_instruction``.
         rewrite: See ``corrupt_instruction``.
 
@@ -96,7 +99,7 @@ def run(
     """
     check_for_file(corruption)
     severity = check_severity(severity)
-    Key(seed, "0")  # raises ValueError for an invalid seed
+    Key(seed, "0")  # this raises ValueError for an invalid seed
     check_options(split, "[MASK]" if mask_token is None else mask_token, tagger)
     _check_target(Path(source), Path(out))
     extras = read_extras(source)
@@ -151,9 +154,7 @@ def check_for_file(corruption: str) -> None:
 
 
 def _check_target(source: Path, out: Path) -> None:
-    """Raise ValueError unless ``out`` does not exist, or has not changed since :func:`run` wrote
-    it.
-    """
+    """Raise ValueError if ``out`` exists and is not an unchanged output of :func:`run`."""
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):
@@ -167,7 +168,7 @@ def _check_target(source: Path, out: Path) -> None:
 
 
 def _is_unchanged(out: Path, summary: Path) -> bool:
-    """Return whether ``out`` has the content that its summary describes."""
+    """Return whether the content of ``out`` matches its summary."""
     try:
         earlier = read_json(summary, "", LARGEST_LIST)
         if "sha256" in earlier:
@@ -185,10 +186,10 @@ def _changed(
     counts: Counts,
     every: bool,
 ) -> Iterator[Episode]:
-    """Yield the episodes with their instructions corrupted, one at a time.
+    """Yield the episodes with corrupted instructions, one at a time.
 
-    With ``every``, unchanged instructions also get tokens from ``words``, because the vocabulary of
-    ``words`` differs from that of the file.
+    If ``every`` is true, unchanged instructions are also tokenized with ``words``. This is needed
+    if the vocabulary of ``words`` differs from the vocabulary of the file.
     """
     for episode in episodes:
         counts.episodes += 1
@@ -217,7 +218,9 @@ def _changed(
 def _tokens(
     text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
 ) -> tuple[int, ...] | None:
-    """Return new tokens of ``text``, padded or cut to the old length, or None without ``words``."""
+    """Return the tokens of ``text``, padded or cut to the old length. Return None if ``words`` is
+    None.
+    """
     if words is None:
         counts["removed"] += old is not None
         return None
@@ -258,7 +261,7 @@ OPTIONS = ("corruption", ALIAS, "severity", "seed", "split", "tokenizer", "mask_
 
 
 def _options(words: Mapping[str, str]) -> dict[str, Any]:
-    """Parse the options; raise ValueError for options that are invalid or have no effect."""
+    """Parse the options. Raise ValueError if an option is invalid or has no effect."""
     if ALIAS in words and "corruption" in words:
         raise ValueError(f"{ALIAS}= means the same as corruption=. Give one of the two.")
     options: dict[str, Any] = {("corruption" if k == ALIAS else k): v for k, v in words.items()}
@@ -286,7 +289,7 @@ def _options(words: Mapping[str, str]) -> dict[str, Any]:
 
 
 def notices(summary: dict[str, Any]) -> list[str]:
-    """Return the warnings and notices about a finished file."""
+    """Return the warnings and notices about a finished output file."""
     lines = []
     if not summary["episodes"]:
         lines.append("warning: the file has no episodes")

@@ -1,8 +1,9 @@
-"""Read and write episode files in the VLN-CE format: R2R-CE, RxR-CE and this project's lists.
+"""Read and write episode files in the VLN-CE format, such as those of R2R-CE, RxR-CE and the
+apartments.
 
-A file is ``{"episodes": [...], ...}``, as plain or gzipped JSON. Positions are in metres in the
-VLN-CE frame ``(x, y, z)`` with y up, and rotations are unit quaternions ``(x, y, z, w)``. Reading
-and writing are streamed, so that only one episode is in memory at a time. Unknown keys are
+A file contains ``{"episodes": [...], ...}`` as plain or gzipped JSON. Positions are in metres in
+the VLN-CE frame ``(x, y, z)`` with y up, and rotations are unit quaternions ``(x, y, z, w)``. Files
+are read and written as streams, so only one episode is in memory at a time. Unknown keys are
 preserved.
 """
 
@@ -24,8 +25,10 @@ from mitigate.core.names import short
 Vector = tuple[float, ...]
 # Heuristic limits.
 MAX_METRES = 1e6
-MAX_LENGTH_ERROR = 1e-2  # allowed error of a quaternion's norm, for files with few digits
-MAX_TILT = 0.1  # maximum x and z of a quaternion, for a tilt of 11 degrees
+# allowed error of a quaternion's norm, because files may contain rounded numbers
+MAX_LENGTH_ERROR = 1e-2
+# maximum absolute x and z of a quaternion, which corresponds to a tilt of 11 degrees
+MAX_TILT = 0.1
 NEEDED = (
     "An episode needs episode_id, trajectory_id, scene_id, start_position [x, y, z], "
     "start_rotation [x, y, z, w], goals [{position, radius}], instruction {instruction_text} and "
@@ -36,7 +39,9 @@ NEEDED = (
 
 
 class Record:
-    """A JSON object in a file; errors name the file and the position of the object."""
+    """A JSON object of a file. Error messages contain the file and the position of the object in
+    the file.
+    """
 
     def __init__(self, raw: Any, path: Path | str, where: str) -> None:
         self.raw, self.path, self.where = raw, path, where
@@ -44,12 +49,14 @@ class Record:
             self.fail("is not a JSON object")
 
     def fail(self, problem: str) -> NoReturn:
-        """Raise ValueError with the file, the position, ``problem`` and the expected format."""
+        """Raise ValueError with a message that contains the file, the position, ``problem`` and the
+        expected format.
+        """
         raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
-        """Return the value of ``key``, checked against ``kinds``; a default of ``...`` means
-        required.
+        """Return the value of ``key``, which must have one of the types ``kinds``. A ``default`` of
+        ``...`` means that the key is required.
         """
         value = self.raw.get(key)
         if value is None and default is not ...:
@@ -61,18 +68,22 @@ class Record:
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return the value of ``key``, a number >= 0, or None if it is absent."""
+        """Return the value of ``key``, which must be a number >= 0. Return None if the key is
+        absent.
+        """
         value = self.get(key, (int, float), None)
         if value is not None and not (_finite(value) and value >= 0):
             self.fail(f"has an invalid {key!r}: it must be metres >= 0, got {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
-        """Return the value of ``key``, a list of ``size`` finite numbers."""
+        """Return the value of ``key``, which must be a list of ``size`` finite numbers."""
         return self._vector(key, self.get(key, list), size)
 
     def rotation(self, key: str) -> Vector:
-        """Return the value of ``key``, a unit quaternion (x, y, z, w) about the vertical y axis."""
+        """Return the value of ``key``, which must be a unit quaternion (x, y, z, w) about the
+        vertical y axis.
+        """
         quaternion = self.vector(key, 4)
         x, _, z, _ = quaternion
         length_error = abs(math.hypot(*quaternion) - 1)
@@ -84,16 +95,16 @@ class Record:
         return quaternion
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
-        """Return the value of ``key``, a non-empty list of vectors."""
+        """Return the value of ``key``, which must be a non-empty list of vectors."""
         return tuple(self._vector(key, value, size) for value in self._items(key))
 
     def records(self, key: str) -> list[Record]:
-        """Return the objects in the non-empty list under ``key``."""
+        """Return the value of ``key``, which must be a non-empty list of objects."""
         items = enumerate(self._items(key))
         return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
-        """Return the entries whose keys are not in ``known``."""
+        """Return the entries of the object whose keys are not in ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
 
     def _items(self, key: str) -> list[Any]:
@@ -111,13 +122,15 @@ class Record:
 
 
 def _finite(value: Any) -> bool:
-    """Return whether a value is a number within ``MAX_METRES`` (NaN is not)."""
+    """Return whether a value is a number whose absolute value is at most ``MAX_METRES``. NaN is
+    rejected.
+    """
     return isinstance(value, (int, float)) and abs(value) <= MAX_METRES
 
 
 IDS = ("episode_id", "trajectory_id")
-MAX_ID = 200  # maximum characters of a text (heuristic)
-MAX_TEXT = 100_000  # maximum characters of a text (heuristic)
+MAX_ID = 200  # maximum number of characters of an id (heuristic)
+MAX_TEXT = 100_000  # maximum number of characters of an instruction (heuristic)
 KEYS = (
     "scene_id",
     "start_position",
@@ -128,12 +141,14 @@ KEYS = (
     "reference_path",
 )
 
-# Defaults for an episode with a seed, whose world reads no other values.
+# Defaults for an episode that has a seed. Its world does not read these values.
 _SEEDED = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0, 0, 1]}
 
 
 def from_vlnce(position: Vector) -> np.ndarray:
-    """Convert a VLN-CE position to the plan frame of poses, float64 [2] in metres."""
+    """Convert a VLN-CE position to a plan position: float64 [2] in metres, in the frame of
+    poses.
+    """
     return np.array([position[0], -position[2]], np.float64)
 
 
@@ -148,7 +163,7 @@ class Goal:
 
     Attributes:
         position: VLN-CE position [3] in metres.
-        radius: Success radius in metres, or None if the file has none.
+        radius: Success radius in metres, or None if the file does not specify it.
         extra: Other keys of the file.
     """
 
@@ -163,8 +178,8 @@ class Instruction:
 
     Attributes:
         text: The text.
-        tokens: Token ids, or None if the file has none.
-        language: Language, such as ``en-US`` in RxR.
+        tokens: Token ids, or None if the file has no tokens.
+        language: Language code, such as ``en-US`` in RxR.
         extra: Other keys of the file.
     """
 
@@ -179,16 +194,19 @@ class Episode:
     """An episode.
 
     Attributes:
-        episode_id: Id as a string; it is written with the JSON type with which it was read.
-        trajectory_id: Id of the path, in the same form.
+        episode_id: Id as a string. :func:`write_episodes` writes it with the JSON type that it had
+            in the file.
+        trajectory_id: Id of the reference path; its type is handled like that of ``episode_id``.
         scene_id: Name of the scene.
         start_position: VLN-CE position [3] in metres.
         start_rotation: Quaternion [x, y, z, w].
-        goals: Goals; the list is empty only if a test split hides them.
+        goals: List of goals. It is empty only if a test split hides the goals.
         instruction: The instruction.
-        reference_path: VLN-CE positions [N][3]; the list is empty only if a test split hides them.
-        geodesic_distance: Metres from start to goal, ``info["geodesic_distance"]``, or None.
-        info: The key ``info`` of the file.
+        reference_path: VLN-CE positions [N][3]. The list is empty only if a test split hides the
+            path.
+        geodesic_distance: Distance in metres from start to goal, as in
+            ``info["geodesic_distance"]``, or None.
+        info: Value of the key ``info``.
         extra: Other keys of the file.
     """
 
@@ -206,7 +224,9 @@ class Episode:
 
 
 def placeless_episode(name: str, text: str, **info: Any) -> Episode:
-    """Return an episode for worlds that read only its id, its instruction and ``info``."""
+    """Return an episode without positions, for worlds that read only its id, its instruction and
+    ``info``.
+    """
     return Episode(
         episode_id=name,
         trajectory_id=name,
@@ -223,20 +243,20 @@ def placeless_episode(name: str, text: str, **info: Any) -> Episode:
 def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[Episode]:
     """Yield the episodes of a file in order.
 
-    An episode with a seed (``info["seed"]``, see ``worlds/seeded.py``) only needs an id and an
-    instruction.
+    If an episode has a seed (``info["seed"]``, see ``worlds/seeded.py``), it needs only an id and
+    an instruction.
 
     Args:
         path: The file.
-        hidden_goals: Whether to accept episodes without goals and reference path, as in test
-            splits.
+        hidden_goals: Whether to accept episodes without goals and without a reference path, as in
+            test splits.
 
     Yields:
         The episodes.
 
     Raises:
         FileNotFoundError: The file does not exist.
-        ValueError: An episode is invalid; the message names file, episode and key.
+        ValueError: An episode is invalid. The message contains the file, the episode and the key.
     """
     has_episodes = False
     for key, items in _members(path):
@@ -259,7 +279,8 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Return every n-th item of a list or range, for example to divide scenes among workers.
+    """Return every n-th item of a list or range, starting at the index of a worker. This divides
+    items such as scenes among n workers.
 
     Args:
         items: The list or range.
@@ -270,21 +291,23 @@ def share_of(items: Any, piece: int, pieces: int) -> Any:
 
 
 def is_seed(value: Any) -> bool:
-    """Return whether ``value`` is a valid seed of an environment: an integer of 31 bits."""
+    """Return whether ``value`` is a valid seed of an environment, that is, a non-negative integer
+    below 2**31.
+    """
     return type(value) is int and 0 <= value < 1 << 31
 
 
 class ListedEpisodes:
     """Source of training episodes (``worlds/world.py``) from a file.
 
-    Each worker samples from every n-th episode of the file, so that different pieces of a batch use
-    different episodes.
+    Each of n workers samples only from every n-th episode of the file, so different parts of a
+    batch use different episodes.
 
     Args:
         path: An episode file.
 
     Raises:
-        ValueError: The file contains no episode, or an error of :func:`read_episodes`.
+        ValueError: The file contains no episode, or :func:`read_episodes` raised this error.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -294,7 +317,7 @@ class ListedEpisodes:
             raise ValueError(f"{path} must contain at least one episode to train on.")
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Sample an episode, which depends only on the state of ``rng`` and on ``share``.
+        """Sample an episode. The result depends only on the state of ``rng`` and on ``share``.
 
         Args:
             rng: Random generator.
@@ -304,18 +327,20 @@ class ListedEpisodes:
         return episodes[int(rng.integers(len(episodes)))]
 
     def identity(self) -> dict[str, str]:
-        """Return the hash of the file; training does not resume with a different file."""
+        """Return the sha256 of the file, because training must not resume with a different file."""
         return {"training_sha256": sha256(self.path)}
 
 
 def read_extras(path: Path | str) -> dict[str, Any]:
-    """Return the keys of a file except its episodes, such as R2R-CE's ``instruction_vocab``."""
+    """Return the keys of a file and their values, except the episodes. For example, files of R2R-CE
+    contain ``instruction_vocab``.
+    """
     return {key: value for key, value in _members(path) if key != "episodes"}
 
 
 def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
-    """Yield the members of an episode file; raise a clear error for a file of the discrete R2R
-    task.
+    """Yield the keys and values of an episode file. Raise an error with advice if the file belongs
+    to the discrete R2R task.
     """
     try:
         yield from json_members(path, "episodes")
@@ -329,12 +354,13 @@ def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
 def write_episodes(
     path: Path | str, episodes: Iterable[Episode], extras: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write a VLN-CE file, completely or not at all.
+    """Write a VLN-CE file. If writing fails, the old file is kept.
 
     Args:
-        path: Path of the file, which is gzipped if the name ends in ``.gz``.
+        path: Path of the file. The file is gzipped if the name ends in ``.gz``.
         episodes: The episodes.
-        extras: Other top-level keys, see :func:`read_extras`.
+        extras: Other top-level keys of the file and their values, as returned by
+            :func:`read_extras`.
 
     Returns:
         The path.
@@ -446,17 +472,19 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id with the JSON type in the file, unless the id was replaced after reading."""
+    """Return an id with the JSON type that it had in the file. If the id was replaced after
+    reading, return a string.
+    """
     text = str(vars(episode)[key])
     original = episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text
 
 
 def _dump(value: Any, path: Path, name: str) -> str:
-    """Return a value as JSON; raise ValueError if JSON cannot represent it."""
+    """Return a value as JSON text. Raise ValueError if JSON cannot represent the value."""
     try:
         text = json.dumps(value, ensure_ascii=False, allow_nan=False)
-        text.encode("utf-8")  # encoding fails for half a surrogate pair
+        text.encode("utf-8")  # encoding fails if the text contains half a surrogate pair
         return text
     except (ValueError, TypeError) as error:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Use a gymnasium environment with frames as a world."""
+"""Use a gymnasium environment whose observations contain frames as a world."""
 
 from __future__ import annotations
 
@@ -16,13 +16,14 @@ class GymWorld(SeededWorld):
 
     The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. The observation of
     ``env`` is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or a ``Dict`` that contains such a
-    frame. ``success`` names an entry in ``info``, or is a function.
+    frame. ``success`` is the name of an entry of ``info``, or a function.
     """
 
     def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
         arrays = {}
         for name, space in _by_name(env.observation_space).items():
-            if space.shape is not None:  # Text and Tuple spaces have no shape
+            # Text and Tuple spaces have no shape, and they contain no frames
+            if space.shape is not None:
                 high = float(np.max(_attribute(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
         return from_gymnasium(env.action_space), arrays
@@ -42,8 +43,8 @@ class GymWorld(SeededWorld):
 
 
 def _by_name(observation: Any) -> dict[str, Any]:
-    """Return the parts of an observation or space by dotted name, or ``WHOLE`` if it has no
-    parts.
+    """Return a dict from dotted names to the parts of an observation or space. If it has no parts,
+    the only name is ``WHOLE``.
     """
     parts = _attribute(observation, "spaces", observation)
     if not isinstance(parts, Mapping):
@@ -56,6 +57,6 @@ def _by_name(observation: Any) -> dict[str, Any]:
 
 
 def _attribute(space: Any, name: str, default: Any = None) -> Any:
-    """Return an attribute of a space, which may be a class of gymnasium, gym or another library."""
-    # these libraries have common attributes but no common classes
+    """Return an attribute of a space, or ``default`` if the space has no such attribute."""
+    # spaces of gymnasium, gym and similar libraries share attribute names but no base class
     return getattr(space, name, default)

@@ -1,10 +1,11 @@
-"""Corrupt Habitat observations, which are dictionaries, without importing Habitat.
+"""Corrupt Habitat observations (dictionaries of arrays) without importing Habitat.
 
 An observation of ETPNav and similar agents has one entry per camera: ``rgb``, ``rgb_30``, ...,
 ``rgb_330`` and ``depth``, ``depth_30``, ..., ``depth_330``. The number is the camera's yaw in
 degrees. ETPNav gives camera ``rgb_A`` the orientation [0, +A, 0], and Habitat's y axis points up.
-So a larger number is further to the LEFT; ETPNav's policy reverses this order. View k of
-``mitigate.core.observation`` is to the right: ``rgb_30`` is view 11.
+So cameras with larger numbers are further to the LEFT; ETPNav's policy reverses this order. In
+``mitigate.core.observation``, views with larger numbers are further to the right, so ``rgb_30`` is
+view 11.
 """
 
 from __future__ import annotations
@@ -41,31 +42,34 @@ def corrupt_habitat(
     turn: str = "left",
     normalised: bool = True,
 ) -> dict:
-    """Corrupt all cameras of the corruption's modality as one panorama.
+    """Corrupt all cameras of the modality that the corruption changes, as one panorama.
 
-    Depth is normalised by Habitat (``normalize_depth: True``. Missing depth has the value 0
-    (``sensor.missing`` = 0.0 metres), the value that Habitat writes if a ray hits nothing. For an
-    agent that reads 0 as "near", use ``DepthSensor(missing=z_max)``.
+    By default, depth must be normalised by Habitat (``normalize_depth: True``). Missing depth
+    becomes 0, the value that Habitat writes if a ray hits nothing (``sensor.missing`` = 0.0
+    metres). If an agent interprets 0 as a near obstacle, use ``DepthSensor(missing=z_max)``.
 
     Args:
-        obs: Observation of one environment at one time step: ``rgb*`` uint8 [H, W, 3], ``depth*``
-            float32 [H, W, 1] or [H, W]. All cameras of a modality have the same size.
+        obs: Observation of one environment at one time step: entries ``rgb*`` are uint8 [H, W, 3],
+            and entries ``depth*`` are float32 [H, W, 1] or [H, W]. All cameras of a modality have
+            the same size.
         corruption: The corruption.
-        key: Key of the draw: Key(seed, episode id, step).
-        sensor: 0-10 m for R2R-CE (the default), ``DepthSensor(0.5, 5.0)`` for RxR-CE.
-        heading: Heading of the agent in radians, counter-clockwise, as from Habitat's ``compass``
-            and ``heading`` sensors. It keeps a flare at its position in the world.
+        key: Key of the random numbers, which is Key(seed, episode id, step).
+        sensor: Depth range of the camera: 0 to 10 m for R2R-CE (the default), ``DepthSensor(0.5,
+            5.0)`` for RxR-CE.
+        heading: Heading of the agent in radians, counter-clockwise, as measured by Habitat's
+            ``compass`` and ``heading`` sensors. If it is given, a lens flare keeps its direction in
+            the world when the agent turns.
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
-        normalised: Whether depth is normalised; False for depth in metres.
+        normalised: Whether depth is normalised to [0, 1]. If false, depth is in metres.
 
     Returns:
         A new dictionary with the same entries, order, dtypes, shapes and ranges. Entries that are
-        not corrupted are the same objects.
+        not corrupted are not copied.
 
     Raises:
-        ValueError: No camera has the modality, a camera is not at a multiple of 30 degrees below
-            360, the cameras of a modality differ in size, the corruption is a fault, or as in
-            ``corrupt_normalised``.
+        ValueError: No camera has the modality, the yaw of a camera is not a multiple of 30 degrees
+            below 360, the cameras of a modality differ in size, the corruption is a fault, or
+            ``corrupt_normalised`` raised this error.
     """
     if turn not in TURNS:
         raise ValueError(
@@ -73,7 +77,7 @@ def corrupt_habitat(
         )
     if fault := family(check_corruption(corruption).name):
         raise ValueError(
-            f"corrupt_habitat corrupts one instant, and {corruption.name!r} is a {fault} fault. "
+            f"corrupt_habitat corrupts one time step, but {corruption.name!r} is a {fault} fault. "
             "Use mitigate run, the gymnasium wrapper, or a FrameStream (docs/faults.md)."
         )
     if len(corruption.parts) > 1:
@@ -95,7 +99,7 @@ def corrupt_habitat(
 
 
 def is_camera(entry: str) -> bool:
-    """Return whether an entry of an observation is an RGB or depth camera."""
+    """Return whether ``entry`` is the name of an RGB or depth camera in an observation."""
     return _CAMERA.fullmatch(entry) is not None
 
 
@@ -113,7 +117,9 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
 
 
 def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]:
-    """Return the view number (``mitigate.core.observation``) of each camera of a modality."""
+    """Return the view number of each camera of a modality, as defined in
+    ``mitigate.core.observation``.
+    """
     views: dict[str, int] = {}
     for entry in obs:
         camera = _CAMERA.fullmatch(entry)
@@ -137,7 +143,9 @@ def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """Return the frames by view, [1 + last view, ...], in which views without a camera are zero."""
+    """Return the frames in the order of views, as an array [1 + last view, ...]. Views without a
+    camera are zero.
+    """
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))
     for entry, frame in frames.items():
@@ -150,7 +158,7 @@ def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
     if first.ndim not in (2, 3):
         raise ValueError(
             f"A camera's frame must be [H, W, channels] or [H, W], got {first.shape}. Pass one "
-            "instant of one environment at a time, because every instant has its own key."
+            "time step of one environment at a time, because every time step has its own key."
         )
     panorama = np.zeros((1 + max(views.values()), *first.shape), first.dtype)
     for entry, view in views.items():

@@ -1,11 +1,12 @@
-"""Observation transformer for habitat-baselines that corrupts frames, and a sensor for its keys.
+"""An observation transformer for habitat-baselines that corrupts frames, and the sensor that
+provides its random keys.
 
-Importing this module registers both if habitat-lab and habitat-baselines are installed. Without
-them, the transformer is a torch module with the same three methods.
+If habitat-lab and habitat-baselines are installed, importing this module registers both classes. If
+not, the transformer is a plain torch module with the same three methods.
 
-habitat-baselines calls a transformer only with a batch of frames, without episode, step or mask.
-The lab sensor ``CorruptionKeySensor`` therefore adds the entry ``corruption_key`` to every
-observation. The transformer removes it, so the policy does not receive it.
+habitat-baselines passes only a batch of frames to a transformer, but not the episode, the step or
+the mask. The lab sensor ``CorruptionKeySensor`` therefore adds the entry ``corruption_key`` to
+every observation. The transformer removes it, so the policy does not receive it.
 """
 
 from __future__ import annotations
@@ -35,26 +36,28 @@ except ImportError:
     ObsTransformConfig = object
 
 KEY = "corruption_key"
-_HEADINGS = ("compass", "heading")  # names of heading sensors (radians, counter-clockwise)
+# names of the sensors that measure the heading (in radians, counter-clockwise)
+_HEADINGS = ("compass", "heading")
 
 
 class CorruptObservation(ObservationTransformer):
     """Corrupt the cameras of a batch of Habitat observations (see ``corrupt_habitat``).
 
-    A batch has ``corruption_key`` int64 [B, 2] (from ``CorruptionKeySensor``), ``rgb*`` uint8
-    [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] in [0, 1]. Tensors on a GPU are corrupted
-    there. The
-    ``compass`` or ``heading`` sensor, if present, keeps a flare at its position in the world.
+    A batch must contain ``corruption_key`` (int64 [B, 2], from ``CorruptionKeySensor``), and may
+    contain ``rgb*`` (uint8 [B, H, W, 3]) and ``depth*`` (float32 [B, H, W, 1] in [0, 1]). Tensors
+    on a GPU are corrupted on the GPU. If a ``compass`` or ``heading`` sensor is present, a lens
+    flare keeps its direction in the world when the agent turns.
 
     Args:
-        schedule: The schedule that selects a corruption per frame.
+        schedule: The schedule that selects the corruption of each frame.
         seed: Corruption seed.
-        sensor: Depth range, and value that marks missing depth.
+        sensor: Depth range, and the value that marks missing depth.
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
 
     Raises:
-        ValueError: The space or a batch has no camera for a corruption of the schedule. In
-            ``forward``: ``corruption_key`` is missing, or an error of ``corrupt_habitat``.
+        ValueError: The observation space or a batch has no camera that a corruption of the schedule
+            can change. In ``forward``: ``corruption_key`` is missing, or ``corrupt_habitat`` raised
+            this error.
     """
 
     def __init__(
@@ -76,7 +79,8 @@ class CorruptObservation(ObservationTransformer):
 
     @classmethod
     def from_config(cls, config: Any) -> CorruptObservation:
-        """Build from a ``CorruptObservationConfig``, or from a mapping with some of its entries.
+        """Build the transformer from a ``CorruptObservationConfig``, or from a mapping that
+        contains some of its entries.
 
         Raises:
             ValueError: The mapping has an unknown entry.
@@ -101,7 +105,7 @@ class CorruptObservation(ObservationTransformer):
         return cls(schedule, options.seed, sensor=sensor, turn=options.turn)
 
     def transform_observation_space(self, observation_space: Any, **kwargs: Any) -> Any:
-        """Return a copy of the space without ``corruption_key``."""
+        """Return a copy of the observation space without the entry ``corruption_key``."""
         space = copy.deepcopy(observation_space)
         space.spaces.pop(KEY, None)
         self._check(space.spaces)
@@ -109,7 +113,9 @@ class CorruptObservation(ObservationTransformer):
 
     @torch.no_grad()
     def forward(self, observations: dict[str, torch.Tensor]) -> dict[str, torch.Tensor]:
-        """Return a new batch with corrupted cameras, without ``corruption_key``."""
+        """Return a new batch in which the camera frames are corrupted and ``corruption_key`` is
+        removed.
+        """
         keys = _keys(observations)
         self._check(observations)
         heading = next((observations[h] for h in _HEADINGS if h in observations), None)
@@ -138,37 +144,39 @@ class CorruptObservationConfig(ObsTransformConfig):
     """Options of ``CorruptObservation`` in a habitat-baselines config."""
 
     type: str = "CorruptObservation"
-    mode: str = "per_episode"  # see mitigate.corruptions.Schedule
-    # corruptions to choose from; an empty list means the standard suite
+    mode: str = "per_episode"  # mitigate.corruptions.Schedule lists the modes
+    # corruptions from which the schedule samples; an empty list means the standard suite
     names: tuple[str, ...] = ()
     severity: float = 0.6
-    severity_depth: float | None = None  # None: severity
+    severity_depth: float | None = None  # if None, equal to severity
     clean_share: float = 0.0
     seed: int = 0
-    depth_min: float = 0.0  # metres; RxR-CE 0.5
-    depth_max: float = 10.0  # metres; RxR-CE 5.0
+    depth_min: float = 0.0  # in metres; 0.5 for RxR-CE
+    depth_max: float = 10.0  # in metres; 5.0 for RxR-CE
     depth_missing: float = 0.0  # value in metres that marks missing depth
     turn: str = "left"  # direction from rgb to rgb_30
 
 
 def key_of(scene_id: str, episode_id: str | int, step: int) -> np.ndarray:
-    """Return the key of an observation, int64 [2]: a number for the episode, and the step.
+    """Return the key of an observation as int64 [2]: the number of the episode, and the step.
 
-    The number consists of 63 bits of a digest of the episode id and the file name of the scene.
-    This number is the same in every run and every process.
+    The episode number consists of 63 bits of a digest of the episode id and the file name of the
+    scene. Therefore the number of an episode is the same in every run and process.
     """
     name = f"{str(scene_id).rpartition('/')[2]}/{episode_id}"
     return np.array([digest(Key(0, name), "habitat") >> 1, step], np.int64)
 
 
 class EpisodeSteps:
-    """Counts the steps of a Habitat environment from the arguments of its sensors."""
+    """Count the steps of a Habitat environment from the arguments that its sensors receive."""
 
     def __init__(self) -> None:
         self._step = 0
 
     def key(self, episode: Any, **arguments: Any) -> np.ndarray:
-        """Return the key of an observation; Habitat passes ``action`` on a step, not on a reset."""
+        """Return the key of an observation. A reset is recognised because Habitat then passes no
+        ``action``.
+        """
         self._step = self._step + 1 if "action" in arguments else 0
         return key_of(episode.scene_id, episode.episode_id, self._step)
 
@@ -178,16 +186,16 @@ def _keys(observations: Mapping[str, torch.Tensor]) -> list[list[int]]:
     if keys is None or keys.dtype != torch.int64 or keys.shape[1:] != (2,):
         actual = "nothing" if keys is None else f"{keys.dtype} {tuple(keys.shape)}"
         raise ValueError(
-            f"The batch must have {KEY!r}, int64 [B, 2], which keys the corruption of each frame, "
-            f"got {actual}. Add {KEY!r} to the task's lab_sensors (importing mitigate.worlds."
-            "habitat_baselines registers it, see docs/corruption-entry-points.md). Outside "
-            "habitat-baselines, call mitigate.worlds.habitat.corrupt_habitat."
+            f"The batch must have {KEY!r}, int64 [B, 2], which determines the corruption of each "
+            f"frame, got {actual}. Add {KEY!r} to the task's lab_sensors (importing "
+            "mitigate.worlds.habitat_baselines registers it, see docs/corruption-entry-points.md). "
+            "Outside habitat-baselines, call mitigate.worlds.habitat.corrupt_habitat."
         )
     return keys.tolist()
 
 
 def _register() -> None:
-    """Register the transformer, the sensor and their configs with Habitat."""
+    """Register the transformer, the sensor and their configs in Habitat's registries."""
     from gym import spaces
     from habitat.config.default_structured_configs import LabSensorConfig
     from habitat.core.registry import registry
@@ -195,7 +203,9 @@ def _register() -> None:
     from hydra.core.config_store import ConfigStore
 
     class CorruptionKeySensor(Sensor):
-        """Sensor for the entry ``corruption_key``, int64 [2]: episode number and step."""
+        """Sensor that provides the entry ``corruption_key``, int64 [2]: the episode number and the
+        step.
+        """
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
             self._steps = EpisodeSteps()

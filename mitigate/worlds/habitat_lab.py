@@ -1,4 +1,4 @@
-"""Build camera configs of a panorama for habitat-lab 0.3, whose camera configs have no names.
+"""Build the camera configs of a panorama for habitat-lab 0.3.
 
     from habitat.config import read_write
     from mitigate.worlds.habitat_lab import panorama
@@ -26,25 +26,26 @@ from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS, Z_
 
 @dataclass
 class NamedRGBSensorConfig(HabitatSimRGBSensorConfig):
-    """Config of an RGB camera whose entry in observations is named ``uuid``."""
+    """Config of an RGB camera. ``uuid`` is the name of its entry in observations."""
 
     uuid: str = "rgb"
 
 
 @dataclass
 class NamedDepthSensorConfig(HabitatSimDepthSensorConfig):
-    """Config of a depth camera whose entry in observations is named ``uuid``."""
+    """Config of a depth camera. ``uuid`` is the name of its entry in observations."""
 
     uuid: str = "depth"
 
 
 def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str, Any]:
-    """Return 12 RGB and 12 depth cameras by name, each 30 degrees further to the left.
+    """Return the configs of 12 RGB and 12 depth cameras by name. Successive cameras are 30 degrees
+    further to the left.
 
     Args:
         rgb: Height and width of the RGB cameras in pixels.
         depth: Height and width of the depth cameras in pixels.
-        height: Metres above the floor.
+        height: Height of the cameras above the floor in metres.
 
     Returns:
         Sensor configs by name.

@@ -1,4 +1,5 @@
-"""Corrupt batches of Habitat observations whose frames are torch tensors, on their device.
+"""Corrupt batches of Habitat observations whose frames are torch tensors, on the device of the
+tensors.
 
 Habitat's batch renderer and ``HABITAT_SIM`` with ``gpu_gpu: True`` keep frames on the GPU.
 """
@@ -27,26 +28,31 @@ def corrupt_habitat_tensors(
     normalised: bool = True,
     backend: str | None = None,
 ) -> dict[str, Tensor]:
-    """Corrupt the cameras of a batch of observations. Row b equals ``corrupt_habitat`` of row b.
+    """Corrupt the cameras of a batch of observations. Each row of the result equals
+    ``corrupt_habitat`` applied to that row.
 
     Args:
-        observations: ``rgb*`` uint8 [B, H, W, 3] and ``depth*`` float32 [B, H, W, 1] or [B, H, W],
-            on any device. All cameras of a modality have the same size.
+        observations: entries ``rgb*`` are uint8 [B, H, W, 3], and entries ``depth*`` are float32
+            [B, H, W, 1] or [B, H, W]. Tensors may be on any device. All cameras of a modality have
+            the same size.
         corruptions: Corruption of each row.
-        keys: Key of each row: Key(seed, episode id, step).
-        sensor: 0-10 m for R2R-CE (the default), ``DepthSensor(0.5, 5.0)`` for RxR-CE.
-        headings: Heading of each row in radians, counter-clockwise, or None where it is unknown.
+        keys: Key of the random numbers of each row, which is Key(seed, episode id, step).
+        sensor: Depth range of the camera: 0 to 10 m for R2R-CE (the default), ``DepthSensor(0.5,
+            5.0)`` for RxR-CE.
+        headings: Heading of the agent in each row, in radians, counter-clockwise. Unknown headings
+            are None.
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
-        normalised: Whether depth is normalised; False for depth in metres.
+        normalised: Whether depth is normalised to [0, 1]. If false, depth is in metres.
         backend: As in ``corrupt_tensors``.
 
     Returns:
-        A new dictionary with the same entries, dtypes, shapes and devices. Entries that no row
-        corrupts are the same objects.
+        A new dictionary with the same entries, dtypes, shapes and devices. An entry is not copied
+        if no row corrupts it.
 
     Raises:
-        ValueError: No camera has the modality, a camera is not at a multiple of 30 degrees below
-            360, the cameras of a modality differ in size, or an error of ``corrupt_observations``.
+        ValueError: No camera has the modality, the yaw of a camera is not a multiple of 30 degrees
+            below 360, the cameras of a modality differ in size, or ``corrupt_observations`` raised
+            this error.
     """
     if turn not in TURNS:
         raise ValueError(
@@ -77,7 +83,9 @@ def corrupt_habitat_tensors(
 
 
 def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
-    """Return the cameras by view, [B, 1 + last view, H, W, C]; views without a camera are 0."""
+    """Return the frames in the order of views, as a tensor [B, 1 + last view, H, W, C]. Views
+    without a camera are 0.
+    """
     first = observations[next(iter(views))]
     for entry in views:
         frames = observations[entry]

@@ -1,9 +1,9 @@
-"""Use habitat-sim as a world (``worlds/world.py``), with any scene and VLN-CE episodes.
+"""A world (``worlds/world.py``) that runs VLN-CE episodes in any scene of habitat-sim.
 
-habitat-sim 0.3 is not on the package index; ``docs/habitat.md`` explains how to get it and scenes.
-habitat-lab is not needed. Cameras, actions and measures are as in VLN-CE. For the same path, the
-measures equal the values of habitat-lab, except nDTW, which uses the reference path of an episode
-here, but the denser locations of ``*_gt.json`` in VLN-CE.
+habitat-sim 0.3 is not on the package index. ``docs/habitat.md`` explains how to get habitat-sim and
+scenes. habitat-lab is not needed. The cameras, actions and measures are those of VLN-CE. For the
+same path, the measures equal the values of habitat-lab, except nDTW. This module computes nDTW from
+the reference path of an episode, whereas VLN-CE uses the denser locations in ``*_gt.json``.
 """
 
 from __future__ import annotations
@@ -41,10 +41,10 @@ from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Expert, World, greedy_action
 
 CAMERA_HEIGHT = 1.25  # in metres, as in VLN-CE
-RADIUS = 0.18  # metres, of the agent
-HEIGHT = 1.5  # metres, of the agent
+RADIUS = 0.18  # radius of the agent in metres
+HEIGHT = 1.5  # height of the agent in metres
 MOVES = {FORWARD: "move_forward", LEFT: "turn_left", RIGHT: "turn_right"}
-MAX_SNAP = 0.5  # maximum metres between a start or goal and the navmesh (heuristic)
+MAX_SNAP = 0.5  # maximum distance in metres between a start or goal and the navmesh (heuristic)
 NAVMESH = {"agent_radius": RADIUS, "agent_height": HEIGHT}
 
 
@@ -52,17 +52,19 @@ class HabitatWorld(World):
     """World with one agent in scenes of habitat-sim.
 
     Args:
-        scenes: Folder to which scene ids are relative.
+        scenes: Folder that contains the scene files; scene ids are paths relative to it.
         size: Height and width of a view in pixels.
-        views: 12 (panorama), or 1 (a camera that faces forward).
-        rule: Success rule of ``measures.RULES``, or "apartments" (STOP within 2 m).
-        navmesh: Settings of ``habitat_sim.NavMeshSettings`` for scenes without a navmesh: a file or
-            a mapping; None means the settings in ``scenes/../navmesh.json``, if it exists.
+        views: 12 for a panorama, or 1 for a single camera that faces forward.
+        rule: Name of a success rule in ``measures.RULES``, or "apartments", which requires STOP
+            within 2 m.
+        navmesh: Settings of ``habitat_sim.NavMeshSettings`` for scenes that have no navmesh, as a
+            file or a mapping. If None, they are read from ``scenes/../navmesh.json`` if this file
+            exists.
         gpu: Index of the GPU for rendering, or -1 for the CPU.
 
     Raises:
-        ValueError: ``views`` or ``rule`` is invalid. habitat-sim is not installed (raised when the
-            first episode starts).
+        ValueError: ``views`` or ``rule`` is invalid, or habitat-sim is not installed. The latter is
+            reported when the first episode starts.
     """
 
     def __init__(
@@ -94,7 +96,7 @@ class HabitatWorld(World):
         self._scene = ""
 
     def __getstate__(self) -> dict[str, Any]:
-        # a simulator cannot be pickled, so the copy opens a new one
+        # a simulator cannot be pickled, so an unpickled world opens a new simulator
         return {**vars(self), "_sim": None, "_scene": ""}
 
     # episodes ---------------------------------------------------------------------------------
@@ -143,7 +145,7 @@ class HabitatWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Take a step that moves ``metres`` forward, then turns ``degrees`` to the left.
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
         Raises:
             RuntimeError: The episode is over.
@@ -167,8 +169,8 @@ class HabitatWorld(World):
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode so far, with lengths and distances in metres.
 
-        success and spl equal habitat-lab's Success and SPL. ndtw compares the path with the
-        reference path, using the distance of the success rule.
+        success and spl equal Success and SPL of habitat-lab. ndtw compares the path with the
+        reference path, and its threshold is the distance of the success rule.
         """
         values = measures.of_episode(
             self._rule,
@@ -181,8 +183,8 @@ class HabitatWorld(World):
         return values | {"collisions": self.collisions, "steps": self.steps}
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
-        """Return the geodesic distance in metres from a position [3] (or the agent) to the nearest
-        goal.
+        """Return the geodesic distance in metres from a position [3] to the nearest goal. The
+        default position is the agent's.
         """
         import habitat_sim
 
@@ -201,7 +203,9 @@ class HabitatWorld(World):
         return Observation({POSE: pose}, self._frames, (RGB, DEPTH))
 
     def _frames(self) -> dict[str, np.ndarray]:
-        """Render RGB and depth (see ``sensors``), with depth clipped to ``Z_MAX``."""
+        """Render the RGB and depth frames that ``sensors`` describes. Depth is clipped to
+        ``Z_MAX``.
+        """
         images = self._sim.get_sensor_observations()
         rgb = np.stack([images[f"{RGB}{k}"][..., :3] for k in range(self.views)])
         depth = np.stack([images[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
@@ -211,7 +215,7 @@ class HabitatWorld(World):
     # the simulator ----------------------------------------------------------------------------
 
     def _load_scene(self, scene: str) -> None:
-        """Load a scene, unless it is already loaded."""
+        """Load a scene unless it is already loaded."""
         if scene == self._scene:
             return
         file = self.scenes_folder / scene
@@ -222,7 +226,7 @@ class HabitatWorld(World):
                 "episodes (mitigate export-scene writes the scenes of the apartments)."
             )
         settings = self._settings(file)
-        self._scene = ""  # the attribute stays empty if loading fails
+        self._scene = ""  # so that the attribute is empty if loading fails
         if self._sim is None:
             self._sim = _habitat_sim().Simulator(settings)
         else:
@@ -232,7 +236,9 @@ class HabitatWorld(World):
         self._scene = scene
 
     def _settings(self, file: Path) -> Any:
-        """Return a habitat-sim configuration: cameras, VLN-CE's actions, sliding along walls."""
+        """Return a habitat-sim configuration with the cameras, the actions of VLN-CE, and sliding
+        along walls.
+        """
         habitat_sim = _habitat_sim()
         backend = habitat_sim.SimulatorConfiguration()
         backend.scene_id = str(file)
@@ -254,8 +260,8 @@ class HabitatWorld(World):
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
-        """Return the camera of a view, 30 degrees to the right per view (Habitat's yaw goes to the
-        left).
+        """Return the camera of a view. Successive views are 30 degrees further to the right, and
+        Habitat's yaw is positive to the left.
         """
         habitat_sim = _habitat_sim()
         types = habitat_sim.SensorType
@@ -282,7 +288,7 @@ class HabitatWorld(World):
             )
 
     def _on_navmesh(self, position: Any, what: str) -> np.ndarray:
-        """Return the point [3] of the navmesh nearest to a position."""
+        """Return the point [3] of the navmesh that is nearest to a position."""
         point = np.array(position, np.float32)
         snapped = np.array(self._sim.pathfinder.snap_point(point), np.float32)
         distance = float(np.hypot(*(snapped - point)[[0, 2]]))
@@ -317,17 +323,17 @@ class HabitatWorld(World):
 
 
 class NavmeshExpert(Expert):
-    """Oracle with geodesic distances of the navmesh.
+    """Oracle that uses geodesic distances on the navmesh.
 
-    It greedily turns to the heading whose next step reduces the distance most.
+    It turns to the heading in which the next step forward reduces the distance most.
     """
 
     def __init__(self, world: HabitatWorld) -> None:
         self.world = world
 
     def distance(self, xy: np.ndarray) -> float:
-        """Return the geodesic distance in metres from a plan position [2] on the agent's floor to
-        the goal.
+        """Return the geodesic distance in metres to the goal from a plan position [2] on the
+        agent's floor.
         """
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
@@ -337,7 +343,7 @@ class NavmeshExpert(Expert):
         return self.world._rule.met(metres, True)
 
     def action(self) -> int:
-        """Return the low-level action that leads closest to the goal."""
+        """Return the low-level action that brings the agent closest to the goal."""
         world = self.world
         if world.distance_to_goal() < world._rule.stop_within:
             return STOP
@@ -352,7 +358,9 @@ class NavmeshExpert(Expert):
 
 
 def _habitat_sim() -> Any:
-    """Import habitat-sim without its log, which warns about missing labels in every scene."""
+    """Import habitat-sim with its log disabled, because it warns about missing labels in every
+    scene.
+    """
     for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):
         os.environ.setdefault(variable, "quiet")
     try:
@@ -366,7 +374,9 @@ def _habitat_sim() -> Any:
 
 
 def _navmesh_settings(navmesh: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
-    """Return navmesh settings by name; a file must have the format of ``mitigate export-scene``."""
+    """Return navmesh settings by name. If they are read from a file, it must have the format that
+    ``mitigate export-scene`` writes.
+    """
     if navmesh is None:
         navmesh = str(scenes.parent / "navmesh.json")
         if not Path(navmesh).is_file():

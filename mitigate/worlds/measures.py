@@ -1,7 +1,8 @@
 """Compute the measures of an episode with the formulas of VLN-CE, and apply success rules.
 
-Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres; both paths in a call must use the
-same coordinate frame. Distances to the goal are geodesic and measured by the simulator.
+Paths are ``[N, 2]`` or ``[N, 3]`` arrays of positions in metres. If a function takes two paths,
+both must use the same coordinate frame. Distances to the goal are geodesic and measured by the
+simulator.
 """
 
 from __future__ import annotations
@@ -12,14 +13,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
-SUCCESS_DISTANCE = 3.0  # in metres; VLN-CE's TASK.SUCCESS_DISTANCE for R2R-CE and RxR-CE
+# in metres; the value of TASK.SUCCESS_DISTANCE in VLN-CE for R2R-CE and RxR-CE
+SUCCESS_DISTANCE = 3.0
 
 
 def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCESS_DISTANCE) -> bool:
     """Return whether the agent stopped strictly within ``threshold`` metres of the goal.
 
-    This is the rule of VLN-CE. (ETPNav uses ``<=`` without STOP; habitat-lab's VLN task uses 0.2
-    m.) An infinite distance, which means an unreachable goal, is a failure.
+    This is the rule of VLN-CE. Other projects differ: ETPNav uses ``<=`` and does not require STOP,
+    and the VLN task of habitat-lab uses 0.2 m. An infinite distance means that the goal is
+    unreachable, and counts as a failure.
 
     Raises:
         ValueError: The distance is NaN.
@@ -33,7 +36,7 @@ def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCES
 
 @dataclass(frozen=True)
 class Rule:
-    """A success rule, by which an episode must end within ``metres`` of the goal.
+    """A success rule: an episode succeeds if it ends within ``metres`` of the goal.
 
     Attributes:
         name: Name of the benchmark that uses the rule.
@@ -41,7 +44,7 @@ class Rule:
         stop: Whether the agent must take STOP.
         inclusive: Whether a distance of exactly ``metres`` is a success.
         view_points: Whether the distance is measured to the nearest point from which the goal is
-            visible, instead of to the goal.
+            visible. If false, it is measured to the goal itself.
     """
 
     name: str
@@ -52,22 +55,23 @@ class Rule:
 
     @property
     def stop_within(self) -> float:
-        """Distance in metres at which an oracle stops: 1 (heuristic), or the rule's distance if
-        smaller.
+        """Distance in metres at which an oracle stops: 1 m (heuristic), or the distance of the rule
+        if that is smaller.
         """
         return min(1.0, self.metres)
 
     @property
     def path_metres(self) -> float:
-        """Threshold of nDTW in metres: the rule's distance, or VLN-CE's if the rule uses view
-        points.
+        """Threshold of nDTW in metres: the distance of the rule, or that of VLN-CE if the rule uses
+        view points.
 
-        The reason is that view points do not lie on the reference path.
+        A rule with view points needs another threshold, because view points do not lie on the
+        reference path.
         """
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
     def met(self, distance: float, stopped: bool) -> bool:
-        """Return whether an episode that ends ``distance`` metres away is a success.
+        """Return whether an episode is a success if it ends ``distance`` metres away from the goal.
 
         Raises:
             ValueError: The distance is NaN.
@@ -77,13 +81,13 @@ class Rule:
         return success(distance, stopped or not self.stop, threshold=self.metres)
 
     def __str__(self) -> str:
-        """Return the wording of the rule in rows and tables."""
+        """Return the text that describes the rule in result rows and tables."""
         distance = f"geodesic {'<=' if self.inclusive else '<'} {float(self.metres)} m"
         distance += " to a view point" if self.view_points else ""
         return f"{self.name}: {f'STOP and {distance}' if self.stop else f'{distance}, STOP or not'}"
 
 
-RULES = {  # rules by their name in options; docs/agents.md lists their sources
+RULES = {  # rules by the name that options use; docs/agents.md lists the source of each rule
     "vln_ce": Rule("vln", SUCCESS_DISTANCE),
     "etpnav": Rule("etpnav", 3.0, stop=False, inclusive=True),
     "habitat_vln": Rule("habitat-lab vln", 0.2),
@@ -99,12 +103,13 @@ def path_length(path: ArrayLike) -> float:
 
 
 def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
-    """Return success weighted by path length, ``S L* / max(L*, L)`` (Anderson et al., 2018).
+    """Return success weighted by path length (SPL, Anderson et al., 2018): S times ``L* / max(L*,
+    L)``.
 
-    An episode that starts at its goal (L* = 0) and does not move scores S.
+    If the episode starts at its goal (L* = 0) and the agent does not move, the result is S.
 
     Args:
-        succeeded: S.
+        succeeded: whether the episode succeeded (S).
         geodesic_distance: L*, distance in metres from start to goal.
         length: L, length of the agent's path in metres.
 
@@ -121,9 +126,9 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
 def dtw(path: ArrayLike, reference: ArrayLike) -> float:
     """Return the dynamic time warping cost of the two paths, in metres.
 
-    The value is exact; it is computed by dynamic programming over all alignments, vectorised along
-    anti-diagonals. VLN-CE uses ``fastdtw``, an approximation that is never smaller than the exact
-    value.
+    The value is exact. It is computed by dynamic programming over all alignments of the paths, and
+    vectorised along the anti-diagonals of the cost matrix. VLN-CE uses ``fastdtw`` instead, whose
+    approximate cost is never smaller than the exact value.
     """
     a = _points(path, "path")
     b = _points(reference, "reference path")
@@ -133,7 +138,8 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
         )
     rows, columns = len(a), len(b)
     cost = np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))[:, ::-1]
-    # entry [i + 1] holds cell (i, d - i), for the anti-diagonals d - 2 and d - 1
+    # costs of the anti-diagonals d - 2 and d - 1; entry [i + 1] is the cost of matrix element (i, d
+    # - i)
     before, last = np.full((2, rows + 1), np.inf)
     before[0] = 0.0
     for d in range(rows + columns - 1):
@@ -146,9 +152,9 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
 
 
 def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DISTANCE) -> float:
-    """Return nDTW, ``exp(-DTW / (n threshold))`` with n reference points (Ilharco et al., 2019).
+    """Return nDTW, ``exp(-DTW / (n * threshold))`` for n reference points (Ilharco et al., 2019).
 
-    As in VLN-CE, consecutive equal positions (turns, collisions) count once.
+    As in VLN-CE, consecutive equal positions, which turns and collisions cause, count once.
     """
     points = _points(path, "path")
     moved = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))
@@ -167,7 +173,7 @@ def of_episode(
 ) -> dict[str, float]:
     """Return the measures of an episode: success, SPL, nDTW, and lengths in metres.
 
-    A distance that is infinite and the nDTW without a reference path are left out.
+    Infinite distances are left out. nDTW is left out if there is no reference path.
 
     Args:
         rule: The success rule.

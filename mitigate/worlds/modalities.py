@@ -1,4 +1,4 @@
-"""Check that an observation has the frames that a schedule corrupts."""
+"""Check that observations contain the frames that a schedule corrupts."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ ENTRY_FIX = "name the entry: CorruptObservation(..., {0}=...)"
 
 
 def check_available(names: Iterable[str], available: Container[str], lack: str, fix: str) -> None:
-    """Check that the modality of every corruption is available.
+    """Check that every corruption finds its modality in an observation.
 
     Args:
         names: Names of the corruptions.
-        available: Modalities of the observation.
-        lack: Text on the missing part for the message; ``{0}`` becomes the modality.
-        fix: Alternative to leaving corruptions out; ``{0}`` becomes the modality.
+        available: Modalities that the observation contains.
+        lack: Part of the error message that says what is missing; ``{0}`` is replaced by the
+            modality.
+        fix: Part of the error message that says how to add the modality; ``{0}`` is replaced by the
+            modality.
 
     Raises:
         ValueError: A modality is missing.

@@ -1,13 +1,13 @@
-"""Execute actions with a fault of motion (``mitigate/corruptions/faults/motion.py``).
+"""Execute actions under a motion fault (``mitigate/corruptions/faults/motion.py``).
 
-What a fault does depends on the kind of action:
+The effect of a fault depends on the kind of action:
 
-* FORWARD, LEFT and RIGHT in a world that defines ``move`` (apartments, Habitat). Slip and gain
-  scale the 0.25 m and the 15 degrees, drift turns the robot after FORWARD, and a dropped action is
-  a step without movement. STOP is always executed.
-* A ``Box``: gain and slip scale the action, drift adds a bias to all its elements, a dropped action
-  is zero. The result is clipped to the box.
-* Other actions: only ``repeated_action``, which works everywhere.
+* FORWARD, LEFT and RIGHT in a world that defines ``move`` (apartments, Habitat): slip and gain
+  scale the step of 0.25 m and the turn of 15 degrees, drift turns the robot after FORWARD, and a
+  dropped action is a step without movement. STOP is always executed.
+* Actions in a ``Box``: gain and slip scale the action, drift adds a bias to all its elements, and a
+  dropped action becomes zero. The result is clipped to the bounds of the ``Box``.
+* Other actions: only the fault ``repeated_action`` is possible, because it works with all actions.
 """
 
 from __future__ import annotations
@@ -32,28 +32,30 @@ from mitigate.corruptions.record import MOTION
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, WorldWrapper
 
-BIAS = 0.25  # of half the range of an element of a Box, at severity 1 (heuristic)
+# drift bias at severity 1, as a fraction of half the range of a Box element (heuristic)
+BIAS = 0.25
 MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
 
 
 @runtime_checkable
 class Movable(Protocol):
-    """A world in which a step can move by any distance and angle."""
+    """A world in which a step can move the agent by any distance and angle."""
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Take a step: move forward by ``metres``, then turn by ``degrees`` to the left."""
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
 
 
 class FaultyMotion(WorldWrapper):
-    """A world whose actions are executed with one fault, keyed by (seed, episode, step).
+    """A world whose actions are executed under one fault. The random numbers depend only on (seed,
+    episode, step).
 
     Args:
         world: The world.
-        fault: A fault of motion.
+        fault: A motion fault.
         seed: Corruption seed.
 
     Raises:
-        ValueError: The actions of the world cannot have this fault.
+        ValueError: The fault is not possible with the actions of the world.
     """
 
     def __init__(self, world: World, fault: Corruption, seed: int) -> None:
@@ -78,7 +80,7 @@ class FaultyMotion(WorldWrapper):
         return self._inner.reset(episode)
 
     def step(self, action: Any) -> Observation:
-        """Take an action, or what the fault makes of it."""
+        """Execute an action as the fault changes it."""
         draw = registry.record(self.fault.name).draw
         assert draw is not None, "a fault has a function"
         movement = draw(self.fault.severity, Key(self.seed, self._episode, self._step))
@@ -96,9 +98,9 @@ class FaultyMotion(WorldWrapper):
 
     def _move(self, action: Any, movement: Movement) -> Observation:
         """Move a wheeled robot by one step."""
-        if action not in MOVES:  # the world reports the error
+        if action not in MOVES:  # the world raises the error for an invalid action
             return self._inner.step(action)
-        robot: Any = self._inner  # a Movable, or a wrapper of one
+        robot: Any = self._inner  # an instance of Movable, or a wrapper of such a world
         metres, degrees = MOVES[action]
         if movement.dropped:
             return robot.move(0.0, 0.0)
@@ -107,7 +109,7 @@ class FaultyMotion(WorldWrapper):
 
 
 def with_motion(world: World, corruption: Corruption, seed: int) -> World:
-    """Return ``world`` with the motion faults of a corruption, if it has any."""
+    """Wrap ``world`` with the motion faults of a corruption, if the corruption contains any."""
     for part in corruption.parts:
         if registry.record(part.name).family == MOTION:
             world = FaultyMotion(world, part, seed)
@@ -115,7 +117,7 @@ def with_motion(world: World, corruption: Corruption, seed: int) -> World:
 
 
 def _changed(action: Any, movement: Movement, box: Box) -> np.ndarray:
-    """Return what the fault makes of an action of ``box``."""
+    """Return an action of ``box`` as the fault changes it."""
     values = box.check(action)
     if movement.dropped:
         changed = np.zeros_like(values)

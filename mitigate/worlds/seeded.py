@@ -1,5 +1,5 @@
-"""Define the base class of worlds that wrap other libraries' environments, with a seed per
-episode.
+"""Base class of worlds that wrap environments of other libraries. Each episode is identified by a
+seed.
 """
 
 from __future__ import annotations
@@ -23,8 +23,8 @@ from mitigate.worlds.world import World, check_metres
 def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") -> list[Episode]:
     """Return one episode per seed, all with the same instruction.
 
-    This is for worlds that read only the seed of an episode, such as ``GymWorld``. Pass the list to
-    ``mitigate.benchmark(listed=...)``.
+    These episodes fit worlds that use only the seed of an episode, such as ``GymWorld``. Pass the
+    list to ``mitigate.benchmark(listed=...)``.
 
     Raises:
         ValueError: A seed is not an integer from 0 to 2147483647.
@@ -38,21 +38,21 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     return [placeless_episode(str(seed), instruction, seed=seed) for seed in seeds]
 
 
-FIRST_TRAINING_SEED = 1_000_000  # seeds of training episodes; seeds of comparisons are smaller
-# name of the measure; also the success rule of worlds without a success criterion
+FIRST_TRAINING_SEED = 1_000_000  # first seed of training episodes; comparisons use smaller seeds
+# name of the measure "return"; also the success rule of worlds that have no success criterion
 RETURN = "return"
 SCORES = ("success", RETURN)
 
 
 @dataclass(frozen=True)
 class Ending:
-    """The end of an episode, which is passed to a ``success`` function.
+    """Description of the end of an episode, which is passed to a ``success`` function.
 
     Attributes:
         info: Entries that the environment reported with the last step.
         reward: Reward of the last step.
         total: Sum of the rewards of the episode.
-        steps: Number of steps.
+        steps: Number of steps of the episode.
     """
 
     info: Mapping[str, Any]
@@ -61,18 +61,18 @@ class Ending:
     steps: int
 
 
-WHOLE = ""  # entry name of an observation that is a single frame
+WHOLE = ""  # entry name that stands for an observation that is a single frame
 
 
 @dataclass(frozen=True)
 class NativeFormat:
-    """Converts frames back to the environment's observation format, for which its policy was
+    """Convert frames back to the observation format of the environment, with which its policy was
     trained.
 
     Attributes:
-        entries: Name of the observation's entry by sensor; nested entries are written as
+        entries: Name of the observation entry for each sensor. Nested entries are written as
             "camera.rgb".
-        dtypes: dtype of the entry by sensor.
+        dtypes: dtype of the entry for each sensor.
         unit: Metres per unit of depth.
     """
 
@@ -81,10 +81,10 @@ class NativeFormat:
     unit: float = 1.0
 
     def __call__(self, frames: Mapping[str, Any]) -> Any:
-        """Return the observation: an array, or nested dictionaries of arrays.
+        """Return the observation, which is an array or nested dictionaries of arrays.
 
         Args:
-            frames: Arrays by sensor, which may have a first axis for a batch.
+            frames: Arrays by sensor. They may have a batch axis in front.
         """
         observation: dict[str, Any] = {}
         for name, entry in self.entries.items():
@@ -109,49 +109,51 @@ class NativeFormat:
         return depth.astype(dtype)
 
 
-# shape, dtype and maximum of each entry of an observation
+# type of a dict that contains the shape, dtype and maximum of each entry of an observation
 Arrays = dict[str, tuple[tuple[int, ...], str, float]]
-# name of an entry that the environment reports, or a function
+# type of a success criterion: the name of an entry that the environment reports, or a function
 Success = str | Callable[[Ending], bool]
 
 
 class SeededWorld(World):
-    """Base class of worlds in which an episode is a seed.
+    """Base class of worlds in which a seed determines an episode.
 
-    A subclass defines ``_spaces``, ``_reset_env``, ``_step_env`` and ``_report``. Depth that is
-    negative or not finite becomes 0, which means missing.
+    A subclass defines ``_spaces``, ``_reset_env``, ``_step_env`` and ``_report``. Negative and
+    non-finite depth becomes 0, which means missing.
 
     Args:
         env: The environment.
-        entries: Entry of each sensor: maps "rgb", "depth", "pose" and any other name that the agent
-            reads, such as "goal", to an entry of the observation. Nested entries are written as
-            "camera.rgb". The default is the frame, or the entries "rgb", "depth" and "pose".
-        success: Name of the entry that reports success at the end of an episode, or a function of
-            the :class:`Ending`; None means the entry "success".
-        unit: Metres per unit of depth; None means 1. The unit is required for integer depth and for
-            depth with a maximum of 1 or less.
-        limit: Maximum number of steps; None means that the environment ends its episodes. With a
-            limit, the measures contain ``limit``, and ``cut``, which states whether the limit ended
+        entries: Mapping from "rgb", "depth", "pose" and other names that the agent reads (such as
+            "goal") to entries of the observation. Nested entries are written as "camera.rgb". By
+            default, a single frame is "rgb", and the entries "rgb", "depth" and "pose" of a dict
+            keep their names.
+        success: Name of the entry that reports success at the end of an episode, or a function that
+            takes an :class:`Ending`. The default is the entry "success".
+        unit: Metres per unit of depth (default 1). It is required if depth consists of integers or
+            if its maximum is 1 or less.
+        limit: Maximum number of steps. If None, only the environment ends its episodes. With a
+            limit, the measures also contain ``limit`` and ``cut``; ``cut`` is 1 if the limit ended
             the episode.
-        rule: The success rule in words, for rows and tables; None means the name of the entry.
+        rule: The success rule in words, for rows and tables. The default is the name of the entry.
             A rule is required if ``success`` is a function.
-        score: "success", or "return" for a task without a success criterion. In the latter case,
-            rows hold the sum of the rewards, and tables show its retention
-            (``evaluation/comparison.py``).
-        extra: Additional entries that the environment reports at the end of an episode, to be
-            stored as measures.
-        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
+        score: "success", or "return" for a task without a success criterion. With "return", rows
+            contain the sum of the rewards, and tables show which fraction of the clean return is
+            retained (``evaluation/comparison.py``).
+        extra: Names of additional entries that the environment reports at the end of an episode.
+            They are stored as measures.
+        hfov: Horizontal field of view of the cameras in degrees. Camera faults require it.
 
     Attributes:
-        native: Converts frames to the environment's own observation (:class:`NativeFormat`).
+        native: Converter from frames to the environment's own observation format
+            (:class:`NativeFormat`).
         reward: Reward of the last step.
-        terminated: Whether the task ended the episode. It is False if a limit ended it.
+        terminated: Whether the task ended the episode; False if a step limit ended it.
 
     Raises:
         ValueError: An argument is invalid, an entry is missing, or frames have a shape or dtype
-            that the suite does not support. Also raised during an episode: success is not reported,
-            depth cannot be in metres, a frame differs from its space, or the environment raised any
-            error.
+            that the suite does not support. During an episode, this error is also raised if success
+            is not reported, depth is implausible, a frame does not match its space, or the
+            environment raises any error.
     """
 
     done = True
@@ -221,7 +223,9 @@ class SeededWorld(World):
         )
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode from its seed: ``info["seed"]``, or one derived from the id."""
+        """Start an episode from its seed, which is ``info["seed"]`` or derived from the episode
+        id.
+        """
         self.done = self._cut = self.terminated = False
         self._name = episode.episode_id
         self.reward = self._total = 0.0
@@ -237,7 +241,7 @@ class SeededWorld(World):
         Raises:
             RuntimeError: The episode is over.
             ValueError: The action does not exist, the environment ended the episode without
-                reporting success, or the reward is NaN and a function decides on success.
+                reporting success, or the reward is NaN although the score depends on it.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
@@ -248,7 +252,8 @@ class SeededWorld(World):
         return self._observation(parts)
 
     def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
-        """Return the action space and the arrays of the observations of ``env``.
+        """Return the action space of ``env``, and the shape, dtype and maximum of each entry of its
+        observations.
 
         Raises:
             ValueError: The actions are not supported (``core/spaces.py``).
@@ -256,21 +261,22 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _spaces(env)")
 
     def _reset_env(self, seed: int) -> Mapping[str, Any]:
-        """Reset the environment and return the entries of its observation."""
+        """Reset the environment and return its observation as a dict of entries."""
         raise NotImplementedError(f"{type(self).__name__} defines no _reset_env()")
 
     def _step_env(self, action: Any) -> tuple[Mapping[str, Any], float, bool]:
-        """Step the environment; return its observation, the reward and whether it is over.
+        """Step the environment. Return its observation, the reward, and whether the episode is
+        over.
 
         A subclass also sets ``terminated``.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
-        """Return ``success``, ``spl``, ``return`` and ``steps``; with a limit also ``cut`` and
-        ``limit``.
+        """Return ``success``, ``spl``, ``return`` and ``steps``. With a step limit, also return
+        ``cut`` and ``limit``.
 
-        ``spl`` equals ``success``, because the shortest path is unknown. With the score "return",
+        ``spl`` equals ``success``, because the shortest path is unknown. If the score is "return",
         both are missing.
         """
         measures: dict[str, float] = {RETURN: self._total, "steps": self._steps}
@@ -284,7 +290,7 @@ class SeededWorld(World):
         return measures | {"cut": int(self._cut), "limit": self.limit}
 
     def _end_step(self, reward: float, over: bool) -> None:
-        """Count a step, and check the values that the environment reported."""
+        """Update the counters after a step, and check the values that the environment reported."""
         if math.isnan(reward) and (callable(self.success) or self.rule == RETURN):
             raise ValueError(
                 f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
@@ -332,12 +338,12 @@ class SeededWorld(World):
 
     @contextmanager
     def _calling(self, what: str) -> Iterator[None]:
-        """Convert any error of the user's code in the block to a ValueError that names the
+        """Convert any error of the user's code inside the context to a ValueError that names the
         episode.
         """
         try:
             yield
-        except MemoryError:  # explained by core/errors.py
+        except MemoryError:  # core/errors.py handles this error
             raise
         except Exception as error:
             place = own_place(error)
@@ -374,7 +380,9 @@ class SeededWorld(World):
         return Observation(pose, lambda: frames, tuple(frames))
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
-        """Convert depth to float32 metres; the unit is checked on the first frame of an episode."""
+        """Convert depth to metres as float32. The first frame of an episode is used to check the
+        unit.
+        """
         metres = depth.astype(np.float32) * np.float32(self.unit)
         metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
         if self._steps == 0:
@@ -384,7 +392,7 @@ class SeededWorld(World):
 
 
 def _as_bool(value: Any, source: str, episode: str) -> bool:
-    """Return whether a value, or any of its elements, is true; None counts as false.
+    """Return whether a value, or at least one of its elements, is true. None counts as false.
 
     Raises:
         ValueError: An element is neither a truth value nor 0 or 1.
@@ -406,7 +414,9 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
 
 
 def _check_success(success: Any, rule: str | None) -> None:
-    """Raise ValueError if ``success`` is invalid, or is a function and ``rule`` is not set."""
+    """Raise ValueError if ``success`` is invalid, or if it is a function but ``rule`` is not
+    set.
+    """
     if callable(success):
         if not rule:
             raise ValueError(

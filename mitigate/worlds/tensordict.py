@@ -1,6 +1,7 @@
 """Use a world as a torchrl environment, and a torchrl environment as a world.
 
-Only this file, ``transforms.py`` and ``apartments/env.py`` import torchrl, because this takes 4 s.
+Importing torchrl takes 4 s, so only this file, ``transforms.py`` and ``apartments/env.py`` import
+it.
 """
 
 from __future__ import annotations
@@ -33,31 +34,33 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 
 class WorldEnv(EnvBase):
-    """Torchrl environment that wraps a world (``batch_size`` []).
+    """A torchrl environment that wraps a world. Its ``batch_size`` is [].
 
-    Observations have an entry per sensor of the world, ``instruction`` (str), ``episode`` (str,
-    unique to each run of an episode) and ``frame`` (int64 [1], the number of steps). Actions are
-    int64 from 0 to ``actions`` - 1; 0 is STOP. The reward, float32 [1], is the world's ``success``
-    at the end of an episode, otherwise 0. ``terminated`` is set on STOP, ``truncated`` if the world
-    ends the episode.
+    Observations have one entry per sensor of the world. They also have ``instruction`` (str),
+    ``episode`` (str, a name that is unique to each run of an episode) and ``frame`` (int64 [1], the
+    number of steps). Actions are int64 from 0 to ``actions`` - 1, where 0 is STOP. The reward
+    (float32 [1]) is the world's ``success`` at the end of an episode, and 0 before. If the agent
+    ends the episode with STOP, ``terminated`` is set; if the world ends it, ``truncated`` is set.
 
     Args:
-        world: The world, which only this environment may use.
-        episodes: A VLN-CE file or a list, whose episodes are run in order and repeatedly; or a
-            source of training episodes (``worlds/world.py``), which are sampled with ``seed``.
+        world: The world. No other environment may use it.
+        episodes: A VLN-CE file or a list of episodes, which are run in order and repeated.
+            Alternatively, a source of training episodes (``worlds/world.py``), from which episodes
+            are sampled with ``seed``.
         actions: Number of actions.
-        seed: Seed for sampling episodes; ``set_seed`` replaces it and restarts with the first
-            episode.
-        worker: Index of this environment; it runs the episodes ``worker``, ``worker + workers``,
-            ...
-        workers: Number of environments among which the episodes of this seed are divided. Together
-            these environments run the same episodes as a single environment.
+        seed: Seed for sampling episodes. The method ``set_seed`` replaces it and restarts with the
+            first episode.
+        worker: Index of this environment. The environment runs the episodes ``worker``, ``worker +
+            workers``, and so on.
+        workers: Number of environments among which the episodes of this seed are divided. Together,
+            they run the same episodes as a single environment would.
 
     Raises:
-        ValueError: The list is empty, or ``worker`` is not in 0 ... workers - 1.
+        ValueError: The list of episodes is empty, or ``worker`` is not between 0 and ``workers`` -
+            1.
     """
 
-    key = "world env"  # name of the random stream for sampling episodes
+    key = "world env"  # name of the random stream from which episodes are sampled
 
     def __init__(
         self,
@@ -120,8 +123,8 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return episode ``number`` and its unique name, which depend only on list or seed, and
-        number.
+        """Return episode ``number`` and its unique name. Both depend only on ``number`` and on the
+        list of episodes or the seed.
         """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
@@ -149,7 +152,7 @@ class WorldEnv(EnvBase):
 
 
 class EnvWorld(SeededWorld):
-    """World that wraps a torchrl environment with frames, which must not be batched.
+    """World that wraps a torchrl environment that is not batched and provides frames.
 
     The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. ``success`` names an
     entry of the tensordict, or is a function.
@@ -166,7 +169,7 @@ class EnvWorld(SeededWorld):
         if len(actions) != 1:
             raise ValueError(
                 f"The environment must have one action, got {len(actions)}. Wrap it in a transform "
-                "that makes them from one action."
+                "that computes them from one action."
             )
         spec = env.observation_spec
         arrays = {_dotted(key): _describe(spec[key]) for key in spec.keys(True, True)}
@@ -174,8 +177,8 @@ class EnvWorld(SeededWorld):
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
-        # torchrl resets a gymnasium environment twice; without the seed, the second reset would
-        # start a different episode than GymWorld does
+        # torchrl resets a gymnasium environment twice. Without the seed, the second reset would
+        # start another episode than GymWorld does.
         is_gym = isinstance(getattr(self.env, "base_env", self.env), GymLikeEnv)
         self._now = self.env.reset(seed=seed) if is_gym else self.env.reset()
         return self._parts()
@@ -202,7 +205,7 @@ class EnvWorld(SeededWorld):
 
 
 def _space_of(spec: Any, batch: int) -> ActionSpace:
-    """Return the action space of a torchrl spec.
+    """Return the action space that corresponds to a torchrl spec.
 
     Raises:
         ValueError: The spec is not Categorical, OneHot, MultiCategorical, or a bounded or unbounded
@@ -220,7 +223,7 @@ def _space_of(spec: Any, batch: int) -> ActionSpace:
     raise ValueError(
         "The action of the environment must be Categorical, OneHot, MultiCategorical, Bounded or "
         f"Unbounded, got {kind} {list(spec.shape)}. Wrap the environment in a transform that "
-        "converts such an action into its own."
+        "converts an action of one of these types into its own."
     )
 
 
@@ -229,13 +232,13 @@ def _dotted(key: str | tuple[str, ...]) -> str:
 
 
 def _list_episodes(episodes: Any) -> list[Episode]:
-    """Return the episodes of a file or an iterable; raise ValueError if it is empty."""
+    """Return the episodes of a file or an iterable. Raise ValueError if there are none."""
     is_file = isinstance(episodes, (Path, str))
     listed = list(read_episodes(episodes)) if is_file else list(episodes)
     if not listed:
         raise ValueError(
             f"{episodes if is_file else 'The list'} must contain at least one episode. Add one, or "
-            "pass training episodes to draw from."
+            "pass a source of training episodes."
         )
     return listed
 
@@ -252,9 +255,10 @@ def _spec_of(sensor: Sensor) -> Any:
 
 
 def _describe(spec: Any) -> tuple[tuple[int, ...], str, float]:
-    """Return the shape, dtype and maximum of an entry; the maximum is infinity if unbounded.
+    """Return the shape, dtype and maximum of an entry. The maximum is infinity if the entry is
+    unbounded.
 
-    In torchrl, the maximum of an unbounded entry is the largest number of its dtype.
+    torchrl itself uses the largest number of the dtype as the maximum of an unbounded entry.
     """
     dtype = str(spec.dtype).removeprefix("torch.")
     high = float(spec.space.high.max()) if isinstance(spec.space, ContinuousBox) else math.inf

@@ -1,4 +1,4 @@
-"""torchrl transforms that corrupt frames, for environments and replay buffers."""
+"""Transforms of torchrl that corrupt the frames of environments and replay buffers."""
 
 from __future__ import annotations
 
@@ -30,42 +30,42 @@ from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
 class CorruptObservation(Transform):
-    """Corrupt ``rgb`` and ``depth`` by a schedule, keyed by (seed, ``episode``, ``frame``).
+    """Corrupt ``rgb`` and ``depth`` as a schedule selects. Random numbers depend only on (seed,
+    ``episode``, ``frame``).
 
-    Everything about an episode (its corruption, the drops on its lens) is a function of the name in
-    ``episode``, which changes at every reset. The pixels therefore do not depend on the number of
-    parallel environments or on partial resets. They are also the same when a frame is corrupted
-    later, when it is read from a replay buffer of clean frames (by ``forward``, which also
-    corrupts the frames in ``("next", ...)``). An environment without episode names needs an
-    ``EpisodeCounter`` before this transform.
+    All properties of an episode, such as its corruption and the water drops on its lens, are a
+    function of the name in ``episode``, which changes at every reset. Therefore the pixels do not
+    depend on the number of parallel environments or on partial resets. The pixels are also the same
+    if a clean frame is stored in a replay buffer and corrupted when it is read. ``forward`` does
+    this, and also corrupts the frames in ``("next", ...)``. An environment without episode names
+    needs an ``EpisodeCounter`` before this transform.
 
-    The transform keeps no state between steps, except for temporal faults, which need the last
-    frames of each batch row. A replay buffer does not return frames in order, so ``forward``
-    rejects temporal faults.
+    Only temporal faults need state between steps: the last frames of each batch row. A replay
+    buffer does not return frames in order, so ``forward`` rejects temporal faults.
 
-    Frames are RGB uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3] and depth float32
-    [*batch, (V,) H, W, 1]. Put this transform before those that move channels or convert to float.
-    Any batch shape and device are supported. Frames on a GPU are corrupted there
-    (``mitigate.corruptions.tensors``), except by faults, which are computed on the CPU.
+    RGB frames are uint8 [*batch, H, W, 3] or [*batch, V, H, W, 3], and depth frames are float32
+    [*batch, (V,) H, W, 1]. Put this transform before transforms that move channels or convert
+    frames to float. Any batch shape and device are supported. Frames on a GPU are corrupted on the
+    GPU (``mitigate.corruptions.tensors``), but faults are computed on the CPU.
 
     Args:
-        schedule: The schedule that selects a corruption per frame, or one corruption for all
+        schedule: A schedule that selects the corruption of each frame, or one corruption for all
             frames.
         seed: Corruption seed.
-        rgb: Name of the RGB entry, which the data need not contain.
-        depth: Name of the depth entry, which the data need not contain.
-        sensor: Depth range, and value that marks missing depth.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres. None
-            means metres; an error is raised if no depth in a replay buffer exceeds 1, because the
-            unit is then unclear.
+        rgb: Name of the RGB entry. The data may lack this entry.
+        depth: Name of the depth entry. The data may lack this entry.
+        sensor: Depth range, and the value that marks missing depth.
+        normalised: Whether depth is normalised to [0, 1] over the range of the sensor. If False or
+            None, depth is in metres. If None, an error is raised if no depth value in a replay
+            buffer exceeds 1, because the unit is then unclear.
         hfov: Horizontal field of view of the cameras in degrees; camera faults require it.
-        backend: "torch" computes on the device of the frames, "numpy" on the CPU. None selects
-            torch for frames on a GPU and numpy for frames on the CPU.
+        backend: "torch" computes on the device of the frames, and "numpy" computes on the CPU. If
+            None, torch is used for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
-        ValueError: The data have no episode or frame number, the schedule corrupts a missing
-            entry, or a temporal fault is applied to a replay buffer; also as in
-            ``corrupt_observation``.
+        ValueError: The data have no episode or frame number, the schedule corrupts a missing entry,
+            a temporal fault is applied to a replay buffer, or ``corrupt_observation`` raised this
+            error.
     """
 
     def __init__(
@@ -87,10 +87,12 @@ class CorruptObservation(Transform):
         self._normalised = normalised
         self._backend = check_backend(backend)
         self._hfov = dict.fromkeys((RGB, DEPTH), hfov)
-        self._streams: dict[int, FrameStream] = {}  # by row
+        self._streams: dict[int, FrameStream] = {}  # one stream per batch row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
-        """Return the spec; raise ValueError if normalised depth would be corrupted as metres."""
+        """Return the spec unchanged. Raise ValueError if depth seems to be normalised but would be
+        corrupted as metres.
+        """
         entry = self.entries[DEPTH]
         if self._corrupts_metres() and entry in observation_spec.keys(True, True):
             spec = observation_spec[entry]
@@ -112,15 +114,15 @@ class CorruptObservation(Transform):
     def _reset(
         self, tensordict: TensorDictBase | None, tensordict_reset: TensorDictBase
     ) -> TensorDictBase:
-        """Corrupt the rows that were reset; torchrl ignores the other rows."""
+        """Corrupt only the rows that were reset, because torchrl ignores the other rows."""
         mask = _reset_mask(self, tensordict, tensordict_reset)
         return self._corrupt(tensordict_reset, mask.nonzero().flatten().tolist())
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Return stored data of any batch shape with corrupted frames.
+        """Return stored data, of any batch shape, with corrupted frames.
 
-        The result is a new tensordict, because a buffer may return its storage. Other entries are
-        shared with the input.
+        The result is a new tensordict, because the input may be the storage of a replay buffer.
+        Entries other than frames are shared with the input.
 
         Raises:
             ValueError: The corruption is a temporal fault, or the depth may be normalised.
@@ -181,7 +183,7 @@ class CorruptObservation(Transform):
         return data
 
     def _uses_torch(self, stored: dict[str, torch.Tensor | None]) -> bool:
-        """Return whether the frames are corrupted on their device."""
+        """Return whether the frames are corrupted with torch on their device."""
         if isinstance(self.schedule, Corruption) and family(self.schedule.name):
             return False
         if self._backend is not None:
@@ -219,16 +221,16 @@ class CorruptObservation(Transform):
         return data
 
     def _draw(self, data: TensorDictBase) -> list[tuple[Corruption, Key]]:
-        """Return the corruption and the key of every time step, in row-major order."""
-        present = set(data.keys())  # a tensordict does not support `in`
+        """Return the corruption and the random key of every time step, in row-major order."""
+        present = set(data.keys())  # a set, because a tensordict does not support `in`
         missing = [name for name in (EPISODE, FRAME) if name not in present]
         if missing:
             raise ValueError(
-                f"The data must have {' and '.join(map(repr, missing))}, which key every random "
-                f"draw, got only {sorted(map(str, present))}. The environment must provide "
-                "'episode' (a string or int64 [1], unique to each run of an episode) and 'frame' "
-                "(int64 [1]), as ApartmentsEnv does. Otherwise put an EpisodeCounter() before "
-                "CorruptObservation."
+                f"The data must have {' and '.join(map(repr, missing))}, which determine the "
+                f"random numbers, got only {sorted(map(str, present))}. The environment must "
+                "provide 'episode' (a string or int64 [1], unique to each run of an episode) and "
+                "'frame' (int64 [1]), as ApartmentsEnv does. Otherwise put an EpisodeCounter() "
+                "before CorruptObservation."
             )
         instants = data.select(EPISODE, FRAME).cpu().reshape(-1).unbind(0)
         return [
@@ -238,21 +240,22 @@ class CorruptObservation(Transform):
 
 
 class EpisodeCounter(Transform):
-    """Adds ``episode`` and ``frame``, int64 [*batch, 1], to an environment that has neither.
+    """Add the entries ``episode`` and ``frame`` (int64 [*batch, 1]) to an environment that has
+    neither.
 
-    ``episode`` counts the runs of episodes, and ``frame`` counts the steps since the reset. Row i
-    of n parallel rows runs the episodes i, i + n, i + 2 n, ...; a reset advances only the rows of
-    its mask. Therefore the numbers of a row do not depend on the other rows.
+    ``episode`` counts the runs of episodes, and ``frame`` counts the steps since the reset. If the
+    batch has n rows, row i runs the episodes i, i + n, i + 2 * n and so on. A partial reset
+    advances only the rows in its mask, so the numbers of a row do not depend on the other rows.
 
     Args:
-        worker: Index of this environment among environments in separate processes; the rows of all
-            workers form one batch.
-        workers: Number of environments in separate processes. None means 1. A warning is given if
-            this process is a child process, because the environments of its siblings would get the
-            same corruptions.
+        worker: Index of this environment if environments run in several processes. The rows of all
+            processes are numbered as one batch.
+        workers: Number of processes that run environments. None means 1; a warning is then given in
+            a child process, because environments in its sibling processes would get the same
+            corruptions.
 
     Raises:
-        ValueError: ``worker`` is not in 0 ... workers - 1.
+        ValueError: ``worker`` is not between 0 and ``workers`` - 1.
     """
 
     def __init__(self, worker: int = 0, workers: int | None = None) -> None:
@@ -271,10 +274,10 @@ class EpisodeCounter(Transform):
             )
         super().__init__(in_keys=[], out_keys=[EPISODE, FRAME])
         self.worker, self.workers = worker, workers
-        self._resets: torch.Tensor | None = None  # number of resets of each row, int64 [rows]
+        self._resets: torch.Tensor | None = None  # int64 [rows], the number of resets of each row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
-        """Return the spec with the two entries added."""
+        """Return the spec, to which the two entries are added."""
         shape = (*self.parent.batch_size, 1)
         for name in self.out_keys:
             observation_spec[name] = Unbounded(
@@ -300,14 +303,18 @@ class EpisodeCounter(Transform):
         return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Raise RuntimeError, because stored data must contain the numbers from the environment."""
+        """Raise RuntimeError, because stored data must contain the numbers that the environment
+        had.
+        """
         raise RuntimeError("EpisodeCounter belongs in an environment, not in a replay buffer.")
 
 
 def _reset_mask(
     transform: Transform, tensordict: TensorDictBase | None, reset: TensorDictBase
 ) -> torch.Tensor:
-    """Return which rows of the flattened batch are being reset, bool [rows] on the CPU."""
+    """Return a bool mask [rows], on the CPU, of the rows of the flattened batch that are being
+    reset.
+    """
     parent = transform.parent
     name = "_reset" if parent is None else parent.reset_keys[0]
     mask = None if tensordict is None else tensordict.get(name, None)

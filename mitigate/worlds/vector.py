@@ -1,4 +1,4 @@
-"""Provide a wrapper for gymnasium vector environments whose observations are torch tensors.
+"""A wrapper for gymnasium vector environments whose observations are torch tensors.
 
 Needs gymnasium 1.1 or newer. For vector environments of numpy arrays, wrap each environment with
 ``mitigate.worlds.wrappers.CorruptObservation``.
@@ -30,33 +30,36 @@ from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
 class CorruptVectorObservation(VectorWrapper):
-    """Corrupt the frames of a vector environment on their device.
+    """Corrupt the frames of a vector environment on the device of the frames.
 
-    An observation is a mapping whose entries ``rgb`` and ``depth`` are tensors: uint8
-    [N, H, W, 3] or [N, V, H, W, 3], and float32 [N, H, W, 1] or [N, V, H, W, 1]. Other entries do
-    not change, and neither do the final observations in ``info``.
+    An observation is a mapping with tensors. The entry ``rgb`` is uint8 [N, H, W, 3] or [N, V, H,
+    W, 3], and the entry ``depth`` is float32 [N, H, W, 1] or [N, V, H, W, 1]. Other entries do not
+    change. The final observations in ``info`` do not change either.
 
-    Environment i of N runs the episodes i, i + N, i + 2 N, ..., so the numbers of one environment
-    do not depend on the others. They key every random number, as with ``EpisodeCounter`` of
-    ``mitigate.worlds.transforms``. A reset with a seed restarts them. A reset with
-    ``options={"reset_mask": mask}`` begins episodes in the rows of the mask only.
+    Environment i of N runs the episodes i, i + N, i + 2 * N and so on, so the episode numbers of
+    one environment do not depend on the others. The random numbers depend on the episode number, as
+    with ``EpisodeCounter`` of ``mitigate.worlds.transforms``. A reset with a seed restarts the
+    episode numbers. A reset with ``options={"reset_mask": mask}`` starts new episodes only in the
+    environments of the mask.
 
     Args:
         env: The vector environment.
-        schedule: The schedule that selects a corruption per frame, or one corruption for all
-            frames, which is not a fault.
+        schedule: A schedule that selects the corruption of each frame, or one corruption for all
+            frames. Faults are not supported.
         seed: Corruption seed.
-        rgb: Name of the RGB entry, which the observation need not contain.
-        depth: Name of the depth entry, which the observation need not contain.
-        sensor: Depth range, and value that marks missing depth.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
-        autoreset_mode: When an environment resets itself after the end of an episode. None reads
-            ``env.metadata["autoreset_mode"]``. ManiSkill and Isaac Lab use SAME_STEP.
+        rgb: Name of the RGB entry. Observations may lack this entry.
+        depth: Name of the depth entry. Observations may lack this entry.
+        sensor: Depth range, and the value that marks missing depth.
+        normalised: Whether depth is normalised to [0, 1] over the range of the sensor. If false,
+            depth is in metres.
+        autoreset_mode: The time at which an environment resets itself after the end of an episode.
+            If None, it is read from ``env.metadata["autoreset_mode"]``. ManiSkill and Isaac Lab use
+            SAME_STEP.
         backend: As in ``mitigate.corruptions.tensors.corrupt_tensors``.
 
     Raises:
-        ValueError: ``autoreset_mode`` is missing, the observation has no frames for a corruption,
-            or an error of ``corrupt_observations``.
+        ValueError: ``autoreset_mode`` is missing, the observation lacks the frames that a
+            corruption changes, or ``corrupt_observations`` raised this error.
     """
 
     def __init__(
@@ -145,5 +148,5 @@ class CorruptVectorObservation(VectorWrapper):
 
 
 def _on_host(mask: Any) -> Tensor:
-    """Return a mask of the environments, bool [N] on the CPU."""
+    """Return ``mask`` as a bool tensor [N] on the CPU, with one element per environment."""
     return torch.as_tensor(mask).cpu().bool()

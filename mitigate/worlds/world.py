@@ -1,8 +1,7 @@
-"""Define the interface of worlds, and a world that corrupts the frames of another world.
+"""The interface of worlds, and a world that corrupts the frames of another world.
 
-A world produces observations and measures episodes; it does not depend on any agent.
-``docs/bring-your-own.md``
-describes how to add a world.
+A world produces observations and computes the measures of episodes. It does not depend on any
+agent. ``docs/bring-your-own.md`` describes how to add a world.
 """
 
 from __future__ import annotations
@@ -33,20 +32,20 @@ from mitigate.corruptions.schedule import drawn
 from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
-MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median of an indoor depth frame is smaller
+MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median depth of an indoor frame is smaller
 
 
 class Expert:
-    """Base class of a shortest-path oracle for the current episode.
+    """Base class of experts, which know the shortest path to the goal of the current episode.
 
-    A subclass defines ``action`` for agents that act step by step, ``distance`` for agents that
-    plan, or both.
+    A subclass defines ``action``, ``distance`` or both. Agents that act step by step need
+    ``action``, and agents that plan need ``distance``.
     """
 
     def distance(self, xy: np.ndarray) -> float:
         """Return the length in metres of the shortest path from ``xy`` [2] to the nearest goal.
 
-        NaN if unknown.
+        Return NaN if the length is unknown.
         """
         return math.nan
 
@@ -55,9 +54,9 @@ class Expert:
         raise NotImplementedError(f"{type(self).__name__} defines no action()")
 
     def counts(self, metres: float) -> bool:
-        """Return whether STOP at this distance is a success.
+        """Return whether STOP at this distance from the goal is a success.
 
-        By default the result is true, and the agent's teacher decides where to stop.
+        The default implementation returns True. The agent's teacher then decides where to stop.
         """
         return True
 
@@ -65,23 +64,23 @@ class Expert:
 class World:
     """Base class of worlds, which have one agent and run one episode at a time.
 
-    A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``; all other
-    members have defaults. Objects of any other class also work: :func:`as_world` adds the missing
-    defaults.
+    A subclass defines ``reset``, ``step``, ``measures``, ``sensors`` and ``done``. All other
+    members have defaults. Objects that do not inherit from this class also work, because
+    :func:`as_world` adds the missing defaults.
 
-    If a class defines ``beside()``, which returns a second world of the same kind, several episodes
-    can run at the same time.
+    A class may define ``beside()``, which returns a second world of the same kind. Several episodes
+    can then run at the same time.
 
     Attributes:
-        sensors: Description of each entry of an observation. Frames to be corrupted must be named
-            "rgb" and "depth", and the pose "pose".
-        rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m"; part of
-            every row.
-        done: Whether the episode is over, after which no step is allowed.
-        action_space: Actions of the world (``core/spaces.py``); None means integers, where 0 is
-            STOP.
-        native: Function that converts frames by sensor to the environment's own observation, or
-            None.
+        sensors: Descriptions of the entries of an observation. Frames that are to be corrupted must
+            be named "rgb" and "depth", and the pose must be named "pose".
+        rule: The success rule of ``measures`` in words, such as "STOP and geodesic < 3 m". It is
+            part of every result row.
+        done: Whether the episode is over. If it is, ``step`` must not be called.
+        action_space: Actions of the world (``core/spaces.py``). If None, actions are integers, and
+            0 is STOP.
+        native: Function that converts a dict of frames to the environment's own observation format,
+            or None.
         draw: Function that draws a floor plan on Matplotlib axes, or None if there is no plan.
     """
 
@@ -93,9 +92,10 @@ class World:
     draw: Callable[[Any], None] | None = None
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode and return its first observation; frames are rendered when read.
+        """Start an episode and return its first observation. Its frames are rendered when they are
+        read.
 
-        The world may reuse the arrays, so copy them if you keep them.
+        The world may reuse the arrays of the observation, so copy them if you keep them.
 
         Raises:
             ValueError: The episode does not belong to this world.
@@ -107,11 +107,13 @@ class World:
         raise NotImplementedError(f"{type(self).__name__} defines no step(action)")
 
     def measures(self) -> dict[str, float]:
-        """Return the measures of the episode so far, at least ``success`` (0 or 1) and ``spl``."""
+        """Return the measures of the episode so far. ``success`` (0 or 1) and ``spl`` are
+        required.
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no measures()")
 
     def expert(self) -> Any:
-        """Return the oracle (:class:`Expert`) of the current episode, or None.
+        """Return the :class:`Expert` for the current episode, or None.
 
         In a world without an expert, agents can be evaluated but not trained by imitation.
         """
@@ -122,16 +124,19 @@ class World:
         return {}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
-        """Render the current instant with a displaced camera, for camera faults.
+        """Render what a displaced camera would see at the current pose. Camera faults use this
+        method.
 
         Returns:
-            The frames as in an observation, or None if the world cannot provide them. The frames of
-            the observation are then warped, which needs ``hfov`` of their sensors.
+            The frames, in the format of an observation. If the world cannot render them, return
+            None; camera faults then warp the frames of the observation, for which the sensors must
+            have ``hfov``.
         """
         return None
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context manager that caches frames between the conditions of an episode.
+        """Return a context manager in which frames are cached, so that several conditions of an
+        episode share them.
 
         The cache does not affect results.
         """
@@ -140,7 +145,8 @@ class World:
 
 @runtime_checkable
 class Placeable(Protocol):
-    """A world that can render from any pose, for pretraining without episodes.
+    """A world that can render from any pose, which allows training on random poses without
+    episodes.
 
     Attributes:
         scenes: Names of the training scenes.
@@ -162,17 +168,18 @@ class Placeable(Protocol):
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
         """Render from a pose.
 
-        A world that renders displaced cameras also takes ``mount``
-        (``corruptions/faults/camera.py``), for ``camera_share`` of ``training/poses.py``.
+        A world that can render displaced cameras also has the argument ``mount``
+        (``corruptions/faults/camera.py``). ``camera_share`` in ``training/poses.py`` requires it.
 
         Args:
-            xy: Plan position [2], metres.
-            heading: Radians, counter-clockwise.
-            views: Views that are needed; other views may be 0. None: all.
+            xy: Plan position [2] in metres.
+            heading: Heading in radians, counter-clockwise.
+            views: Indices of the views that are needed; other views may be 0. If None, all views
+                are needed.
             rgb: Whether RGB is needed.
 
         Returns:
-            Frames with the pose, and ground-truth labels.
+            The frames and the pose as one dict, and the ground-truth labels.
         """
 
 
@@ -181,11 +188,11 @@ class TrainingEpisodes(Protocol):
     """Source of training episodes."""
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
-        """Sample an episode, which depends only on the state of ``rng`` and on ``share``.
+        """Sample an episode. The result depends only on the state of ``rng`` and on ``share``.
 
         Args:
             rng: Random generator.
-            share: The pair (index of this worker, number of workers), by which a world may divide
+            share: The pair (index of this worker, number of workers). A world may use it to divide
                 its scenes among workers.
         """
 
@@ -196,13 +203,14 @@ OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space
 def as_world(world: Any) -> World:
     """Return ``world`` as a :class:`World`.
 
-    An object of another class is wrapped to add the missing defaults; the object is not changed.
+    An object of another class is wrapped, which adds the missing defaults. The object itself is not
+    changed.
     """
     return world if isinstance(world, World) else _WorldView(world)
 
 
 class WorldWrapper(World):
-    """Base class of worlds that change the observations of an inner world in ``_observe``."""
+    """Base class of worlds that wrap an inner world and change its observations in ``_observe``."""
 
     def __init__(self, world: Any) -> None:
         self.world = world
@@ -222,7 +230,7 @@ class WorldWrapper(World):
         return self._observe(self._inner.step(action))
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Take a step as in ``worlds/motion.py``, if the world has ``move``."""
+        """Take a step by calling ``move`` of the inner world (see ``worlds/motion.py``)."""
         return self._observe(self._inner.move(metres, degrees))  # type: ignore[attr-defined]
 
     def measures(self) -> dict[str, float]:
@@ -253,7 +261,7 @@ class WorldWrapper(World):
         return self._inner.draw
 
     def _observe(self, observation: Observation) -> Observation:
-        """Return the observation that the agent receives for an observation of the inner world."""
+        """Convert an observation of the inner world to the observation that the agent receives."""
         raise NotImplementedError
 
 
@@ -265,26 +273,28 @@ class _WorldView(World):
         take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
 
     def __getattr__(self, name: str) -> Any:
-        """Read rule, sensors and done from the object, because they change during an episode."""
+        """Read other attributes from the object at each access, because they may change during an
+        episode.
+        """
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self._world, name)
 
 
 class Corrupted(WorldWrapper):
-    """World whose frames are corrupted, by one corruption or by a schedule.
+    """World whose frames are corrupted by one corruption, or by the corruptions that a schedule
+    selects.
 
-    Random numbers are keyed by seed, name, and index of the frame among those that were read. An
-    observation whose frames are never read is not counted. With a temporal fault it is the index
-    of the step, and the frames are rendered at every step if a later step may show them.
-    ``observation.clean`` is the clean observation. Instructions are corrupted in
-    ``evaluation/episode.py`` instead.
+    Random numbers depend on the seed, the name, and the index of the frame. The index counts only
+    frames that were read. With a temporal fault, the index is the number of the step, and frames
+    are rendered at every step if a later step may show them. ``observation.clean`` is the clean
+    observation. Instructions are corrupted in ``evaluation/episode.py`` instead.
 
     Args:
         world: The world.
-        by: The corruption, or the schedule that selects one per frame.
+        by: The corruption, or a schedule that selects a corruption for each frame.
         seed: Corruption seed.
-        name: Name of the episode in the keys; None means its id.
+        name: Name of the episode in the random keys. The default is the episode id.
     """
 
     def __init__(
@@ -295,7 +305,8 @@ class Corrupted(WorldWrapper):
         self.seed = seed
         self.name = name
         self.frames_read = 0
-        self.last: dict[str, np.ndarray] | None = None  # the corrupted frames that were read last
+        # the corrupted frames of the last observation that was read
+        self.last: dict[str, np.ndarray] | None = None
         self._timed = isinstance(by, Corruption) and is_timed(by)
         self._shows_past = isinstance(by, Corruption) and shows_past(by)
         self._steps = 0
@@ -342,9 +353,9 @@ class Corrupted(WorldWrapper):
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
     def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
-        """Return the observation rendered with the camera fault, or None if there is no fault.
+        """Return the observation as rendered with the camera fault.
 
-        None also if the world cannot render it.
+        Return None if there is no camera fault or if the world cannot render it.
         """
         mount = mount_of(self.by, key) if isinstance(self.by, Corruption) else None
         frames = None if mount is None else self._inner.displaced(mount)
@@ -352,7 +363,7 @@ class Corrupted(WorldWrapper):
 
 
 def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
-    """Return the depth range of a world's depth sensor, and its value for missing depth.
+    """Return the range of a world's depth sensor, and the value that marks missing depth.
 
     An unlimited range is replaced by the range of R2R-CE.
     """
@@ -382,11 +393,13 @@ def expert_of(world: World) -> Expert:
 
 
 def greedy_action(heading: float, distance_after: Callable[[float], float]) -> int:
-    """Return FORWARD, or the turn towards the heading whose next step ends nearest to the goal.
+    """Find the heading in which a step forward ends nearest to the goal. Return FORWARD if the
+    agent has this heading, and otherwise the turn towards it.
 
     Args:
         heading: Heading of the agent in radians.
-        distance_after: Function that returns the distance to the goal after a step along a heading.
+        distance_after: Function that takes a heading and returns the distance to the goal after a
+            step in that direction.
     """
     turns = sorted(range(-12, 13), key=abs)
     headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
@@ -402,12 +415,12 @@ class _ExpertView(Expert):
 
 
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
-    """Check that depth values are plausible metres.
+    """Check that depth values are plausible if they are in metres.
 
     Args:
-        depth: float32 of any shape, in which 0 means missing.
-        name: Name of the depth in the message.
-        fix: The end of the message, with advice for the user.
+        depth: Depth as float32 of any shape, where 0 means missing.
+        name: Name of the depth data in the error message.
+        fix: Last part of the error message, which contains advice for the user.
 
     Raises:
         ValueError: The median depth is above ``MAX_MEDIAN_DEPTH``.

@@ -1,4 +1,4 @@
-"""Provide a gymnasium wrapper that corrupts RGB, depth and dictionary observations.
+"""A gymnasium wrapper that corrupts RGB, depth and dictionary observations.
 
 Needs the extra ``gymnasium``.
 """
@@ -35,43 +35,45 @@ FORMATS = "uint8 [(V,) H, W, 3] for RGB, or float32 [H, W] or [(V,) H, W, 1] for
 
 
 class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordConstructorArgs):
-    """Wrapper that corrupts the frames of an environment by a schedule, keyed by seed, episode and
-    frame.
+    """Wrapper that corrupts the frames of an environment as a schedule selects. Random numbers
+    depend only on the seed, the episode and the frame number.
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
     (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that contains one or both.
-    Spaces, dtypes, order and all other entries do not change. Apply this wrapper before frames are
-    stacked, transposed or converted to float. In a vector environment, wrap each environment
-    separately.
+    The wrapper does not change spaces, dtypes, the order of entries, or other entries. Apply this
+    wrapper before frames are stacked, transposed or converted to float. In a vector environment,
+    wrap each environment separately.
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
-    "n-1", ... ``frame`` is the number of steps since the reset. The pixels are a function of
-    (schedule, seed, reset seed, resets, steps) only, and under a temporal fault of the earlier
-    frames of the episode. Without a seed, the names contain a random part, as gymnasium draws a
-    random seed, so that the environments of a vector environment get different corruptions. An
-    environment that resets itself, as in ``gymnasium.wrappers.Autoreset``, resets in the step after
-    the end of an episode.
+    "n-1", ... ``frame`` is the number of steps since the reset. The corruption of a frame depends
+    only on (schedule, seed, reset seed, resets, steps). Under a temporal fault, it also depends on
+    earlier frames of the episode. If the first reset has no seed, the names contain a random part,
+    so that the environments of a vector environment get different corruptions. If an environment
+    resets itself, as with ``gymnasium.wrappers.Autoreset``, the step after the end of an episode is
+    treated as the reset.
 
     Args:
         env: The environment.
-        schedule: The schedule that selects a corruption per frame, or one corruption for all
+        schedule: A schedule that selects the corruption of each frame, or one corruption for all
             frames.
         seed: Corruption seed.
-        rgb: Name of the RGB entry of a ``Dict``.
-        depth: Name of the depth entry of a ``Dict``.
+        rgb: Name of the RGB entry if the observation is a ``Dict``.
+        depth: Name of the depth entry if the observation is a ``Dict``.
         pose: Name of a float entry of shape [3] with x, y and heading (radians, counter-clockwise).
-            The pose keeps a flare at its position in the world. None if there is no pose.
-        sensor: Depth range, and value that marks missing depth.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
-        hfov: Horizontal field of view of the cameras in degrees, which camera faults need.
+            With a pose, a lens flare keeps its direction in the world when the agent turns. None
+            means that there is no pose.
+        sensor: Depth range, and the value that marks missing depth.
+        normalised: Whether depth is normalised to [0, 1] over the range of the sensor. If false,
+            depth is in metres.
+        hfov: Horizontal field of view of the cameras in degrees. Camera faults require it.
 
     Attributes:
         corruption: Corruption of the last frame.
-        key: Key of the last frame.
+        key: Random key of the last frame.
 
     Raises:
-        ValueError: The space has no such frames, the schedule contains a corruption for a modality
-            that the space lacks, or the range of the sensor exceeds the bounds of the space.
+        ValueError: The observation space has no such frames, or lacks the modality of a corruption
+            in the schedule, or its bounds are smaller than the range of the depth sensor.
     """
 
     def __init__(
@@ -109,7 +111,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._over = False
         degrees = dict.fromkeys((RGB, DEPTH), hfov)
         self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
-        # modality of an observation that is a single frame
+        # modality of the observation if it is a single frame
         self._whole = _modality(env.observation_space)
         self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
         if self._whole is not None:
@@ -119,7 +121,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start the next episode; a new seed restarts the count of episodes."""
+        """Start the next episode. A new seed restarts the count of episodes."""
         if seed is not None:
             self._source = str(seed)
             self._resets = 0
@@ -131,7 +133,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
         """Step the environment and corrupt the observation.
 
-        A step after the end of an episode counts as a reset, because the environment has reset
+        The step after the end of an episode counts as a reset, because the environment then resets
         itself.
 
         Raises:
@@ -140,8 +142,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:
             raise gymnasium.error.ResetNeeded(
-                "reset() must be called before step(): it names the episode, which keys every "
-                "random draw."
+                "reset() must be called before step(): the reset names the episode, and the name "
+                "determines the random numbers."
             )
         if self._over:
             self._begin()
@@ -157,7 +159,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self._over = False
 
     def observation(self, observation: Any) -> Any:
-        """Return the corrupted observation of the current frame; the argument is not modified."""
+        """Return a corrupted copy of the observation."""
         self.corruption, self.key = drawn(self.schedule, self.seed, self._episode, self._frame)
         parts = observation if self._whole is None else {self._whole: observation}
         frames = {name: parts[entry] for name, entry in self._entries.items() if entry in parts}
@@ -175,7 +177,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
             raise ValueError(
                 f"pose must be an entry of the observation ({', '.join(spaces)}), got "
                 f"{self._entries[POSE]!r}. Name the entry with x, y and heading, or pass "
-                "pose=None, which keeps the flare at its place in the image."
+                "pose=None, which keeps a lens flare at its place in the image."
             )
         boxes.pop(POSE, None)
         if not boxes or any(_modality(box) != name for name, box in boxes.items()):
@@ -208,7 +210,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
 
 
 def _modality(space: gymnasium.Space) -> str | None:
-    """Return the modality of a space of frames, or None if it has a different format."""
+    """Return the modality of the frames in a space. Return None if the space has another format."""
     if not isinstance(space, gymnasium.spaces.Box):
         return None
     views = len(space.shape) in (3, 4)

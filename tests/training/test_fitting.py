@@ -87,7 +87,7 @@ def test_plan_warns_about_an_unused_schedule(recipe, capsys):
     plan.warn_unused_schedule(load(f"recipe={recipe}"))
     assert not capsys.readouterr().out
     plan.warn_unused_schedule(load(f"recipe={recipe}", "schedule=per_episode"))
-    assert f"has no effect: recipe={recipe} draws no corruptions" in capsys.readouterr().out
+    assert f"has no effect: recipe={recipe} samples no corruptions" in capsys.readouterr().out
     plan.warn_unused_schedule(load(f"recipe={recipe}", "experiment=broad"))
     assert "(mode clean) has no effect" in capsys.readouterr().out
 
@@ -269,8 +269,8 @@ def test_check_stages_does_not_change_the_agent(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("recipe", "agent", "count", "words"),
     [
-        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece, too few for 2"),
-        ("da_per_episode", "topological", 3, "stage perception_depth .* has 2 pieces, .*NPROC=2"),
+        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece of work, too few"),
+        ("da_per_episode", "topological", 3, "perception_depth .* has 2 pieces of work.*NPROC=2"),
         ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
     ],
 )

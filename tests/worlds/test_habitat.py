@@ -84,7 +84,7 @@ def test_corrupt_habitat_explains_invalid_observations(obs):
         ({"rgb_360": obs["rgb"]}, "below 360, got 'rgb_360'"),
         (small, "same dtype and shape, but 'rgb' is uint8.*'rgb_60'"),
         ({"depth": obs["depth"]}, r"has no camera named rgb.*its entries are \['depth'\]"),
-        ({"rgb": obs["rgb"][None]}, "one instant of one environment"),
+        ({"rgb": obs["rgb"][None]}, "one time step of one environment"),
         ({"rgb": obs["rgb"] / np.float32(255)}, "RGB frames must be uint8"),
     ):
         with pytest.raises(ValueError, match=part):

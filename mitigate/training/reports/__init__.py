@@ -1,1 +1,1 @@
-"""Reports at the end of training, which measure the model before and after."""
+"""Reports at the end of training, which compare the model before and after training."""

@@ -31,7 +31,7 @@ from mitigate.training.plan import IDENTITY
 
 BEFORE, AFTER = "before", "after"
 MEAN = "mean over corruptions"
-EACH = 12  # frames per episode of evaluation.episodes: as many as a panorama has views
+EACH = 12  # frames per evaluated episode, equal to the number of views of a panorama
 MOST_TRAIN = 2400  # number of frames for fitting the probe (heuristic)
 MEASURES = {
     "cosine": "centred cosine to the clean features",
@@ -42,16 +42,16 @@ Scores = dict[tuple[str, str, str], Score]
 
 
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write how well features are preserved under each corruption, before and after
-    training.
+    """Print and write how similar features under each corruption are to clean features, before and
+    after training.
 
-    There are 12 frames for each of ``evaluation.episodes``, but at most as many as in training,
-    from the scenes of ``evaluation.split``. The conditions are the suite's corruptions of this
-    sensor.
+    The frames come from the scenes of ``evaluation.split``. Their number is 12 times
+    ``evaluation.episodes``, but at most the number of training frames. The conditions are the
+    suite's corruptions of this sensor.
 
     Args:
         config: options of the training run.
-        base: the encoder from which training started, if ``init`` was set.
+        base: the encoder from which training started if ``init`` was set, or None.
         trained: the trained encoder. If it has adapters, "before" means its original weights.
         folder: folder of the run.
     """
@@ -73,7 +73,9 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
-    """Return the encoder as before training; raise ValueError if it cannot be rebuilt."""
+    """Return the encoder with its weights before training; raise ValueError if it cannot be
+    rebuilt.
+    """
     encoder = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
     stage = next(iter(config.active_stages))
     identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
@@ -89,7 +91,9 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return frames for fitting the probe and its centre, and unseen frames."""
+    """Return two sets of frames: training frames, which fit the probe and give the mean features,
+    and unseen frames for the measurement.
+    """
     recipe = next(iter(config.active_stages.values())).recipe
     frames = recipe["frames"]
     quick = config.evaluation
@@ -104,7 +108,8 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
     """Return the clean condition and the suite's corruptions of ``sensor``.
 
-    If the suite has no corruption of the sensor, all corruptions of the sensor are returned.
+    If the suite contains no corruption of the sensor, return all registered corruptions of the
+    sensor.
     """
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
@@ -141,9 +146,11 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
-    """Return one row per measure and condition: before, after and the difference.
+    """Return one row per measure and condition, with the values before and after training and their
+    difference.
 
-    Each entry is [value, low, high], where null means that there is no interval.
+    Each entry is [value, lower bound, upper bound]; the bounds are null if there is no confidence
+    interval.
     """
     records = []
     for condition, what in _cells(scores):
@@ -186,7 +193,9 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Draw bars for before and after by condition, with one panel per measure."""
+    """Draw a bar chart with one panel per measure; each condition has a bar for before and one for
+    after training.
+    """
     measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
     figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")
     for axis, what in zip(

@@ -1,10 +1,10 @@
-"""Measure a restorer's errors and its gate on frames of unseen scenes.
+"""Measure the errors of a restorer, and how often its gate restores, on frames of unseen scenes.
 
     python -m mitigate.training.reports.restorer checkpoints/restorer --suite unseen_val
 
-Errors are means over pixels: RGB errors are in levels of 255, depth errors in centimetres. A pixel
-is correct if its error is below ``TOLERANCE`` of the range. `python -m mitigate.evaluate
-restore=FOLDER` measures the success of an agent with the restorer.
+Errors are means over pixels. RGB errors are in 8-bit grey levels (0 to 255), and depth errors are
+in centimetres. A pixel is correct if its error is below ``TOLERANCE`` times the range of values.
+`python -m mitigate.evaluate restore=FOLDER` measures the success of an agent with the restorer.
 """
 
 from __future__ import annotations
@@ -42,15 +42,17 @@ from mitigate.training.config import TrainConfig
 from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import depth_sensor
 
-UNITS = {RGB: 1.0, DEPTH: 100.0}  # errors are shown in grey levels (RGB) and centimetres (depth)
+# factors that convert errors to grey levels (RGB) and centimetres (depth)
+UNITS = {RGB: 1.0, DEPTH: 100.0}
 SHOWN = (0, 1, 2)  # indices of the views that the picture shows
-SIDE, LABEL = 96, 130  # size in pixels of a view in the picture, and of the names next to it
-GAP, HEAD = 6, 20  # size in pixels of gaps between blocks, and of their headings
+# width in pixels of a view in the picture, and of the column of names next to the views
+SIDE, LABEL = 96, 130
+GAP, HEAD = 6, 20  # height in pixels of the gaps between blocks, and of the block headings
 
 
 class Score(NamedTuple):
-    """Mean errors and fractions of correct pixels before and after, and the fraction of restored
-    time steps.
+    """Mean errors and fractions of correct pixels before and after restoration, and the fraction of
+    time steps that the restorer changed.
     """
 
     before: Estimate
@@ -61,7 +63,7 @@ class Score(NamedTuple):
 
 
 class Instants(NamedTuple):
-    """Clean observations, with the properties of their depth sensor."""
+    """Clean observations, and the properties of their depth sensor."""
 
     clean: list[dict[str, np.ndarray]]
     depth: DepthSensor = SENSOR
@@ -75,10 +77,11 @@ class Instants(NamedTuple):
 
 
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
-    """Measure a trained restorer; print and write ``restoration.md`` and ``restoration.jpg``.
+    """Measure a trained restorer, print the results, and write ``restoration.md`` and
+    ``restoration.jpg``.
 
     The restorer is measured on ``evaluation.episodes`` random time steps of unseen scenes, under
-    the conditions of the suite. ``base`` is not used: "before" means without a restorer.
+    the conditions of the suite. ``base`` is not used, because "before" means without a restorer.
     """
     assert isinstance(trained, Restorer)
     quick = config.evaluation
@@ -88,7 +91,8 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) -> Instants:
-    """Return ``count`` clean observations: random poses in scenes of ``env``, or unseen frames.
+    """Return ``count`` clean observations, from random poses in scenes of ``env`` or from unseen
+    frames.
 
     Raises ValueError for an unknown split.
     """
@@ -115,7 +119,7 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
 def measure(
     restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
-    """Return scores by sensor and condition; each corruption is scored for the sensor that it
+    """Return scores by sensor and condition. A corruption is scored only for the sensors that it
     changes.
     """
     scores: dict[tuple[str, str], Score] = {}
@@ -141,7 +145,7 @@ def measure(
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
-    """Return each valid pixel's error as a fraction of the range ``far``, averaged over colours.
+    """Return the error of each valid pixel as a fraction of ``far``, averaged over colour channels.
 
     If the clean frame has no valid pixel, the result is [0].
     """
@@ -178,10 +182,12 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views (corrupted, restored, clean) of the time step with the greatest depth.
+    """Draw three views of one time step in their corrupted, restored and clean versions. The time
+    step is the one whose drawn views show the least of near walls (:func:`_far`).
 
     Returns:
-        uint8 RGB with one row per corruption; None if no corruption applies to the sensors.
+        A uint8 RGB picture with one row per corruption, or None if no corruption applies to the
+        sensors.
     """
     number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
     clean = seen.clean[number]
@@ -202,8 +208,8 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the minimum over the drawn views of their mean depth, because near walls show
-    little.
+    """Return the smallest mean depth of the drawn views. If it is small, a view mostly shows a near
+    wall.
     """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
@@ -237,7 +243,7 @@ def write(
     folder: Path,
     about: str,
 ) -> None:
-    """Measure, print, and write table and picture into ``folder``.
+    """Measure the restorer, print the results, and write a table and a picture into ``folder``.
 
     There is no picture if no frame is corrupted.
     """

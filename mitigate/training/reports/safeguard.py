@@ -2,8 +2,9 @@
 
     python -m mitigate.training.reports.safeguard classifier lora --texts FILE --out report
 
-Every instruction is corrupted by every family, repaired, and compared with the original. A name
-that ends in ``-alone`` means the language model without classifier and gate.
+Every instruction is corrupted by every family of corruptions, repaired, and compared with the
+original. A name that ends in ``-alone`` selects the language model without the classifier and the
+gate.
 """
 
 from __future__ import annotations
@@ -37,14 +38,17 @@ from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
 ALONE = "-alone"
-GOLDEN = (5**0.5 - 1) / 2  # step with which any number of texts is spread evenly
+# step of the golden-ratio sequence, which spreads any number of texts evenly
+GOLDEN = (5**0.5 - 1) / 2
 Repairer = Callable[[list[str]], list[str]]
 
 
 def corrupted(
     texts: Sequence[str], families: Iterable[str], severity: float, split: str, seed: int = 0
 ) -> list[Repair]:
-    """Return every text under every family, without repair (``repaired`` equals ``heard``)."""
+    """Corrupt every text with every family, and return the results without repair (``repaired``
+    equals ``heard``).
+    """
     repairs = []
     for family in families:
         for index, clean in enumerate(texts):
@@ -58,14 +62,16 @@ def corrupted(
 
 
 def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
-    """Return ``repairs`` with the texts repaired by ``repairer``."""
+    """Return a copy of ``repairs`` in which ``repairer`` has repaired the texts."""
     heard = list(dict.fromkeys(r.heard for r in repairs))
     answers = dict(zip(heard, repairer(heard), strict=True))
     return [Repair(r.family, r.clean, r.heard, answers[r.heard], r.injected) for r in repairs]
 
 
 def alone(rewriter: Rewriter) -> Repairer:
-    """Return a language model as a repairer, without classifier and gate."""
+    """Return a function that repairs instructions with a language model, without the classifier and
+    the gate.
+    """
 
     def repair(texts: list[str]) -> list[str]:
         parts = [passages(text) for text in texts]
@@ -79,12 +85,12 @@ def alone(rewriter: Rewriter) -> Repairer:
 
 
 def guarded(safeguard: Safeguard) -> Repairer:
-    """Return a safeguard as a function that repairs an instruction."""
+    """Return a function that repairs instructions with a safeguard."""
     return lambda texts: [decision.text for decision in safeguard.canonicalise_all(texts)]
 
 
 def choose(name: str) -> Repairer:
-    """Return the repairer for a name on the command line."""
+    """Return the repair function for a name that was given on the command line."""
     if name == "none":
         return list
     check_choice(name)
@@ -99,11 +105,11 @@ def choose(name: str) -> Repairer:
 def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
     """Print and write text metrics of a language model before and after fine-tuning.
 
-    They are compared with the metrics of the classifier, and of the text without a safeguard.
-    ``cfg`` is the config of the training run. Each of the first ``evaluation.episodes``
-    instructions of ``evaluation.split`` is corrupted by one family; attacks are from the test
-    split. ``before`` is not used: the model before fine-tuning is the trained model without its
-    adapter, with a prompt.
+    For comparison, also report the metrics of the classifier and the metrics without a safeguard.
+    ``cfg`` is the config of the training run. The first ``evaluation.episodes`` instructions of
+    ``evaluation.split`` are used, and each is corrupted by one family of corruptions. The attacks
+    come from the test split. ``before`` is not used. The model before fine-tuning is obtained by
+    removing the adapter of the trained model and adding a prompt.
     """
     quick = cfg.evaluation
     listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
@@ -161,7 +167,7 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
 
 
 def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
-    """Return ``count`` randomly chosen repairs (by ``seed``) as a Markdown list."""
+    """Return ``count`` repairs as a Markdown list; ``seed`` determines the random choice."""
     order = generator(seed, "examples").permutation(len(repairs))[:count]
     chosen = [repairs[i] for i in sorted(order)]
     return "\n".join(
@@ -172,7 +178,7 @@ def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
 
 
 def read_lines(path: str, count: int | None) -> list[str]:
-    """Return the instructions of an episode file, or of a text file with one per line."""
+    """Return the instructions of an episode file, or the lines of a text file."""
     if path.endswith((".json", ".json.gz")):
         return read_texts([path])[:count]
     with open_text(path) as file:
@@ -181,7 +187,9 @@ def read_lines(path: str, count: int | None) -> list[str]:
 
 
 def voices(split: str, count: int | None) -> list[Repair]:
-    """Return hand-written texts of a split, spread over the styles; each style forms a family."""
+    """Return hand-written texts of a split, evenly spread over the styles. Each style is one
+    family.
+    """
     texts = spoken(split)
     chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
     sample = [texts[i] for i in sorted(chosen)]

@@ -1,1 +1,3 @@
-"""Procedural apartments, rendered in software by Panda3D: layouts, episodes, simulator."""
+"""Procedurally generated apartments: layouts, episodes and a simulator that renders on the CPU with
+Panda3D.
+"""

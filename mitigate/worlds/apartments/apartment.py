@@ -1,4 +1,6 @@
-"""Generate an apartment from a seed: rooms, furniture, faces to draw and free space."""
+"""Generate the rooms, the furniture, the surfaces and the free space of an apartment from a
+seed.
+"""
 
 from __future__ import annotations
 
@@ -28,7 +30,7 @@ _ATTEMPTS = 60
 
 
 class Apartment:
-    """The rooms, doors and furniture of one seed, whose range determines the split."""
+    """The rooms, doors and furniture of one apartment. Its seed determines the split."""
 
     def __init__(self, seed: int) -> None:
         self.seed, self.split = int(seed), split_of(int(seed))
@@ -67,7 +69,9 @@ class Apartment:
         return FaceBuilder(self).build()
 
     def _walkable(self) -> bool:
-        """Return whether the largest free component reaches all doors, all rooms and most cells."""
+        """Return whether the largest connected free area contains all doors, parts of all rooms and
+        most free cells.
+        """
         cells = [self.space.index[int(d.y / CELL), int(d.x / CELL)] for d in self.doors]
         reached = {self.room_at(self.space.centre(c)) for c in range(0, len(self.space.cells), 7)}
         return min(cells) >= 0 and self.space.share > 0.8 and len(reached) == len(self.rooms)
@@ -96,14 +100,13 @@ class Apartment:
 def apartment_of(scene_id: str) -> Apartment:
     """Return the apartment of a scene id "apartments/<split>/<seed>".
 
-    Raises ValueError for other ids, and for a seed that belongs to a different split.
+    Raises ValueError if the id has another form, or if its seed belongs to a different split.
     """
     parts = scene_id.split("/")
     if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():
         raise ValueError(
             f"Scene {scene_id!r} is not an apartment; expected 'apartments/<split>/<seed>'. "
-            "Episodes of Matterport3D scans need the Habitat simulator, which this environment is "
-            "not."
+            "Episodes of Matterport3D scans need the Habitat simulator."
         )
     apartment = Apartment(int(parts[2]))
     if apartment.split != parts[1]:

@@ -1,4 +1,4 @@
-"""Draw the plan of an apartment."""
+"""Draw the floor plan of an apartment."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _ROOMS = {
     "dining room": "#faf6da",
 }
 
-STEPS = 17  # number of places for a room's name from one wall to the opposite one
+STEPS = 17  # number of candidate positions of a room's name between two opposite walls
 NAME_WIDTH = 1.6  # approximate width of a room's name in metres
 
 
@@ -53,7 +53,7 @@ def _draw_room(axes: Any, room: Any, furniture: Sequence[Any]) -> None:
 def _free_place(
     rect: tuple[float, float, float, float], furniture: Sequence[Any]
 ) -> tuple[float, float]:
-    """Return the place for a room's name that is farthest from the furniture (metres)."""
+    """Return the position (in metres) at which a room's name is farthest from the furniture."""
     x0, y0, x1, y1 = rect
     places = [
         (x, y)
@@ -64,7 +64,7 @@ def _free_place(
 
 
 def _gap(place: tuple[float, float], rect: tuple[float, float, float, float]) -> float:
-    """Return the distance from the name at ``place`` to a piece of furniture (metres)."""
+    """Return the distance in metres between a room's name at ``place`` and a piece of furniture."""
     x0, y0, x1, y1 = rect
     across = max(x0 - place[0], place[0] - x1, 0.0)
     along = max(y0 - place[1], place[1] - y1, 0.0)

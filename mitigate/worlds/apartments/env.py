@@ -16,16 +16,16 @@ class ApartmentsEnv(WorldEnv):
     """Vision-and-language navigation in apartments: a ``WorldEnv`` of ``ApartmentsWorld``.
 
     Args:
-        episodes: a VLN-CE file or a list of episodes, which repeat in order. If None, training
-            episodes are generated from ``seed``.
+        episodes: a VLN-CE file or a list of episodes. The episodes repeat in order. If None,
+            training episodes are generated from ``seed``.
         seed, worker, workers: see ``WorldEnv``.
-        apartments: number of training layouts for generated episodes.
+        apartments: number of training apartments from which episodes are generated.
         ogn_share: fraction of object-goal episodes among generated episodes.
         size: side of a square view in pixels.
 
     Raises:
-        ValueError: An error of ``WorldEnv``, or (at reset) the scene of the episode is not an
-            apartment.
+        ValueError: An argument is invalid (see ``WorldEnv``), or the scene of an episode is not an
+            apartment. The scene is checked at reset.
     """
 
     key = "apartments env"
@@ -53,5 +53,5 @@ class ApartmentsEnv(WorldEnv):
 
     @property
     def simulator(self) -> Simulator:
-        """The simulator of the current episode, which is created at first use."""
+        """The simulator that runs the episodes. It is created at first use."""
         return self.world.simulator

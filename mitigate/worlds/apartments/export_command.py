@@ -1,4 +1,4 @@
-"""Write apartments for Habitat.
+"""Export apartments and their episodes for Habitat.
 
   mitigate export_scene OUT split=val_unseen scenes=3
 
@@ -51,8 +51,9 @@ from mitigate.worlds.apartments.tasks import (
 from mitigate.worlds.episodes import Episode, to_json
 
 TRAIN = 100  # default number of apartments for the train split (heuristic)
-PER_APARTMENT = 10  # number of episodes per apartment in the lists
-NAVMESH = {  # habitat_sim.NavMeshSettings; the agent is placed cell_height above the floor
+PER_APARTMENT = 10  # number of episodes per apartment in the episode lists
+# arguments of habitat_sim.NavMeshSettings; Habitat places the agent cell_height above the floor
+NAVMESH = {
     "agent_radius": RADIUS,
     "agent_height": 1.5,
     "agent_max_climb": 0.05,
@@ -62,7 +63,7 @@ NAVMESH = {  # habitat_sim.NavMeshSettings; the agent is placed cell_height abov
     "camera_height": EYE,
 }
 PAD, UNKNOWN = "<pad>", "<unk>"
-TOKENS = 200  # padded number of tokens per instruction, as in R2R-CE's files
+TOKENS = 200  # number of tokens per instruction after padding, as in the files of R2R-CE
 DEFAULTS = {"split": "val_unseen", "scenes": "null", "task": "both"}
 ALLOWED = {"split": SPLITS, "task": ("vln", "ogn", "both")}
 
@@ -82,8 +83,8 @@ def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> l
 
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
-    """Return the shipped episodes of the first ``scenes`` apartments, or generate them for
-    train.
+    """Return the episodes of the first ``scenes`` apartments. Validation episodes are read from the
+    shipped lists, and training episodes are generated.
     """
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
@@ -93,7 +94,9 @@ def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
 
 
 def write_vln(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes in R2R-CE's format, with tokens of the vocabulary in the file."""
+    """Write episodes in the format of R2R-CE. The file also contains the vocabulary that defines
+    the tokens.
+    """
     words = sorted({w for e in episodes for w in _words(e.instruction.text)})
     vocabulary = [PAD, UNKNOWN, *words]
     numbers = {word: number for number, word in enumerate(vocabulary)}
@@ -127,7 +130,9 @@ def _words(text: str) -> list[str]:
 
 
 def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes in HM3D's ObjectNav format: one file per scene and an empty list."""
+    """Write episodes in the ObjectNav format of HM3D: one file per scene, and an index file without
+    episodes.
+    """
     ids = {category: number for number, category in enumerate(CATEGORIES)}
     category_ids = {
         "category_to_task_category_id": ids,
@@ -161,7 +166,9 @@ def _objectnav(episode: Episode) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """Return all objects of a category, with the free cells next to each object as view points."""
+    """Return all objects of a category. The view points of an object are the free cells next to
+    it.
+    """
     apartment = apartment_of(episode.scene_id)
     goals = []
     for thing in landmarks(episode):
@@ -207,15 +214,17 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 MAGIC, VERSION = b"glTF", 2
-FLOAT, BYTE, INT = 5126, 5121, 5125  # component types
-VERTICES, INDICES = 34962, 34963  # buffer view targets
-# the nearest pixel, and repeated textures
+FLOAT, BYTE, INT = 5126, 5121, 5125  # component types of glTF accessors
+VERTICES, INDICES = 34962, 34963  # targets of glTF buffer views
+# sample the nearest pixel, and repeat textures
 SAMPLER = {"magFilter": 9728, "minFilter": 9728, "wrapS": 10497, "wrapT": 10497}
 _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)
 
 
 class _Buffer:
-    """Collect binary parts, aligned to 4 bytes, with their views and accessors."""
+    """Collect the binary data of a glTF file, aligned to 4 bytes, and its buffer views and
+    accessors.
+    """
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -223,7 +232,7 @@ class _Buffer:
         self.accessors: list[dict[str, Any]] = []
 
     def view(self, data: bytes, target: int | None = None) -> int:
-        """Add bytes, and return the index of their buffer view."""
+        """Add bytes to the binary data, and return the index of their glTF buffer view."""
         self.data += b"\0" * (-len(self.data) % 4)
         view = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)}
         self.views.append(view if target is None else {**view, "target": target})
@@ -231,7 +240,7 @@ class _Buffer:
         return len(self.views) - 1
 
     def accessor(self, array: np.ndarray, kind: str, component: int, **more: Any) -> int:
-        """Add an array [n, ...], and return the index of its accessor."""
+        """Add an array of shape [n, ...], and return the index of its glTF accessor."""
         target = INDICES if kind == "SCALAR" else VERTICES
         view = self.view(np.ascontiguousarray(array).tobytes(), target)
         entry = {"bufferView": view, "componentType": component, "count": len(array), "type": kind}
@@ -242,9 +251,10 @@ class _Buffer:
 def glb(faces: Faces) -> bytes:
     """Return the bytes of a GLB file (glTF 2.0, Khronos) with all faces of an apartment.
 
-    Coordinates are plan coordinates, with z up. Habitat expects these coordinates in a stage file
-    without a config, and converts them to VLN-CE's frame. Materials are unlit (KHR_materials_unlit)
-    and textures are not filtered, so that other renderers show the same colours.
+    Coordinates are plan coordinates, with z up. Habitat expects these coordinates in a scene file
+    that has no config, and converts them to the coordinate frame of VLN-CE. Materials are unlit
+    (KHR_materials_unlit) and textures are not filtered, so that other renderers show the same
+    colours.
     """
     buffer = _Buffer()
     used = [k for k in range(len(PATTERNS)) if (faces.pattern == k).any()]
@@ -290,13 +300,13 @@ def _material(name: str, number: int) -> dict[str, Any]:
 
 
 def _primitive(buffer: _Buffer, faces: Faces, chosen: np.ndarray) -> dict[str, Any]:
-    """Add the triangles of the chosen faces, and return their glTF primitive."""
+    """Add the triangles of the chosen faces, and return a glTF primitive that refers to them."""
     corners = faces.corners[chosen].reshape(-1, 3).astype(np.float32)
     count = int(chosen.sum())
     colours = np.full((4 * count, 4), 255, np.uint8)
     colours[:, :3] = np.rint(faces.colour[chosen].reshape(-1, 3) * 255)
     uv = texture_coordinates(faces, np.flatnonzero(chosen))
-    uv[:, 1] = 1 - uv[:, 1]  # in glTF, texture rows begin at the top
+    uv[:, 1] = 1 - uv[:, 1]  # glTF stores texture rows from top to bottom
     triangles = (4 * np.arange(count, dtype=np.uint32)[:, None] + _TRIANGLES).reshape(-1)
     limits = {"min": corners.min(0).tolist(), "max": corners.max(0).tolist()}
     return {

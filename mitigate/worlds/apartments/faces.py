@@ -1,6 +1,4 @@
-"""Build the faces of an apartment, which are rectangles with colours, textures and baked
-shading.
-"""
+"""Build the surfaces of an apartment from rectangles with colours, textures and baked shading."""
 
 from __future__ import annotations
 
@@ -24,18 +22,19 @@ from mitigate.worlds.apartments.palette import PATTERNS, Palette, palette
 if TYPE_CHECKING:
     from mitigate.worlds.apartments.apartment import Apartment
 
-STRUCTURE = -1  # category number of walls, floors and ceilings
+STRUCTURE = -1  # category number that walls, floors and ceilings have
 
 
 @dataclass(frozen=True)
 class Faces:
-    """Axis-aligned rectangles to draw. The faces of an apartment as arrays with the same first
-    dimension [n].
+    """The faces of an apartment: n axis-aligned rectangles. All arrays have the first dimension n.
 
-    corners float32 [n, 4, 3] metres; plane float32 [n, 2] = (axis 0-2, coordinate in metres);
-    colour float32 [n, 4, 3] per corner; pattern int [n]; repeat float32 [n, 2] texture repeats;
-    category, room, instance int16 [n]: semantic label (``STRUCTURE`` = -1), indices of room and
-    furniture.
+    ``corners`` is float32 [n, 4, 3] in metres. ``plane`` is float32 [n, 2]: the axis of the normal
+    (0 to 2) and the coordinate of the plane on that axis in metres. ``colour`` is float32 [n, 4,
+    3], one RGB colour per corner. ``pattern`` is int [n], and ``repeat`` (float32 [n, 2]) is the
+    number of texture repeats. ``category``, ``room`` and ``instance`` are int16 [n]: the semantic
+    label (``STRUCTURE`` for walls, floors and ceilings), the index of the room and the index of the
+    piece of furniture.
     """
 
     corners: np.ndarray
@@ -49,9 +48,11 @@ class Faces:
 
 
 class FaceBuilder:
-    """Collects the rectangles of an apartment with colours, textures and baked shading."""
+    """Collect the faces of an apartment, which are rectangles with colours, textures and baked
+    shading.
+    """
 
-    # maps an axis to the light from its (-, +) side
+    # maps the axis of a face's normal to the brightness of faces that point to its (-, +) side
     _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
 
     def __init__(self, apartment: Apartment) -> None:
@@ -92,7 +93,9 @@ class FaceBuilder:
     def _tints(
         self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
     ) -> np.ndarray:
-        """Shade colours by side and room; vertical faces get darker towards the floor."""
+        """Return shaded colours. The shade depends on the direction of the face and on the room,
+        and vertical faces get darker towards the floor.
+        """
         sides = np.array([self._SHADE[k] for k in range(3)])
         shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
         dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
@@ -114,8 +117,8 @@ class FaceBuilder:
         instance: int = -1,
         tile: float = 1.0,
     ) -> None:
-        """Add a rectangle in the plane ``axis = at`` facing ``sign``; low/high are on the other
-        axes.
+        """Add a rectangle in the plane whose coordinate on ``axis`` is ``at``. Its normal points in
+        the direction ``sign``, and ``low`` and ``high`` are its bounds on the other two axes.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, tile, *low, *high))
@@ -183,7 +186,7 @@ class FaceBuilder:
 
 
 def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
-    """Return the texture coordinates of the corners of the chosen faces, float32 [4 n, 2]."""
+    """Return the texture coordinates of the corners of n chosen faces, as float32 [4 * n, 2]."""
     corners = np.array([(0, 0), (1, 0), (1, 1), (0, 1)], np.float32)
     return (corners[None] * faces.repeat[chosen][:, None]).reshape(-1, 2)
 
@@ -191,10 +194,11 @@ def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return the corners float32 [n, 4, 3] of rectangles in the planes ``axis = at``.
+    """Return the corners (float32 [n, 4, 3]) of rectangles in planes whose coordinate on ``axis``
+    is ``at``.
 
-    The order of the corners depends on the side ``sign`` that each rectangle faces. ``low`` and
-    ``high`` [n, 2] are the bounds on the other two axes.
+    The order of the corners depends on ``sign``, the direction of each rectangle's normal. ``low``
+    and ``high`` [n, 2] are the bounds on the other two axes.
     """
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]

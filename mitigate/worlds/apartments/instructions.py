@@ -1,7 +1,7 @@
-"""Write instructions for paths, from templates that are different for each split.
+"""Generate instructions that describe paths.
 
 Every split has its own templates (``templates.json``). All words of the validation splits occur in
-the training templates, so an agent meets new sentences, but no new words.
+the training templates, so an agent meets new sentences but no new words in validation.
 """
 
 from __future__ import annotations
@@ -16,20 +16,26 @@ import numpy as np
 
 from mitigate.worlds.apartments.layout import CATALOGUE, gap_to
 
-if TYPE_CHECKING:  # imported later, because this module is also used without the simulator
+# imported only for type checking, because this module is also used without the simulator
+if TYPE_CHECKING:
     from mitigate.worlds.apartments.apartment import Apartment
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-# fraction of turns behind a door that training instructions mention before it (heuristic)
+# fraction of turns just after a doorway that training instructions mention before the doorway
+# (heuristic)
 SAID_BEFORE = 0.25
-_BESIDE = 1.6  # distance in metres from a doorway within which a turn belongs to it (heuristic)
+# maximum distance in metres between a doorway and a turn that is described together with it
+# (heuristic)
+_BESIDE = 1.6
 _NEAR_PATH = 1.3  # maximum distance in metres from the path to a mentioned landmark
 
 
 @dataclass(frozen=True)
 class Event:
-    """An event ``at`` metres along a path."""
+    """An event on a path that an instruction can mention, ``at`` metres from the start of the
+    path.
+    """
 
     at: float
     kind: str
@@ -38,7 +44,7 @@ class Event:
 
 
 def name_of(apartment: Apartment, instance: int) -> str:
-    """Return the name of a piece of furniture in instructions, for example "red sofa"."""
+    """Return the name by which instructions call a piece of furniture, for example "red sofa"."""
     piece = apartment.furniture[instance]
     return f"{piece.colour} {piece.category}" if piece.colour else piece.category
 
@@ -46,7 +52,9 @@ def name_of(apartment: Apartment, instance: int) -> str:
 def describe(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> str:
-    """Return an instruction for a path (float [n, 2], metres) that ends at piece ``target``."""
+    """Return an instruction for a path (float [n, 2], metres) that ends at the piece of furniture
+    ``target``.
+    """
     events = _events(apartment, path, heading, target, rng)
     clauses = [_clause(apartment, event, rng) for event in events]
     words = TEMPLATES[apartment.split]
@@ -89,8 +97,8 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """Return the first turn, the room changes with their turns and up to two landmarks, in
-    order.
+    """Return the events of a path in order: the first turn, the changes of room with their turns,
+    and up to two landmarks.
     """
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
@@ -113,10 +121,11 @@ def _events(
 
 
 def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
-    """Return the left or right turn of a path at the doorway that is ``door`` metres along it.
+    """Return the left or right turn of a path at a doorway, which is ``door`` metres from the start
+    of the path.
 
-    The event is at the point where half of the turn is done. The result is None without a turn, or
-    near the start of the path.
+    The event is located where the path has completed half of the turn. Return None if the path does
+    not turn there, or if the doorway is near the start of the path.
     """
     if door <= _BESIDE:
         return None
@@ -141,7 +150,7 @@ def _direction(path: np.ndarray, along: np.ndarray, at: float, span: float = 1.2
 
 
 def turn_word(to: float, heading: float) -> str:
-    """Return the turn from one heading to another (counter-clockwise radians) as a word."""
+    """Return a word for the turn from one heading to another, both in counter-clockwise radians."""
     angle = np.degrees(_angle(to, heading))
     if abs(angle) < 35:
         return "ahead"
@@ -151,7 +160,7 @@ def turn_word(to: float, heading: float) -> str:
 
 
 def _angle(to: float, heading: float) -> float:
-    """Return the angle from one heading to another, radians in [-pi, pi)."""
+    """Return the angle from one heading to another, in radians in [-pi, pi)."""
     return (to - heading + np.pi) % (2 * np.pi) - np.pi
 
 

@@ -1,8 +1,8 @@
-"""Compute labels of the content of a panorama from the renderer's face ids.
+"""Compute labels that describe what is visible in a panorama, from the renderer's face ids.
 
-Labels of a panorama describe the central 36 degrees of each view. So labels of neighbouring views,
-which are 30 degrees apart, hardly overlap. Labels of a single camera describe ``COLUMNS`` columns
-of its view.
+Labels of a panorama describe the central 36 degrees of each view. Neighbouring views are 30 degrees
+apart, so their labels hardly overlap. The view of a single camera is divided into ``COLUMNS``
+columns, and each column has its own labels.
 """
 
 from __future__ import annotations
@@ -20,22 +20,24 @@ from mitigate.worlds.apartments.layout import CATEGORIES, ROOM_KINDS
 from mitigate.worlds.apartments.navigation import FreeSpace
 from mitigate.worlds.apartments.palette import COLOUR_NAMES
 
-# concepts: visible things, things nearer than 2 m, colours of things, kinds of visible rooms
+# concepts: visible furniture, furniture nearer than 2 m, colours of furniture, kinds of visible
+# rooms
 NEAR = tuple(f"near {name}" for name in CATEGORIES)
 CONCEPTS = (*CATEGORIES, *NEAR, *COLOUR_NAMES, *ROOM_KINDS)
 _HALF_ANGLE = np.radians(18.0)
-# labels of free space: angle bins, distance bins, metres per distance bin
+# number of angle bins and of distance bins of the free-space labels, and metres per distance bin
 ANGLES, DISTANCES, STEP = 120, 12, 0.25
-COLUMNS = 4  # number of columns per view, of equal width in pixels
-# direction of each bin in degrees, positive to the right
+COLUMNS = 4  # number of columns into which a view is divided; their widths in pixels are equal
+# direction of each angle bin in radians, positive to the right
 YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return whether straight paths from a pose are free, float32 [120, 12] in {0, 1}.
+    """Return which straight paths from a pose are free of obstacles, as float32 [120, 12] with
+    values 0 and 1.
 
-    The axes are the angle to the right of the heading (bin ``10 k + i`` is at
-    ``30 k - 15 + 3 (i + 0.5)`` degrees) and the distance in steps of 0.25 m.
+    The first axis is the angle to the right of the heading; bin ``10 * k + i`` is at ``30 * k - 15
+    + 3 * (i + 0.5)`` degrees. The second axis is the distance in steps of 0.25 m.
     """
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
@@ -43,16 +45,19 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
 
 
 def ahead(directions: np.ndarray) -> np.ndarray:
-    """Select the :func:`free_directions` inside the forward 90-degree view, as [30, 12], left to
-    right.
+    """Return the part of :func:`free_directions` that lies inside the forward 90-degree view. The
+    shape is [30, 12], from left to right.
     """
     half = round(ANGLES * HFOV_DEGREES / 720)
-    middle = round(ANGLES / VIEWS / 2)  # bin 0 is half a view step to the left
+    # bin 0 is half an angle between views to the left of the heading
+    middle = round(ANGLES / VIEWS / 2)
     return np.roll(directions, half - middle, 0)[: 2 * half]
 
 
 def band(size: int) -> tuple[int, int]:
-    """Return the first and end column of the central 36 degrees of a 90 degree view."""
+    """Return the first pixel column of the central 36 degrees of a 90-degree view, and the column
+    after the last.
+    """
     half = np.tan(_HALF_ANGLE) * size / 2
     return int(round(size / 2 - half)), int(round(size / 2 + half))
 
@@ -60,11 +65,11 @@ def band(size: int) -> tuple[int, int]:
 def view_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the labels of a panorama from its face ids.
+    """Compute the labels of a panorama from its face ids.
 
     Returns:
-        concepts float32 ``[12, len(CONCEPTS)]`` in {0, 1}, and seen bool ``[12, furniture]``:
-        whether each piece of furniture is visible in the central band of each view.
+        The concepts, float32 ``[12, len(CONCEPTS)]`` with values 0 and 1. The second array is bool
+        ``[12, furniture]``: which pieces of furniture are visible in the central band of each view.
     """
     return _within(apartment, ids, depth, *band(ids.shape[2]))
 
@@ -72,10 +77,11 @@ def view_labels(
 def column_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the same labels as :func:`view_labels` for each of the ``COLUMNS`` columns of a view.
+    """Compute the labels of :func:`view_labels` for each of the ``COLUMNS`` columns of a view.
 
     Returns:
-        concepts float32 [views, 4, len(CONCEPTS)], and seen bool [views, 4, furniture].
+        The concepts, float32 [views, 4, len(CONCEPTS)], and the visible furniture, bool [views, 4,
+        furniture].
     """
     edges = np.linspace(0, ids.shape[2], COLUMNS + 1).round().astype(int)
     parts = [_within(apartment, ids, depth, a, b) for a, b in pairwise(edges.tolist())]
@@ -92,7 +98,7 @@ def _within(
     return _label(*arguments)
 
 
-@lru_cache(maxsize=64)  # the size is limited because each entry references its apartment
+@lru_cache(maxsize=64)  # the cache size is limited because each entry keeps its apartment in memory
 def _tables(apartment: Apartment) -> tuple[np.ndarray, ...]:
     furniture = apartment.furniture
     category = [CATEGORIES.index(p.category) for p in furniture]

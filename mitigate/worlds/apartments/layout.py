@@ -1,9 +1,10 @@
-"""Generate floor plans: split them into rooms, add doorways, and place furniture.
+"""Generate floor plans: split an outline into rooms, add doorways, and place furniture.
 
-Each category of furniture consists of a few axis-aligned boxes and is recognisable by its shape.
-``furniture.json`` holds sizes in metres. A part is ``(x0, x1, y0, y1, z0, z1, paint)`` in the
-frame of the object: x along the wall, y away from it (the back of the object is y = 0), z up.
-``paint`` is "main" (the object's colour), a name of ``paints``, or an RGB triple in [0, 1].
+A piece of furniture consists of a few axis-aligned boxes, and the shape shows its category.
+``furniture.json`` holds sizes in metres. A part is ``(x0, x1, y0, y1, z0, z1, paint)`` in the frame
+of the object. The x axis runs along the wall, the y axis away from the wall, and the z axis up. The
+back of the object is at y = 0. ``paint`` is "main" (the object's colour), a name of ``paints``, or
+an RGB triple in [0, 1].
 """
 
 from __future__ import annotations
@@ -21,7 +22,9 @@ Part = tuple[float, float, float, float, float, float, object]
 
 @dataclass(frozen=True)
 class Category:
-    """``width`` along the wall and ``depth`` away from it in metres; ``solid`` blocks motion."""
+    """A category of furniture. ``width`` (along the wall) and ``depth`` (away from the wall) are in
+    metres. If ``solid`` is true, the object blocks motion.
+    """
 
     name: str
     width: float
@@ -43,17 +46,17 @@ CATALOGUE = {
 }
 CATEGORIES = tuple(CATALOGUE)
 
-# maps a room kind to (required, optional) furniture, at most one per category except chairs
+# maps a kind of room to its (required, optional) furniture; only chairs may occur more than once
 ROOMS: dict[str, tuple[tuple[str, ...], tuple[str, ...]]] = {
     kind: (tuple(entry["always"]), tuple(entry["choice"])) for kind, entry in _DATA["rooms"].items()
 }
 ROOM_KINDS = tuple(ROOMS)
 
 
-WALL = 0.12  # wall thickness, metres
-DOOR = 1.0  # clear doorway width, metres
-HEIGHT = 2.5  # ceiling, metres
-LINTEL = 2.05  # height of a doorway in metres
+WALL = 0.12  # wall thickness in metres
+DOOR = 1.0  # clear width of the doorways in metres
+HEIGHT = 2.5  # height of the ceiling in metres
+LINTEL = 2.05  # height of the doorways in metres
 _MIN_SIDE = 2.7
 Rect = tuple[float, float, float, float]  # x0, y0, x1, y1
 
@@ -72,8 +75,8 @@ class Room:
 
 @dataclass(frozen=True)
 class Door:
-    """A doorway centred on (x, y) between two rooms; ``axis`` of the wall's normal is 0 (x) or 1
-    (y).
+    """A doorway between two rooms, with its centre at (x, y). ``axis`` is the axis of the wall's
+    normal: 0 for x, 1 for y.
     """
 
     x: float
@@ -84,7 +87,9 @@ class Door:
 
 @dataclass(frozen=True)
 class Furniture:
-    """An object at the side ``turn`` (0: low y, 1: high x, 2: high y, 3: low x) of a room."""
+    """A piece of furniture in a room. ``turn`` is the side of the room at which it stands (0: low
+    y, 1: high x, 2: high y, 3: low x).
+    """
 
     category: str
     colour: str | None
@@ -99,7 +104,7 @@ class Furniture:
 
 
 def split_rooms(rng: np.random.Generator) -> list[Rect]:
-    """Split an outline of 9-12 m by 8-10 m recursively into 4 to 8 rectangles."""
+    """Split a random outline (9 to 12 m by 8 to 10 m) recursively into 4 to 8 rectangles."""
     outline = (0.0, 0.0, float(rng.uniform(9.0, 12.0)), float(rng.uniform(8.0, 10.0)))
     rects, target = [outline], int(rng.integers(4, 9))
     while len(rects) < target:
@@ -127,8 +132,8 @@ def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
-    """Return (axis of the normal, wall coordinate, low, high) of the wall between two rooms, or
-    None.
+    """Return the wall between two rooms as (axis of its normal, coordinate on that axis, lower
+    bound, upper bound). Return None if the rooms share no wall.
     """
     for axis in (0, 1):
         other = 1 - axis
@@ -159,7 +164,9 @@ def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
 
 
 def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
-    """Assign each room kind once in random order, and then a second bedroom, bathroom or office."""
+    """Assign each kind of room once, in random order. Further rooms become a second bedroom,
+    bathroom or office.
+    """
     kinds = list(ROOMS)
     rng.shuffle(kinds)
     kinds += [str(kind) for kind in rng.permutation(["bedroom", "bathroom", "office"])]

@@ -1,4 +1,4 @@
-"""Compute free space, geodesic distances and straight motion in an apartment."""
+"""Compute the free space of an apartment, geodesic distances, and straight motion."""
 
 from __future__ import annotations
 
@@ -10,16 +10,19 @@ from numba import njit
 from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-CELL = 0.1  # metres
-RADIUS = 0.18  # agent radius, metres (VLN-CE's LoCoBot-like agent: 0.1-0.2)
-GRAPHS = 32  # number of cached graphs (heuristic); each takes half a megabyte and 1.3 ms to build
-_SAMPLE = 0.04  # metres between collision samples on a straight move
+CELL = 0.1  # width of a grid cell in metres
+RADIUS = 0.18  # radius of the agent in metres (0.1 to 0.2 for the LoCoBot-like agent of VLN-CE)
+# number of cached graphs (heuristic); a graph takes half a megabyte, and 1.3 ms to build
+GRAPHS = 32
+# distance in metres between the points of a straight move that are checked for collisions
+_SAMPLE = 0.04
 
 
 class FreeSpace:
-    """The cells of ``CELL`` metres in which the centre of an agent may be.
+    """The grid cells, ``CELL`` metres wide, in which the centre of an agent may be.
 
-    ``free`` is bool ``[ny, nx]``; cell (i, j) covers x in [j, j + 1) * CELL and y likewise.
+    ``free`` is a bool array ``[ny, nx]``. Cell (i, j) covers the x range from j * CELL to (j + 1) *
+    CELL, and y correspondingly with i.
     """
 
     def __init__(self, blocked: np.ndarray) -> None:
@@ -44,19 +47,22 @@ class FreeSpace:
 
     @property
     def graph(self) -> csr_matrix:
-        """The 8-connected graph of the free cells, with edge weights in metres.
+        """The graph of the free cells, in which each cell is connected to its 8 neighbours. Edge
+        weights are in metres.
 
-        Paths may cut the corner of a blocked cell by at most 0.06 m. On average, paths are 5 %
-        longer than exact shortest paths (docs/agents.md).
+        Paths along this graph may cut the corner of a blocked cell by at most 0.06 m. On average,
+        these paths are 5 % longer than exact shortest paths (docs/agents.md).
         """
         return _graph_of(self)
 
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
-        """Return the index of the free cell nearest to a plan position (metres)."""
+        """Return the index of the free cell that is nearest to a plan position in metres."""
         return int(self.nearest[self._place(xy)])
 
     def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
-        """Return (i, j) of the cell (free or not) that is nearest to a plan position in metres."""
+        """Return the index (i, j) of the grid cell that contains a plan position, or of the nearest
+        cell if the position is outside the grid.
+        """
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return i, j
@@ -64,7 +70,8 @@ class FreeSpace:
     def stand(self, xy: np.ndarray) -> np.ndarray:
         """Return a position where an agent can stand, float [2] in metres.
 
-        This is ``xy`` if its cell is free, otherwise the centre of the nearest free cell.
+        The position is ``xy`` if the cell of ``xy`` is free, and otherwise the centre of the
+        nearest free cell.
         """
         return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
@@ -73,12 +80,14 @@ class FreeSpace:
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
-        """Return geodesic metres from every free cell to the nearest target cell, float32 [n]."""
+        """Return the geodesic distance in metres from every free cell to the nearest target cell,
+        as float32 [n].
+        """
         return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Return the cell centres ``[n, 2]`` on the path from ``start`` to the zero of
-        ``distances``.
+        """Return the cell centres ``[n, 2]`` on the shortest path from the cell ``start`` to the
+        nearest target of ``field`` (see :meth:`distances`).
         """
         path, graph = [start], self.graph
         while field[path[-1]] > 1e-6:
@@ -88,8 +97,8 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """Move straight and slide along walls, as agents do in VLN-CE's R2R; return (xy,
-        collided).
+        """Move straight ahead and slide along walls, as agents do in the R2R task of VLN-CE. Return
+        the new position and whether the agent collided.
         """
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
@@ -103,8 +112,8 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Return free distances in metres (at most ``reach``) along ``count`` even headings from 0
-        (CCW).
+        """Return the free distance in metres along ``count`` evenly spaced headings,
+        counter-clockwise from heading 0. Distances are limited to ``reach``.
         """
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
@@ -131,7 +140,9 @@ def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Return the free distance in metres (at most ``length``) from (x, y) along (dx, dy)."""
+    """Return the free distance in metres from (x, y) in the direction (dx, dy), at most
+    ``length``.
+    """
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length

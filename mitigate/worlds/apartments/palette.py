@@ -1,8 +1,8 @@
-"""Define colours, textures and seed ranges, which make splits look different.
+"""Define the colours, textures and seed ranges of the splits, which make the splits look different.
 
 Layouts, palettes and instruction templates of ``train``, ``val_seen`` and ``val_unseen`` never
-overlap. Each split has its own range of apartment seeds, and samples colour variants and texture
-parameters with its own random generator.
+overlap. Each split has its own range of apartment seeds, and its own random generator for colour
+variants and texture parameters.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ SEED_RANGES = {
 }
 _VARIANTS = {"train": 24, "val_seen": 8, "val_unseen": 8}
 
-# maps a name to (hue centre, hue spread, saturation range, value range); HSV in [0, 1]
+# maps a colour name to (hue centre, hue spread, saturation range, value range); HSV values are in
+# [0, 1]
 COLOURS = {
     "red": (0.99, 0.02, (0.70, 0.95), (0.55, 0.85)),
     "orange": (0.075, 0.012, (0.80, 1.00), (0.85, 1.00)),
@@ -38,7 +39,9 @@ TEXTURE_PIXELS = 32
 
 @dataclass(frozen=True)
 class Palette:
-    """The colour variants of one split, as ``colours[name]`` float32 ``[n, 3]``, RGB in [0, 1]."""
+    """The colour variants of one split. ``colours[name]`` is float32 ``[n, 3]``, with RGB values in
+    [0, 1].
+    """
 
     split: str
     colours: dict[str, np.ndarray]
@@ -74,7 +77,9 @@ def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
 
 
 def texture(pattern: str, variant: int) -> np.ndarray:
-    """Return a grey texture, tinted by vertex colours: uint8 ``[32, 32]``, mostly 200-255."""
+    """Return a grey texture as uint8 ``[32, 32]``, with values mostly from 200 to 255. Vertex
+    colours tint it.
+    """
     rng = np.random.default_rng([7, PATTERNS.index(pattern), variant])
     n = TEXTURE_PIXELS
     y, x = np.mgrid[0:n, 0:n]

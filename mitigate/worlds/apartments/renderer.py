@@ -1,9 +1,9 @@
 """Render with Panda3D into one off-screen buffer, which holds 12 RGB views and 12 face-id views.
 
-Rendering uses Panda3D's ``p3tinydisplay`` on the CPU, without GPU, GL or display. With
-``p3tinydisplay``, the depth buffer cannot be read. So a second pass draws every planar face in a
-flat id colour. The id gives the semantic label, and ray-plane intersection gives exact metric
-depth.
+Rendering uses Panda3D's ``p3tinydisplay`` on the CPU, without GPU, GL or display. Because the depth
+buffer of ``p3tinydisplay`` cannot be read, a second pass draws every planar face in a flat colour
+that encodes the face id. The face id gives the semantic label, and intersecting the pixel's ray
+with the plane of the face gives the exact depth in metres.
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ from mitigate.worlds.apartments.apartment import Apartment
 from mitigate.worlds.apartments.faces import Faces, texture_coordinates
 from mitigate.worlds.apartments.palette import PATTERNS, TEXTURE_PIXELS, texture
 
-EYE = 1.25  # camera height, metres (VLN-CE)
+EYE = 1.25  # height of the camera in metres, as in VLN-CE
 LEVEL = Mount()
-FARTHEST = 17.0  # far distance in metres, longer than any line through an apartment
+FARTHEST = 17.0  # distance in metres that is longer than any straight line through an apartment
 LEAST = 4  # minimum size of a view in pixels (heuristic)
-# number of cached scenes per renderer (heuristic); each takes 0.35 MB and 6 ms to build
+# number of cached scenes per renderer (heuristic); a scene takes 0.35 MB, and 6 ms to build
 SCENES = 128
 PIPE = "p3tinydisplay"
 SETTINGS = f"""
@@ -42,14 +42,15 @@ audio-library-name null
 framebuffer-srgb 0
 load-display {PIPE}
 """
-_COLUMNS, _ROWS = 4, 3  # the 12 views tile the buffer
-# near plane in metres; a wall at the agent's radius has at least 0.127 m depth in a 90-degree view
+_COLUMNS, _ROWS = 4, 3  # the 12 views are arranged as tiles in the buffer
+# distance of the near clipping plane in metres; in a 90-degree view, a wall has a depth of at least
+# 0.127 m because of the agent's radius
 _NEAR = 0.1
 
 
 def _panda() -> Any:
-    # imported here first, because an error in its first import would end the process (panda3d
-    # 1.10.16)
+    # the first import must not be interrupted, because an error in it would end the process
+    # (panda3d 1.10.16)
     with uninterrupted():
         from panda3d import core
 
@@ -58,10 +59,9 @@ def _panda() -> Any:
 
 
 class Renderer:
-    """Renders RGB and face ids of apartments, and caches the geometry of the last ``scenes``
-    scenes.
+    """Render RGB and face ids of apartments. The geometry of the last ``scenes`` scenes is cached.
 
-    Raises ValueError for a ``size`` in pixels below ``LEAST``.
+    Raises ValueError if ``size`` is below ``LEAST`` pixels.
     """
 
     def __init__(self, size: int = 64, scenes: int = 48) -> None:
@@ -82,22 +82,23 @@ class Renderer:
             raise RuntimeError(
                 f"Panda3D could not open an off-screen buffer with {PIPE}; run `make doctor`."
             )
-        # each rendered frame draws every active buffer of the process
+        # inactive by default, because render_frame draws every active buffer of the process
         self.buffer.set_active(False)
         weakref.finalize(self, self.engine.remove_window, self.buffer)
         self.image = core.Texture()
         self.buffer.add_render_texture(self.image, core.GraphicsOutput.RTM_copy_ram)
         self.buffer.set_clear_color((0, 0, 0, 1))
         self.textures = [self._texture(pattern) for pattern in PATTERNS]
-        self.regions: list[list[Any]] = []  # one list for the RGB views and one for the id views
+        # one list of display regions for the RGB views, and one for the id views
+        self.regions: list[list[Any]] = []
         self.lenses: list[Any] = []
-        self.hfov = HFOV_DEGREES  # of all lenses
+        self.hfov = HFOV_DEGREES  # horizontal field of view of all lenses, in degrees
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
         self.capacity, self.current = scenes, -1
 
     def load(self, apartment: Apartment) -> None:
-        """Set the current scene to an apartment, whose geometry is built at first use."""
+        """Make an apartment the current scene. Its geometry is built at first use."""
         if apartment.seed not in self.scenes:
             self.scenes[apartment.seed] = self._scene(apartment.faces)
             if len(self.scenes) > self.capacity:
@@ -125,14 +126,15 @@ class Renderer:
         Args:
             x: plan position in metres.
             y: plan position in metres.
-            heading: counter-clockwise radians.
-            views: views to draw; all other views are 0, and -1 in ids. The pixels of drawn views do
-                not depend on this.
-            rgb: whether to draw colours; otherwise rgb is 0.
+            heading: heading in counter-clockwise radians.
+            views: indices of the views to draw; all other views contain 0, and -1 in ids. The
+                choice does not change the pixels of the drawn views.
+            rgb: whether to draw colours; if false, rgb contains 0.
             mount: displacement of the cameras.
 
         Returns:
-            rgb uint8 [12, S, S, 3], depth float32 metres [12, S, S, 1], ids int32 [12, S, S].
+            rgb (uint8 [12, S, S, 3]), depth in metres (float32 [12, S, S, 1]) and face ids (int32
+            [12, S, S]), where S is ``size``.
         """
         eye = EYE + mount.height
         for rig in (self.rig_rgb, self.rig_ids):
@@ -194,7 +196,7 @@ class Renderer:
         rgb, ids = self.core.NodePath("rgb"), self.core.NodePath("ids")
         for room in range(int(faces.room.max()) + 1):
             here = faces.room == room
-            # grouped by room, because Panda3D culls a room as a whole
+            # faces are grouped by room, because Panda3D can then skip rooms that are not visible
             group = rgb.attach_new_node(f"room{room}")
             for pattern, image in enumerate(self.textures):
                 chosen = np.flatnonzero(here & (faces.pattern == pattern))
@@ -261,8 +263,8 @@ def _make_pipe(core: Any) -> Any:
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
-    """Encode face id + 1 in base 32 as colours float32 [n, 3], which are not affected by
-    rounding.
+    """Encode face ids as colours (float32 [n, 3]): face id + 1 is written in base 32, so rounding
+    does not change the decoded id.
     """
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
@@ -270,7 +272,9 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 def _turn(mount: Mount, heading: float) -> np.ndarray:
-    """Return the rotation [3, 3] of the directions of a level rig in the plan frame."""
+    """Return the rotation matrix [3, 3] that turns directions of a level camera rig into the plan
+    frame.
+    """
     if (mount.pitch, mount.roll, mount.yaw) == (0.0, 0.0, 0.0):
         return np.eye(3)
     cos, sin = math.cos(heading), math.sin(heading)
@@ -289,9 +293,11 @@ def _turned(turn, x, y, z):
 
 @njit(cache=True)
 def _split(frame, size, plane, x, y, z, heading, turn, edge, near, is_drawn, colours):
-    """Split bottom-up BGRA tiles into views; ids are in the upper half; compute depth per ray.
+    """Split the rendered buffer into views, and compute the depth of each pixel. The buffer is BGRA
+    with the bottom row first, and its upper half contains the face ids.
 
-    ``turn`` rotates the level views, and ``edge`` is the tangent of half the field of view.
+    ``turn`` is the rotation of the level views, and ``edge`` is the tangent of half the field of
+    view.
     """
     rgb = np.zeros((12, size, size, 3), np.uint8)
     depth = np.zeros((12, size, size, 1), np.float32)
@@ -326,7 +332,7 @@ def _split(frame, size, plane, x, y, z, heading, turn, edge, near, is_drawn, col
                     t = (plane[face, 1] - y) / (fy + right * ry + up * uy)
                 else:
                     t = (plane[face, 1] - z) / (fz + right * rz + up * uz)
-                # for a face that is seen edge-on, the pixel to the left is used
+                # for a face that is seen edge-on, use the face of the pixel to the left
                 if not near <= t <= FARTHEST:
                     t = depth[k, i, j - 1, 0] if j > 0 else 0.0
                 depth[k, i, j, 0] = t

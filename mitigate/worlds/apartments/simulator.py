@@ -27,20 +27,23 @@ from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
 from mitigate.worlds.world import Expert, greedy_action
 
-# maximum metres from a start or goal to a free cell (heuristic); a goal may be furniture
+# maximum distance in metres from a start or goal to a free cell (heuristic); it is not 0 because a
+# goal may be a piece of furniture
 NEAR = 0.5
 
 
-# number of cached fields; each takes 20 kB and half a millisecond to compute
+# number of cached distance fields; a field takes 20 kB, and half a millisecond to compute
 @lru_cache(maxsize=256)
 def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> np.ndarray:
-    """Return the geodesic metres from every free cell of a scene to the nearest goal."""
+    """Return the geodesic distance in metres from every free cell of a scene to the nearest
+    goal.
+    """
     space = apartment_of(scene_id).space
     return space.distances([space.cell_of(from_vlnce(goal)) for goal in goals])
 
 
 class Simulator:
-    """Simulator of one agent in one apartment. Actions and step limit come from VLN-CE
+    """Simulator of one agent in one apartment. The actions and the step limit are those of VLN-CE
     (``core/observation.py``).
     """
 
@@ -55,9 +58,11 @@ class Simulator:
         return self._renderer
 
     def reset(self, episode: Episode) -> None:
-        """Place the agent at the start of an episode, or at the nearest free cell.
+        """Place the agent at the start of an episode, or in the free cell that is nearest to the
+        start.
 
-        Raises ValueError if the start or a goal is farther than ``NEAR`` from every free cell.
+        Raises ValueError if the start or a goal is more than ``NEAR`` metres away from every free
+        cell.
         """
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
@@ -86,7 +91,7 @@ class Simulator:
         return self.stopped or self.steps >= MAX_STEPS
 
     def odometry(self) -> dict[str, np.ndarray]:
-        """Return only the pose: float32 [3] = (x, y, heading)."""
+        """Return the pose without frames: float32 [3] with x, y and heading."""
         return {POSE: np.array([self.xy[0], self.xy[1], self.heading], np.float32)}
 
     def observe(self) -> dict[str, np.ndarray]:
@@ -126,7 +131,7 @@ class Simulator:
         self.steps += 1
 
     def move(self, metres: float, degrees: float) -> None:
-        """Execute a step that moves ``metres`` forward, then turns ``degrees`` to the left.
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
         Raises:
             RuntimeError: The episode is over.
@@ -148,10 +153,10 @@ class Simulator:
 
 
 class GeodesicExpert(Expert):
-    """Expert that greedily follows a geodesic ``field``.
+    """Expert that greedily reduces the geodesic distances in ``field``.
 
-    The expert turns to the heading whose next step reduces the distance most, and stops at the
-    distance given by ``rule``.
+    The expert turns to the heading in which the next step forward reduces the distance most. It
+    stops at the distance that ``rule`` defines.
     """
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:

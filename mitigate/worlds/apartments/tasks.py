@@ -1,8 +1,8 @@
-"""Episodes of an apartment: There are two tasks, VLN (follow an instruction) and OGN (find an
-object category).
+"""Generate episodes in apartments for two tasks: VLN (follow an instruction) and OGN (find an
+object of a category).
 
-``tools/apartment_episodes.py`` writes the fixed validation lists; training episodes are generated
-when needed, from (seed, index).
+``tools/apartment_episodes.py`` writes the fixed lists of validation episodes. Training episodes are
+generated from (seed, index) when they are needed.
 """
 
 from __future__ import annotations
@@ -30,15 +30,18 @@ from mitigate.worlds.episodes import (
     share_of,
 )
 
-SUCCESS_METRES = 2.0  # R2R-CE's 3.0 m for paths of 10 m, scaled to our paths (docs/base-agent.md)
-SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance in metres
+# R2R-CE uses 3.0 m for paths of 10 m; this value is scaled to the shorter paths in apartments
+# (docs/base-agent.md)
+SUCCESS_METRES = 2.0
+SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance from start to goal, in metres
 TASKS = ("vln", "ogn")
-# version of the lists and texts, which is part of every id, so that rows are never mixed
+# version of the episode lists and texts; it is part of every episode id, so that results of
+# different versions are never mixed
 EDITION = 2
-OGN_SHARE = 0.15  # fraction of training episodes (heuristic)
+OGN_SHARE = 0.15  # fraction of OGN episodes in training (heuristic)
 _TRIES = 60
-_POOL = 60  # number of training paths per apartment
-_PER_APARTMENT = 10  # number of episodes per apartment in the fixed lists
+_POOL = 60  # number of different training paths per apartment
+_PER_APARTMENT = 10  # number of episodes per apartment in the fixed validation lists
 
 
 def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]:
@@ -47,9 +50,10 @@ def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]
 
 
 def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> Episode:
-    """Return episode ``index`` of an apartment, as a pure function of all arguments.
+    """Return episode ``index`` of an apartment. The result depends only on the arguments.
 
-    Raises ``RuntimeError`` if no start is between ``SHORTEST`` and ``LONGEST`` metres from a goal.
+    Raises ``RuntimeError`` if no start position is between ``SHORTEST`` and ``LONGEST`` metres away
+    from a goal.
     """
     rng = np.random.default_rng([apartment.seed, TASKS.index(task), index, seed])
     for _ in range(_TRIES):
@@ -109,7 +113,7 @@ def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int]
 
 
 def view_cells(apartment: Apartment, instance: int) -> np.ndarray:
-    """Return the free cells of the same room within 0.8 m of a piece of furniture."""
+    """Return the free cells that are in the room of a piece of furniture and within 0.8 m of it."""
     piece = apartment.furniture[instance]
     xy = (apartment.space.cells[:, ::-1] + 0.5) * 0.1
     x0, y0, x1, y1 = apartment.rooms[piece.room].rect
@@ -130,13 +134,15 @@ class DrawnEpisodes:
     ogn_share: float = OGN_SHARE
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Sample an episode from part ``share`` = (index, count) of the layouts."""
+        """Sample an episode from some of the layouts: they are split into ``count`` parts, and
+        ``share`` = (index, count) selects one part.
+        """
         return draw_training_episode(rng, share_of(range(self.layouts), *share), self.ogn_share)
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Return the furniture that marks the goal: one piece in VLN, all pieces of the category in
-    OGN.
+    """Return the indices of the furniture that marks the goal: one piece in VLN, and all pieces of
+    the goal category in OGN.
 
     Raises ValueError if the episode's info does not contain the goal.
     """
@@ -153,9 +159,10 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def view_field(episode: Episode) -> np.ndarray:
-    """Return the distance in metres from every free cell to the nearest view point of the goal.
+    """Return the distance in metres from every free cell to the nearest view point of the goal
+    object.
 
-    View points are the cells next to the goal, as for the object goals of VLN-CE.
+    View points are the free cells next to the goal object, as for the object goals of VLN-CE.
     """
     return _view_field(episode.scene_id, tuple(landmarks(episode)))
 
@@ -168,8 +175,8 @@ def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """Yield the episodes of a validation split: ``_PER_APARTMENT`` episodes per apartment, by
-    seed.
+    """Yield the first ``count`` episodes of a split in the order of apartment seeds, with
+    ``_PER_APARTMENT`` episodes per apartment.
     """
     low, _ = SEED_RANGES[split]
     for number in range(count):
@@ -178,7 +185,9 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
 
 @lru_cache(maxsize=100_000)
 def _pooled(seed: int, task: str, index: int) -> bytes:
-    """Return a pickled episode of the pool; cached objects would need ten times the memory."""
+    """Return a pickled training episode. A cache of unpickled episodes would need ten times the
+    memory.
+    """
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 
@@ -189,11 +198,11 @@ def draw_training_episode(
     """Sample a training episode with a newly generated instruction.
 
     The episode depends only on the generator's state and the arguments. Each apartment has
-    ``_POOL`` paths.
+    ``_POOL`` different paths.
 
     Args:
         rng: random generator.
-        apartments: training seeds, or the number of training seeds.
+        apartments: the seeds of the training apartments, or their number.
         ogn_share: fraction of object-goal episodes.
     """
     seeds = range(apartments) if isinstance(apartments, int) else apartments
@@ -211,7 +220,7 @@ def draw_training_episode(
 
 
 def episode_file(split: str, task: str = "vln") -> Path:
-    """Return the path of the shipped list of a validation split."""
+    """Return the path of the shipped file that lists the episodes of a validation split."""
     return Path(__file__).parent / "episodes" / f"{split}_{task}.json.gz"
 
 

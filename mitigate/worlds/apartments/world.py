@@ -1,4 +1,6 @@
-"""Make the apartments a world (``worlds/world.py``) with measures, expert, labels and poses."""
+"""The apartments as a world (``worlds/world.py``) with measures, an expert, labels and random
+poses.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +39,8 @@ from mitigate.worlds.world import World
 MEMORY_BYTES = 1 << 26  # maximum bytes of rendered frames that ``remembering`` caches (heuristic)
 LARGEST = 2048  # maximum size of a view in pixels (heuristic)
 MAX_DIFFERENCE = (
-    # difference in metres between recorded and measured distance that causes a warning (heuristic)
+    # minimum difference in metres between the recorded and the measured distance that causes a
+    # warning (heuristic)
     0.5
 )
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
@@ -48,12 +51,12 @@ class ApartmentsWorld(World):
 
     Args:
         size: side of a square view in pixels.
-        layouts: number of training layouts in ``scenes``.
+        layouts: number of training apartments in ``scenes``.
         views: 12 for a panorama, or 1 for a camera that faces forward.
         rule: name of the success rule in ``RULES``.
 
     Raises:
-        ValueError: A size or number of views is not allowed, or the rule is unknown.
+        ValueError: The size or the number of views is not allowed, or the success rule is unknown.
     """
 
     def __init__(
@@ -70,7 +73,8 @@ class ApartmentsWorld(World):
         self.views = views
         self._rule = rule
         self.rule = str(RULES[rule])
-        if RULES[rule].view_points:  # older versions recorded distances to the goal
+        # the text must differ from older versions, which recorded distances to the goal itself
+        if RULES[rule].view_points:
             self.rule += ", as are all distances"
         self.sensors: dict[str, Sensor] = cameras(size, views)
         self._memory = Memory(0)
@@ -79,7 +83,7 @@ class ApartmentsWorld(World):
         self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
-        # a renderer cannot be pickled, so the copy uses the renderer of its process
+        # a renderer cannot be pickled, so an unpickled world uses the renderer of its own process
         return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -93,7 +97,9 @@ class ApartmentsWorld(World):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Return a context manager inside which repeated poses are not rendered again."""
+        """Return a context manager that caches rendered frames, so that repeated poses are not
+        rendered again.
+        """
         before, self._memory = self._memory, Memory(MEMORY_BYTES)
         try:
             yield
@@ -101,7 +107,9 @@ class ApartmentsWorld(World):
             self._memory = before
 
     def beside(self) -> ApartmentsWorld:
-        """Return a second world for a simultaneous episode; both share rendered frames."""
+        """Return a second world for a simultaneous episode. Both worlds share their cache of
+        rendered frames.
+        """
         other = copy.copy(self)
         other._memory = self._memory
         return other
@@ -123,17 +131,18 @@ class ApartmentsWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Take a step that moves ``metres`` forward, then turns ``degrees`` to the left."""
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
         self.simulator.move(metres, degrees)
         return self._observation()
 
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode.
 
-        The measures are success, spl, path_length, geodesic_distance and distance_to_goal (metres),
-        ndtw, collisions and steps. Both distances are measured to the target of the success rule:
-        geodesic_distance from the start of the episode, and distance_to_goal from the agent. ndtw
-        compares with the reference path and uses the rule's ``path_metres``.
+        The measures are success, spl, ndtw, collisions, steps, and in metres path_length,
+        geodesic_distance and distance_to_goal. geodesic_distance is measured from the start of the
+        episode and distance_to_goal from the agent, both to the target of the success rule. ndtw
+        compares the agent's path with the reference path and uses ``path_metres`` of the success
+        rule.
         """
         simulator = self.simulator
         values = measures.of_episode(
@@ -150,8 +159,8 @@ class ApartmentsWorld(World):
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
 
     def _field(self) -> np.ndarray:
-        """Return the distance in metres from each free cell to the rule's target (goal or view
-        points).
+        """Return the distance in metres from each free cell to the target of the success rule,
+        which is the goal or its view points.
         """
         points = RULES[self._rule].view_points
         return view_field(self.simulator.episode) if points else self.simulator.field
@@ -163,8 +172,8 @@ class ApartmentsWorld(World):
     def _shortest_way(self, episode: Episode) -> float:
         """Return the distance in metres from the start to the target of the success rule.
 
-        If goals are hidden, the distance recorded in the file is returned. A warning is issued once
-        per world if the recorded distance differs from the measured one.
+        If the file hides the goals, return the distance that the file records. If the recorded
+        distance differs from the measured distance, a warning is issued once per world.
         """
         recorded, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
         if recorded is None:
@@ -185,13 +194,14 @@ class ApartmentsWorld(World):
         """Return the labels of the current pose.
 
         Returns:
-            concepts float32 [12, C] (``labels.CONCEPTS`` visible in the middle of each view), seen
-            bool [12, things] (visible furniture), free float32 [120, 12] (free straight paths) and
-            goal float32 [12] (views that show the goal).
+            "concepts" (float32 [12, C]): which of the C ``labels.CONCEPTS`` are visible in the
+            middle of each view. "seen" (bool [12, furniture]): which pieces of furniture are
+            visible. "free" (float32 [120, 12]): which straight paths are free. "goal" (float32
+            [12]): which views show the goal.
 
-            With one camera, the labels describe the four columns of its view: concepts [4, C], seen
-            [4, things] and goal [4]; free is [30, 12], the directions in the view from left to
-            right.
+            With a single camera, the labels describe the four columns of its view. The shapes are
+            then [4, C] for "concepts", [4, furniture] for "seen" and [4] for "goal". "free" is [30,
+            12] and covers the directions in the view from left to right.
         """
         simulator = self.simulator
         _, depth, ids = self._frames()
@@ -200,7 +210,9 @@ class ApartmentsWorld(World):
         return Labels(simulator.apartment, *place, ids, depth, marks)
 
     def landmarks(self, episode: Episode) -> list[int]:
-        """Return the indices in the label "seen" that belong to the goal of an episode."""
+        """Return the indices of the furniture (as in the label "seen") that marks the goal of an
+        episode.
+        """
         return landmarks(episode)
 
     def draw(self, axes: Any) -> None:
@@ -217,16 +229,18 @@ class ApartmentsWorld(World):
         return self._shaped(rgb.copy(), depth.copy())
 
     def _shaped(self, rgb: np.ndarray, depth: np.ndarray) -> dict[str, np.ndarray]:
-        """Return frames with the shapes in ``sensors``; a single camera has no axis for views."""
+        """Return frames with the shapes that ``sensors`` declares. Frames of a single camera have
+        no axis for views.
+        """
         return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
-        """Render the current instant with a displaced camera."""
+        """Render the frames that a displaced camera would see at the current pose."""
         rgb, depth, _ = self._memory.recall((*self._pose(), mount), lambda: self._observe(mount))
         return self._shaped(rgb.copy(), depth.copy())
 
     def _pose(self) -> tuple[str, float, float, float]:
-        """Return the scene and the pose of the agent."""
+        """Return the scene id and the pose of the agent."""
         simulator = self.simulator
         place = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
         return simulator.episode.scene_id, *place
@@ -237,7 +251,7 @@ class ApartmentsWorld(World):
         return self._rendered
 
     def _observe(self, mount: Mount = LEVEL) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Render RGB, depth and face ids of the cameras."""
+        """Render RGB, depth and face ids of all cameras."""
         rgb, depth, ids = self.simulator.observe_faces(range(self.views), mount)
         return rgb[: self.views], depth[: self.views], ids[: self.views]
 
@@ -258,7 +272,9 @@ class ApartmentsWorld(World):
         return space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
 
     def points(self) -> np.ndarray:
-        """Return all points [n, 2] of the scene where an agent can stand, one per cell."""
+        """Return one point per free cell of the scene, as [n, 2]. An agent can stand at each
+        point.
+        """
         return (self._entered.space.cells[:, ::-1] + 0.5) * CELL
 
     def put(
@@ -270,9 +286,9 @@ class ApartmentsWorld(World):
         rgb: bool = True,
         mount: Mount = LEVEL,
     ) -> tuple[dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return the frames with the pose, and the labels except "goal".
+        """Return the frames and the pose as one dict, and all labels except "goal".
 
-        ``views`` limits the views to render; it has no effect with one camera.
+        ``views`` selects the views to render. It has no effect with a single camera.
         """
         apartment = self._entered
         renderer = shared_renderer(self.size)
@@ -287,15 +303,15 @@ class ApartmentsWorld(World):
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The labels of a pose, which are computed when they are read.
+    """The labels of a pose. Each label is computed when it is read.
 
     Args:
         apartment: The apartment.
         xy: Plan position [2] in metres.
-        heading: Radians.
+        heading: Heading in radians.
         ids: Face ids of the views.
         depth: Depth of the views in metres.
-        marks: Furniture that marks the goal, or None for no label "goal".
+        marks: Indices of the furniture that marks the goal. If None, there is no label "goal".
     """
 
     def __init__(

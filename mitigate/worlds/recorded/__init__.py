@@ -1,4 +1,6 @@
-"""Read recorded drives (folders of frames, ROS bags, LeRobot datasets), replay them as worlds."""
+"""Read recorded drives and replay them as worlds. Supported are folders of frames, ROS bags and
+LeRobot datasets.
+"""
 
 from __future__ import annotations
 
@@ -54,22 +56,26 @@ def open_recording(
     episodes: Sequence[int] | None = None,
     tolerance: float | None = None,
 ) -> list[Source]:
-    """Open the drives of a bag, a folder, a LeRobot dataset, or a folder of drives.
+    """Open all recorded drives of a bag, a folder of frames, a LeRobot dataset, or a folder of
+    drives.
 
-    Times and poses are read immediately; frames are read later by :func:`load`.
+    This function reads times and poses. Frames are read later by :func:`load`.
 
     Args:
         path: A bag, a folder of frames, a dataset, or a folder with several drives.
-        instruction: Instruction for the agents; None uses the instruction of each drive.
-        topics: Topics of a bag, as a mapping such as ``{"rgb": "/front/image_raw"}``; None uses
-            the only suitable ones.
+        instruction: Instruction for the agents. If None, each drive keeps its recorded instruction.
+        topics: Topics to read from a bag, as a mapping such as ``{"rgb": "/front/image_raw"}``. A
+            sensor without an entry uses the only suitable topic.
         hfov: Horizontal field of view in degrees, if the recording does not contain it.
-        unit: Metres per count of depth in a bag, or of 16-bit PNG in a folder of frames.
+        unit: Metres per integer step of depth values, in a bag or in the 16-bit PNG files of a
+            folder.
         yaw: Direction of a bag's cameras in degrees to the right of the heading.
-        cameras: Cameras to read from a recording by ``mitigate run`` or from a dataset; None: all.
-        episodes: Numbers of the episodes of a dataset; None: all.
-        tolerance: Maximum seconds between the messages of a time step of a bag or TUM folder (None:
-            0.1), or between a row of a dataset and its video frame (None: 0.0001).
+        cameras: Names of the cameras to read from a dataset or a recording of ``mitigate run``. If
+            None, all are read.
+        episodes: Numbers of the episodes to read from a dataset. If None, all are read.
+        tolerance: Maximum time difference in seconds. In a bag or a TUM folder, it applies to the
+            messages of a time step (default 0.1). In a dataset, it applies to a row and its video
+            frame (default 0.0001).
 
     Returns:
         The drives.

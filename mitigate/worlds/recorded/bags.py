@@ -1,10 +1,11 @@
 """Read drives from bags of ROS 1 (``.bag``), ROS 2 (a folder with ``metadata.yaml``) and MCAP.
 
-The package ``rosbags`` reads them; ROS need not be installed. Images (``sensor_msgs`` Image and
-CompressedImage), ``CameraInfo`` and poses (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and
-``PoseWithCovarianceStamped``) are read. Poses use the axes of REP 103: x forward, y left, z up.
-Times are read from the headers of the messages, if they have headers. A text file next to the bag,
-with its name and ``.txt``, may contain the instruction.
+Bags are read with the package ``rosbags``, without an installation of ROS. The supported messages
+are images (``sensor_msgs`` Image and CompressedImage), ``CameraInfo`` and poses
+(``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and ``PoseWithCovarianceStamped``). Poses use
+the axes of REP 103: x forward, y left, z up. Times are read from the message headers. If messages
+have no headers, the times of receipt are used. The instruction may be in a text file next to the
+bag, which has the name of the bag with the suffix ``.txt``.
 """
 
 from __future__ import annotations
@@ -42,7 +43,7 @@ from mitigate.worlds.recorded.source import (
 from mitigate.worlds.recorded.topics import IMAGES, INFO, POSES, choose_topics
 from mitigate.worlds.recorded.unpacking import bounded
 
-# the first bytes of each format, and a program that repairs it
+# the first bytes of each file format, and a program that repairs such files
 FORMATS = {
     ".bag": (b"#ROSBAG V", "`rosbag reindex`"),
     ".mcap": (b"\x89MCAP0\r\n", "`mcap recover`"),
@@ -50,17 +51,18 @@ FORMATS = {
 }
 
 KINDS = (RGB, DEPTH)
-# Heuristic limits.
-# maximum number of poses per drive: enough for poses at 500 Hz and images at 30 Hz
+# Heuristic limits. maximum number of poses per drive, which allows poses at 500 Hz with images at
+# 30 Hz
 MAX_POSES = 16 * MAX_INSTANTS
-MAX_BUFFER_BYTES = 1 << 30  # maximum bytes of images that wait for images of another topic
+# maximum bytes of buffered images that wait for an image of another topic
+MAX_BUFFER_BYTES = 1 << 30
 
 
 class Bag(Source):
-    """A drive in a bag.
+    """A recorded drive that is stored in a bag.
 
     Args:
-        path: Path of the bag, a file or a folder.
+        path: Path of the bag, which is a file or a folder.
         options: Options for opening it.
 
     Raises:
@@ -70,16 +72,17 @@ class Bag(Source):
     stepped = False
 
     def __init__(self, path: Path, options: Options) -> None:
-        resolved = path.resolve()  # because the name of the path `.` is empty
+        resolved = path.resolve()  # resolve first, because the path `.` has an empty name
         self.path = path
-        self.unit = options.unit  # None: 0.001 for whole numbers, 1 for 32FC1
+        self.unit = options.unit  # if None, 0.001 for integer depth and 1 for 32FC1
         self.tolerance = options.frame_gap
         self.signals = {}
         self.damaged = []
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
-            # messages list the names of topics, so topics with other names are not read
+            # error messages list the names of topics, so topics whose names need escaping are
+            # ignored
             listed = {n: info for n, info in reader.topics.items() if n == escaped(n)}
             available = {name: info.msgtype for name, info in listed.items()}
             counts = {name: info.msgcount for name, info in listed.items()}
@@ -102,7 +105,9 @@ class Bag(Source):
         return "Set unit= (metres per count), such as unit=0.0001."
 
     def _describe(self, encodings: Mapping[str, str]) -> dict[str, str]:
-        """Return the topic of each sensor, with the encoding of images and the unit of depth."""
+        """Return a text for each sensor: its topic, the encoding of its images, and the unit of its
+        depth.
+        """
         formats = {POSE: self.topics[POSE]} if POSE in self.topics else {}
         for kind in self.kinds:
             topic = self.topics[kind]
@@ -142,7 +147,7 @@ class Bag(Source):
                     images = {k: image for k, image in step.items() if image is not None}
                     yield images if len(images) == len(step) else {}
                     done += 1
-                    for k in self.kinds:  # discards images that no later time step uses
+                    for k in self.kinds:  # discard images that no later time step uses
                         buffer[k] = {n: f for n, f in buffer[k].items() if last_use[k][n] >= done}
 
     def _read_image(
@@ -185,7 +190,7 @@ class Bag(Source):
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """Convert errors caused by the content of the bag to a ValueError that names the bag."""
+        """Convert errors that the content of the bag causes to a ValueError that names the bag."""
         try:
             yield
         except OSError:
@@ -194,14 +199,14 @@ class Bag(Source):
             if self.path.is_file() and (pointer := lfs_problem(self.path)):
                 raise ValueError(f"{self.path} {pointer}.") from error
             if isinstance(error, ValueError) and str(self.path) in str(error):
-                raise  # raised by this package, so it already names the bag
+                raise  # this package raised the error, so its message already names the bag
             reason = " ".join(str(error).split())[:300].rstrip(".")
             raise ValueError(
                 f"{self.path} cannot be read as a bag: {reason}. {_repair_advice(self.path)}"
             ) from error
 
     def _read_encodings(self, reader: Any) -> dict[str, str]:
-        """Return the encoding of the first image on each image topic."""
+        """Return the encoding of the first image of each image topic."""
         encodings: dict[str, str] = {}
         for connection in reader.connections:
             if connection.msgtype in IMAGES and connection.topic not in encodings:
@@ -215,17 +220,17 @@ class Bag(Source):
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, tuple[float, float], Any]]:
-        """Yield the messages of some topics in their order in the bag.
+        """Yield the messages of some topics in the order in which the bag stores them.
 
         Args:
             reader: The open reader.
             names: Keys of ``self.topics``.
-            decode: Indices of the messages to decode, by name; if a name has no entry, all are
-                decoded.
+            decode: Indices of the messages to decode for each name. All messages are decoded for
+                names that have no entry.
 
         Yields:
-            The name, two times in seconds (in the message's header, and of its receipt), and the
-            message, or None if it was not decoded.
+            The name, the two timestamps in seconds (from the header, and on receipt), and the
+            message. The message is None if it was not decoded.
         """
         by_topic: dict[str, list[str]] = {}
         for name in names:
@@ -244,7 +249,9 @@ class Bag(Source):
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
-        """Return the times of images, the poses (time, x, y, heading), and the lenses."""
+        """Return the times of the images, the poses as (time, x, y, heading), and the lenses of the
+        cameras.
+        """
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
         poses: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
@@ -282,7 +289,7 @@ class Bag(Source):
     def _match(
         self, stamps: Mapping[str, list[float]], table: Sequence[tuple[float, ...]], yaw: float
     ) -> None:
-        """For each time step, set the time, the pose and the index of each camera's image."""
+        """Set the time, the pose and the image index of each camera for all time steps."""
         records: dict[str, Sequence] = {**stamps, **({POSE: table} if POSE in self.topics else {})}
         for name, messages in records.items():
             if not messages:
@@ -302,7 +309,7 @@ class Bag(Source):
 
 
 def _repair_advice(path: Path) -> str:
-    """Return how to repair a bag that cannot be read."""
+    """Return advice on how to repair a bag that cannot be read."""
     files = [path] if path.is_file() else [f for f in path.iterdir() if f.suffix in FORMATS]
     for file in files:
         start, program = FORMATS.get(file.suffix, (b"", ""))
@@ -318,7 +325,7 @@ def _repair_advice(path: Path) -> str:
 
 
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
-    """Open a reader of ``rosbags`` that parses only the definitions of the types that are read.
+    """Open a reader of ``rosbags`` that parses only the definitions of the supported message types.
 
     Otherwise, one definition that ``rosbags`` cannot parse, such as a service event, would make the
     whole bag unreadable.
@@ -336,6 +343,6 @@ def _open_part(part: Any, open_: Callable[[], None]) -> None:
 
 
 def _choose_clock(stamps: Sequence[tuple[float, float]]) -> list[float]:
-    """Return the times of the headers if any header has one, otherwise the times of receipt."""
+    """Return the times in the headers. If no header has a time, return the times of receipt."""
     has_header = any(header for header, _ in stamps)
     return [header if has_header else received for header, received in stamps]

@@ -1,4 +1,6 @@
-"""A drive that is stored as one file per frame, and readers of the lists beside the frames."""
+"""A recorded drive that is stored as one file per frame, and functions that read the lists next to
+the frames.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,13 @@ INSTRUCTION = "instruction.txt"
 
 @dataclass
 class Frames(Source):
-    """A drive in files.
+    """A recorded drive whose frames are stored in separate files.
 
     Attributes:
-        files: One file per time step, by camera.
-        unit: Metres per count of 16-bit depth.
-        unit_given: Whether the user or the recording states ``unit``; otherwise it is a default.
+        files: The frame files of each camera, one per time step.
+        unit: Metres per integer step of 16-bit depth.
+        unit_given: Whether ``unit`` comes from the user or the recording. If false, ``unit`` is a
+            default.
     """
 
     files: Mapping[str, Sequence[Path]]
@@ -40,7 +43,7 @@ class Frames(Source):
         }
 
     def _is_counted(self, camera: str) -> bool:
-        """Return whether a camera's files hold depth in counts of ``unit``."""
+        """Return whether a camera's files contain depth as integer multiples of ``unit``."""
         is_npy = self.files[camera][0].suffix.lower() == ".npy"
         return self.cameras[camera].kind == DEPTH and not is_npy
 
@@ -61,7 +64,8 @@ class Frames(Source):
         kind = self.cameras[camera].kind
         if (frame.shape[-1] == 3) != (kind == RGB):
             raise ValueError(
-                f"{path} must be a {kind} frame, as the others of camera {camera!r}. Replace it."
+                f"{path} must be a {kind} frame, like the other frames of camera {camera!r}. "
+                "Replace it."
             )
         if kind == RGB:
             return frame
@@ -70,16 +74,16 @@ class Frames(Source):
 
 
 def assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
-    """Return a lens with a field of view from the user, or with a default."""
+    """Return a lens with the field of view that the user set, or with a default field of view."""
     return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
 
 
 def read_rows(
     file: Path, columns: int, separator: str | None = None
 ) -> Iterator[tuple[int, list[str]]]:
-    """Yield the number and the words of each line that is not a comment.
+    """Yield the line number and the words of each line that is not a comment.
 
-    A line may have more than ``columns`` words, unless there is a ``separator``.
+    A line may have more than ``columns`` words, but not if ``separator`` is set.
     """
     if not file.is_file():
         return
@@ -100,7 +104,7 @@ def number(word: str, file: Path, line: int) -> float:
     """Parse a finite number.
 
     Raises:
-        ValueError: The word is not a finite number; the message names file and line.
+        ValueError: The word is not a finite number. The message contains the file and the line.
     """
     try:
         value = float(word)

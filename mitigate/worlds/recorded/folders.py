@@ -2,13 +2,14 @@
 
 Three layouts are supported:
 
-* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``: the layout of ``mitigate run
-  record=``;
-* ``rgb.txt``, ``depth.txt``, ``groundtruth.txt``: the layout of TUM RGB-D (``tum.py``);
-* ``rgb/`` and ``depth/``: one file per step, sorted by name. ``poses.csv`` is optional and has
-  one line "x,y,heading" per step (metres, radians, forward is (-sin h, cos h)).
+* ``recording.json`` and ``<scene>/<episode>/<camera>/000000.png``, which ``mitigate run record=``
+  writes;
+* ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``, the layout of TUM RGB-D (``tum.py``);
+* ``rgb/`` and ``depth/`` with one file per step, sorted by name. The optional file ``poses.csv``
+  has one line "x,y,heading" per step, in metres and radians. The forward direction is (-sin h, cos
+  h), where h is the heading.
 
-The last two layouts may contain the instruction as ``instruction.txt``.
+In the last two layouts, the instruction may be stored in ``instruction.txt``.
 """
 
 from __future__ import annotations
@@ -44,25 +45,28 @@ from mitigate.worlds.recorded.source import (
 )
 from mitigate.worlds.recorded.tum import LISTS, TRAJECTORY
 
-# The layout of `mitigate run record=`.
+# File names in the layout of `mitigate run record=`.
 CAMERAS = "cameras.json"
 STEPS = "steps.jsonl"
 EPISODE = "episode.json"
-# The layout with rgb/ and depth/.
+# File name in the layout with rgb/ and depth/.
 POSES = "poses.csv"
 FIX = "Copy it again, or leave this drive out."
-MAX_NUMBER = 1e6  # maximum of a number in a recording, in metres or degrees (heuristic)
-MAX_HEADING = 50.0  # in radians (heuristic): eight turns; larger headings must be in degrees
+# maximum absolute value of a number in a recording, in metres or degrees (heuristic)
+MAX_NUMBER = 1e6
+# in radians, which is eight full turns (heuristic); larger values are assumed to be in degrees
+MAX_HEADING = 50.0
 
 
 def read_run(path: Path, options: Options) -> list[Frames]:
-    """Read the episodes of a recording by ``mitigate run``.
+    """Read all episodes of a recording that ``mitigate run`` wrote.
 
     Raises:
         FileNotFoundError: A file is missing.
         ValueError: The recording is damaged, or an option does not apply to it.
     """
-    # a hidden folder is an episode that is still being recorded or whose program was killed
+    # hidden folders are skipped: they hold episodes that are still being recorded or were
+    # interrupted
     episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
     drives = (_read_episode(folder, path, options.hfov, options.cameras) for folder in episodes)
     return [drive for drive in drives if drive is not None]
@@ -71,7 +75,7 @@ def read_run(path: Path, options: Options) -> list[Frames]:
 def _read_episode(
     folder: Path, recording: Path, hfov: float | None, chosen: Sequence[str] | None
 ) -> Frames | None:
-    """Read an episode of a recording by ``mitigate run``; return None if it has no frames.
+    """Read one episode of a recording that ``mitigate run`` wrote. Return None if it has no frames.
 
     An interrupted episode ends with its last complete step.
     """
@@ -120,7 +124,7 @@ def _read_episode(
 
 
 def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> None:
-    """Raise ValueError if a frame does not belong to its step, because a frame is missing."""
+    """Raise ValueError if a missing frame causes later frames to belong to the wrong step."""
     for index, step in enumerate(steps):
         call = step.get("call") if isinstance(step, dict) else None
         for paths in files.values():
@@ -132,13 +136,17 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
 
 
 def _is_level(described: Mapping[str, Any], name: str) -> bool:
-    """Return whether a camera is level, which is assumed if the recording does not state it."""
+    """Return whether a camera is level. A camera is assumed to be level if the recording does not
+    describe it.
+    """
     camera = described.get(name)
     return not isinstance(camera, dict) or camera.get("level") is not False
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera, from ``cameras.json`` or from one of its frames and ``hfov``."""
+    """Return the lens of a camera. If ``cameras.json`` does not describe the camera, a frame
+    determines its kind, and ``hfov`` or a default is its field of view.
+    """
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
@@ -159,7 +167,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """Return a number in a JSON object, or None if it is missing or null.
+    """Return the number under a key of a JSON object, or None if it is missing or null.
 
     Raises:
         ValueError: The value is not a number, or it is too large.
@@ -177,7 +185,7 @@ def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | 
 def _recorded_poses(steps: Sequence[Any], file: Path) -> np.ndarray | None:
     """Return the poses in the lines of steps.jsonl, float64 [N, 3].
 
-    The result is None if a line has no pose, with a warning if other lines have poses.
+    If a line has no pose, the result is None. A warning is issued if only some lines have poses.
     """
     count = sum(map(_has_pose, steps))
     if count < len(steps):
@@ -202,7 +210,7 @@ def _has_pose(step: Any) -> bool:
 
 
 def read_frames(path: Path, options: Options) -> list[Frames]:
-    """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``; each file is a step.
+    """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``. Each frame file is one step.
 
     Raises:
         ValueError: The folder is damaged.
@@ -269,7 +277,9 @@ def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
 
 
 def _list_frames(folder: Path) -> list[Path]:
-    """Return the frames of a folder sorted by name, comparing digits as numbers."""
+    """Return the frame files of a folder, sorted by name. Digits in names are compared as
+    numbers.
+    """
     if not folder.is_dir():
         return []
     files = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.name[0] != "."]
@@ -277,7 +287,7 @@ def _list_frames(folder: Path) -> list[Path]:
 
 
 def _read_lines(file: Path) -> list[Any]:
-    """Read the JSON lines of a file, without an incomplete last line."""
+    """Read the JSON lines of a file. An incomplete last line is left out."""
     records = []
     lines = read_text(file).splitlines()
     if len(lines) > MAX_INSTANTS:

@@ -1,7 +1,7 @@
-"""Read drives from LeRobot datasets: each episode is a drive.
+"""Read recorded drives from LeRobot datasets. Each episode is one drive.
 
-The task of the first frame is the instruction. LeRobot has no standard for poses and lenses, so a
-drive has no poses, and all its cameras face forward.
+The task of the first frame is the instruction. LeRobot defines no format for poses and lenses.
+Therefore these drives have no poses, and all cameras are assumed to face forward.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class LerobotEpisode(Source):
         dataset: The dataset.
         episode: The episode.
         read: Cameras to read.
-        tolerance: Maximum seconds between a row and its video frame.
+        tolerance: Maximum time difference in seconds between a row and its video frame.
     """
 
     dataset: Dataset
@@ -61,12 +61,12 @@ def _instruction(dataset: Dataset, rows: Rows, name: str) -> str:
 
 
 def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
-    """Open the episodes of a dataset; their frames are read later.
+    """Open the episodes of a dataset. Their frames are read later.
 
     Raises:
         FileNotFoundError: A file is missing.
-        ValueError: The dataset is damaged, several cameras fit, an episode is too long or has an
-            unknown task, or a name or number is unknown.
+        ValueError: The dataset is damaged, several cameras are possible, an episode is too long or
+            has an unknown task, or the name of a camera or the number of an episode is unknown.
     """
     dataset = open_dataset(path)
     chosen = []

@@ -1,4 +1,6 @@
-"""Read poses, lenses and images from ROS messages; untrusted content is checked."""
+"""Read poses, lenses and images from ROS messages. The content is checked because bags may come
+from untrusted sources.
+"""
 
 from __future__ import annotations
 
@@ -16,11 +18,13 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.frame_files import NO_READING
 from mitigate.worlds.recorded.source import Lens, plan_pose
 
-FISHEYE = ("equidistant", "fisheye")  # names of distortion models in ROS
-MAX_SIDE = 1 << 13  # maximum side of an image in pixels (heuristic)
-MAX_ENCODING = 100  # maximum characters of an encoding; longer ones are cut (heuristic)
-COMPRESSED_DEPTH_HEADER = 12  # number of bytes before the PNG data in `compressedDepth`
-_COLOURS = {  # maps an encoding to its channels and the conversion to RGB
+FISHEYE = ("equidistant", "fisheye")  # names of fisheye distortion models in ROS
+MAX_SIDE = 1 << 13  # maximum width and height of an image in pixels (heuristic)
+# maximum number of characters of an encoding's name; longer names are cut (heuristic)
+MAX_ENCODING = 100
+# number of header bytes before the PNG data in `compressedDepth` images
+COMPRESSED_DEPTH_HEADER = 12
+_COLOURS = {  # maps the name of an encoding to the number of channels and the conversion to RGB
     "rgb8": (3, None),
     "bgr8": (3, cv2.COLOR_BGR2RGB),
     "rgba8": (4, cv2.COLOR_RGBA2RGB),
@@ -28,7 +32,8 @@ _COLOURS = {  # maps an encoding to its channels and the conversion to RGB
     "mono8": (1, cv2.COLOR_GRAY2RGB),
     "8UC3": (3, cv2.COLOR_BGR2RGB),
 }
-_DEPTHS = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}  # maps an encoding to its pixel type
+# maps the name of an encoding to its pixel type
+_DEPTHS = {"16UC1": "u2", "mono16": "u2", "32FC1": "f4"}
 
 
 class DamagedImage(ValueError):
@@ -41,19 +46,25 @@ def encoding_of(message: Any) -> str:
 
 
 def kind_of(encoding: str) -> str | None:
-    """Return "rgb" or "depth" for an encoding, or None if images of both kinds may have it."""
+    """Return "rgb" or "depth" for an encoding. Return None if both kinds of images may use the
+    encoding.
+    """
     if "compressedDepth" in encoding or encoding.startswith(("16UC1", "32FC1")):
         return DEPTH
     return RGB if "jpeg" in encoding or encoding.startswith(tuple(_COLOURS)) else None
 
 
 def depth_unit(encoding: str) -> float:
-    """Return the metres per count that REP 118 prescribes: 1 for 32FC1, 0.001 for integers."""
+    """Return the depth unit in metres that REP 118 prescribes: 1 for 32FC1, and 0.001 for
+    integers.
+    """
     return 1.0 if encoding == "32FC1" else 0.001
 
 
 def read_pose(message: Any) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of a message; NaN for an invalid rotation."""
+    """Return the plan pose (x, y, heading) of a message. The heading is NaN if the rotation is
+    invalid.
+    """
     while (inner := _field(message, "pose")) is not None:
         message = inner
     orientation = message.orientation
@@ -63,18 +74,19 @@ def read_pose(message: Any) -> tuple[float, float, float]:
 
 
 def _field(message: Any, *names: str) -> Any:
-    """Return the first of ``names`` that is a field of the message, or None.
+    """Return the value of the first of ``names`` that is a field of the message, or None.
 
-    ROS 1 and ROS 2 name some fields differently, and the bag defines the classes of its messages.
+    Several names are needed because ROS 1 and ROS 2 name some fields differently.
     """
     return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
 
 def read_stamp(raw: bytes, ros2: bool) -> float:
-    """Return the seconds in the header of a serialised message; 0 if it has no header.
+    """Return the time in seconds from the header of a serialised message, or 0 if there is no
+    header.
 
-    A ROS 1 message starts with a counter and a time, little endian. A ROS 2 message (CDR) starts
-    with four bytes (the second is the byte order), followed by the time.
+    A ROS 1 message starts with a counter and a time, both little endian. A ROS 2 message (CDR)
+    starts with four bytes, of which the second is the byte order; the time follows.
     """
     if len(raw) < 12:
         return 0.0
@@ -84,12 +96,14 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
 
 
 def camera_matrix(message: Any) -> np.ndarray:
-    """Return the flattened 3x3 matrix of a CameraInfo, which is ``K`` in ROS 1, ``k`` in ROS 2."""
+    """Return the flattened 3x3 camera matrix of a CameraInfo. The field is called ``K`` in ROS 1
+    and ``k`` in ROS 2.
+    """
     return np.asarray(_field(message, "k", "K")).reshape(-1)
 
 
 def read_lens(kind: str, message: Any, path: Path) -> Lens:
-    """Return the lens of a CameraInfo.
+    """Return the lens that a CameraInfo describes.
 
     Raises:
         ValueError: Focal lengths or sizes are invalid, or the lens is a fisheye lens.
@@ -118,13 +132,14 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
 
 
 def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
-    """Return a message's image: uint8 [H, W, 3], or float32 metres [H, W] with 0 for missing depth.
+    """Return the image of a message: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W].
+    Missing depth is 0.
 
     Args:
         message: An Image or a CompressedImage.
         kind: "rgb" or "depth".
         path: The bag, for error messages.
-        unit: Metres per count of depth; None: :func:`depth_unit`.
+        unit: Metres per integer step of depth. If None, :func:`depth_unit` determines it.
 
     Raises:
         DamagedImage: The image cannot be decoded.
@@ -169,7 +184,7 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
 
 
 def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.ndarray:
-    """Decode an image in PNG or JPEG."""
+    """Decode a PNG or JPEG image."""
     data = np.ascontiguousarray(message.data).view(np.uint8)
     encoding = str(message.format)
     if "compressedDepth" in encoding:
@@ -192,8 +207,8 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
 
 
 def _is_image(data: np.ndarray) -> bool:
-    """Return whether the bytes start like a PNG or JPEG of an allowed size, without decoding
-    them.
+    """Return whether the bytes begin like a PNG or JPEG image of an allowed size. The image is not
+    decoded.
     """
     try:
         with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as opened:
@@ -203,5 +218,5 @@ def _is_image(data: np.ndarray) -> bool:
 
 
 def _clean_depth(depth: np.ndarray) -> np.ndarray:
-    """Return float32 depth in which negative and non-finite values are replaced by 0."""
+    """Return depth as float32, with negative and non-finite values replaced by 0."""
     return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)

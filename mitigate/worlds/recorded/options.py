@@ -14,7 +14,7 @@ DATASET = "a LeRobot dataset"
 RUN = "a recording by mitigate run"
 TUM = "a folder of TUM RGB-D"
 FRAMES = "a folder of frames"
-# the kinds of recordings to which an option applies; hfov= applies to all
+# the kinds of recordings to which each option applies; hfov= applies to all kinds
 KINDS = {
     "topics": (BAG,),
     "yaw": (BAG,),
@@ -27,7 +27,7 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Options:
-    """Options of :func:`mitigate.worlds.recorded.open_recording`, which describes them.
+    """Options of :func:`mitigate.worlds.recorded.open_recording`. See there for their meaning.
 
     Raises:
         ValueError: A value is out of range.
@@ -57,15 +57,15 @@ class Options:
 
     @property
     def frame_gap(self) -> float:
-        """The maximum seconds between the frames of a time step."""
+        """Maximum time difference in seconds between the frames of one time step."""
         return MAX_FRAME_GAP if self.tolerance is None else self.tolerance
 
     def check(self, path: Path, kind: str) -> None:
-        """Raise ValueError for an option that is set but does not apply to recordings of ``kind``.
+        """Raise ValueError if an option is set that does not apply to recordings of ``kind``.
 
         Args:
-            path: The recording, for the message.
-            kind: Its kind.
+            path: Path of the recording, for the error message.
+            kind: Kind of the recording.
         """
         for name, kinds in KINDS.items():
             if kind not in kinds and vars(self)[name] != vars(Options())[name]:

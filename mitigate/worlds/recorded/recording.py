@@ -37,21 +37,25 @@ from mitigate.worlds.recorded.summary import Camera, describe, warn_about
 from mitigate.worlds.recorded.views import border_fraction, covered_tangent, square_view
 from mitigate.worlds.world import World, check_metres
 
-# action number for a motion that is not an action of an agent, such as backwards or sideways
+# action number of a motion that no action of an agent describes, such as driving backwards or
+# sideways
 NO_ACTION = -1
 
-OBSERVED = "observation."  # names of signals that an agent may read begin with this
+OBSERVED = "observation."  # prefix of the names of signals that an agent may read
 
-# Heuristic limits.
-# tolerance in steps, so that rounding does not lose a motion of exactly one step
+# Heuristic limits. minimum motion of a new step, as a fraction of a step; below 1, so that rounding
+# does not lose a motion of exactly one step
 STEP_TOLERANCE = 0.98
-MIN_MOVE = 0.05  # in metres; the odometry of a standing robot moves by less
-MIN_LAST_STEP = 0.5  # as a fraction of a step; a shorter last step is merged into the previous step
-MAX_FRAME_BYTES = 1 << 32  # maximum bytes of all frames of a drive
-MAX_OFF_HEADING = 1 / 3  # fraction of moving steps whose direction may differ from the heading
+MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies by less
+# as a fraction of a step; a last step that is shorter is merged into the previous step
+MIN_LAST_STEP = 0.5
+MAX_FRAME_BYTES = 1 << 32  # maximum number of bytes that all frames of a drive may take
+# maximum fraction of moving steps whose direction may differ from the heading without a warning
+MAX_OFF_HEADING = 1 / 3
 MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
-MIN_READABLE = 0.5  # minimum fraction of steps without a damaged image
-MAX_YAW_ERROR = 3.0  # maximum degrees between a camera and its view of the panorama
+MIN_READABLE = 0.5  # minimum fraction of steps whose images are undamaged
+# maximum angle in degrees between a camera and the view of the panorama that it provides
+MAX_YAW_ERROR = 3.0
 
 
 @dataclass(frozen=True)
@@ -61,14 +65,15 @@ class Recording:
     Attributes:
         name: Name of the drive.
         instruction: Instruction text, which may be empty.
-        frames: "rgb" uint8 [T, S, S, 3] and "depth" float32 metres [T, S, S, 1], or with 12 views
-            [T, 12, S, S, C]. Sensors that were not recorded are absent.
-        times: float64 [T], seconds since the first step.
+        frames: "rgb" (uint8 [T, S, S, 3]) and "depth" in metres (float32 [T, S, S, 1]). With 12
+            views, the shapes are [T, 12, S, S, C]. Sensors that were not recorded are absent.
+        times: float64 [T], in seconds since the first step.
         poses: float64 [T, 3], (x, y, heading), or None if unknown.
         driven: The driver's actions, or None if the poses are unknown.
         signals: Recorded numbers by name, such as "action": float64 [T, size].
         hfov: Field of view of the square views in degrees.
-        summary: What was read, as one line of text for the drive and one per sensor.
+        summary: Description of what was read, with one line of text for the drive and one per
+            sensor.
     """
 
     name: str
@@ -83,7 +88,7 @@ class Recording:
 
     @property
     def sensors(self) -> dict[str, Sensor]:
-        """Sensors of the recording by name, see ``core/observation.py``."""
+        """The recorded sensors by name (see ``core/observation.py``)."""
         first = next(iter(self.frames.values()))
         sensors = cameras(first.shape[-2], first.shape[1] if first.ndim == 5 else 1)
         recorded = {*self.frames, *([] if self.poses is None else [POSE])}
@@ -99,11 +104,11 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
 
     Args:
         source: An opened drive.
-        views: Number of views per frame: 1 (one camera) or 12 (panorama).
+        views: Number of views per frame: 1 for one camera, or 12 for a panorama.
         size: Height and width of a view in pixels.
-        step: Distance between two instants.
-        crop: Whether to fill the views with the largest square field of view that all cameras
-            cover, in place of 90 degrees with a black border.
+        step: Distance between two chosen time steps.
+        crop: Whether to crop views to the largest square field of view that all cameras cover. If
+            false, views have 90 degrees and may have a black border.
 
     Returns:
         The drive with its frames in memory. Steps with a damaged image are left out.
@@ -162,10 +167,10 @@ class _Views:
     """The square views of a drive.
 
     Attributes:
-        frames: Frames of the readable steps, as in :class:`Recording`.
-        readable: Whether all images of each chosen step could be read, bool [T].
+        frames: Frames of the readable steps, in the format of :class:`Recording`.
+        readable: bool [T], whether all images of a chosen step could be read.
         shapes: Height and width of each camera's images.
-        tangent: Tangent of half the views' field of view.
+        tangent: Tangent of half the field of view of the views.
     """
 
     frames: dict[str, np.ndarray]
@@ -181,7 +186,7 @@ def _read_views(
     size: int,
     crop: bool,
 ) -> _Views:
-    """Read the frames at the chosen time steps; the arguments are those of :func:`load`."""
+    """Read the frames at the chosen time steps. :func:`load` describes the arguments."""
     views = 1 + max(view for _, view in view_cameras)
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
     frames = {
@@ -226,7 +231,7 @@ def _read_views(
 
 
 def kinds(source: Source, views: int) -> list[str]:
-    """Return the kinds of frames ("rgb", "depth") that :func:`load` would read.
+    """Return which kinds of frames ("rgb", "depth") :func:`load` would read.
 
     Raises:
         ValueError: The source lacks a camera.
@@ -235,7 +240,9 @@ def kinds(source: Source, views: int) -> list[str]:
 
 
 def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
-    """Return the camera of each (kind, view), for the front camera or the whole panorama."""
+    """Return a mapping from (kind, view) to the camera that provides this view, for the front view
+    or for the whole panorama.
+    """
     assigned: dict[tuple[str, int], str] = {}
     for name, lens in source.cameras.items():
         yaw_error = abs((lens.yaw - 30.0 * lens.view + 180) % 360 - 180)
@@ -265,7 +272,7 @@ def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
 
 
 def _list_cameras(source: Source) -> str:
-    """Return the cameras of a source as text for a message."""
+    """Return a text that lists the cameras of a source, for error messages."""
     cameras = source.cameras.items()
     listed = [f"{name} ({lens.kind}, {lens.yaw:g} degrees)" for name, lens in cameras]
     return ", ".join(listed[:6]) + (" ..." if len(listed) > 6 else "") or "none"
@@ -287,8 +294,8 @@ def _check_headings(name: str, poses: np.ndarray, driven: Driven) -> None:
 
 
 class RecordedWorld(World):
-    """World that replays a recording: each step returns the next recorded step, whatever the
-    action.
+    """World that replays a recording. Each step returns the next recorded observation, independent
+    of the action.
 
     The episode ends after the last recorded step. Success cannot be measured in a recording.
     """
@@ -302,17 +309,18 @@ class RecordedWorld(World):
         self.done = True
 
     def episode(self) -> Episode:
-        """Return the recorded drive as an episode with its name and instruction."""
+        """Return an episode with the name and the instruction of the recorded drive."""
         return placeless_episode(self.recording.name, self.recording.instruction)
 
     def reset(self, episode: Episode) -> Observation:
-        """Return the first instant."""
+        """Return the first recorded observation."""
         self.index = 0
         self.done = False
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Return the next recorded observation, or the last one again when the episode ends.
+        """Return the next recorded observation. When the episode ends, return the last observation
+        again.
 
         Raises:
             RuntimeError: The episode is over.
@@ -333,7 +341,7 @@ class RecordedWorld(World):
         ready = {
             name: values[index].astype(np.float32)
             for name, values in self.recording.signals.items()
-            if name.startswith(OBSERVED)  # not the recorded action
+            if name.startswith(OBSERVED)  # an agent must not read the recorded action
         }
         if poses is not None:
             ready[POSE] = poses[index].astype(np.float32)
@@ -343,12 +351,12 @@ class RecordedWorld(World):
 
 @dataclass(frozen=True)
 class Step:
-    """Distance between two observations of an agent; the default is one step of the agent.
+    """Distance between two observations of an agent. The default is the size of an agent's actions.
 
     Attributes:
-        metres: Metres moved since the last observation.
-        degrees: Degrees turned since the last observation.
-        seconds: Seconds since the last observation; used if poses are unknown.
+        metres: Distance in metres that the agent moves between two observations.
+        degrees: Angle in degrees that the agent turns between two observations.
+        seconds: Time in seconds between two observations; used only if poses are unknown.
 
     Raises:
         ValueError: A value is not above 0.
@@ -369,10 +377,11 @@ class Step:
         return max(moved, abs(turn(before[2], after[2])) / math.radians(self.degrees))
 
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
-        """Choose the recorded times at which an agent observes.
+        """Choose the recorded times at which an agent receives an observation.
 
-        These are the first time, each time that is one step after the previous choice, and the last
-        time. The last time replaces the previous choice if both have nearly the same pose.
+        The result contains the first time, each time that is one step after the previously chosen
+        time, and the last time. If the last two chosen times have nearly the same pose, only the
+        last is kept.
 
         Args:
             times: float64 [N], seconds.
@@ -400,12 +409,12 @@ class Step:
 
 @dataclass(frozen=True)
 class Driven:
-    """The driver's motion at each of T steps, and the last is STOP.
+    """The driver's motion at each of T steps. The last motion is STOP.
 
     Attributes:
-        actions: int [T], the most similar action of an agent, or ``NO_ACTION``.
-        metres: float [T], metres moved forward; negative if backwards.
-        radians: float [T], radians turned to the left.
+        actions: int [T], the agent action that is most similar to the motion, or ``NO_ACTION``.
+        metres: float [T], forward motion in metres; negative values mean backwards.
+        radians: float [T], angle in radians turned to the left.
     """
 
     actions: np.ndarray
@@ -414,15 +423,15 @@ class Driven:
 
 
 def turn(before: float, after: float) -> float:
-    """Return the angle in radians to the left between two headings, from -pi to pi."""
+    """Return the angle in radians by which the heading turned to the left, from -pi to pi."""
     return float((after - before + math.pi) % (2 * math.pi) - math.pi)
 
 
 def driver_actions(poses: np.ndarray) -> Driven:
-    """Return the motions between poses [T, 3]; the last action is STOP.
+    """Return the motions between the poses [T, 3]. The last action is STOP.
 
-    If a step both moves and turns, the larger part determines its action, in units of 0.25 m and 15
-    degrees.
+    If a step both moves and turns, the larger part determines its action. The parts are compared in
+    units of 0.25 m and 15 degrees.
     """
     count = len(poses)
     actions = np.full(count, STOP)
@@ -446,6 +455,6 @@ def driver_actions(poses: np.ndarray) -> Driven:
 
 
 def movements(actions: np.ndarray) -> Driven:
-    """Return the motions of a driver who takes ``actions`` in full steps."""
+    """Return the motions of a driver who executes ``actions`` exactly."""
     turned = math.radians(TURN_DEGREES) * ((actions == LEFT) * 1.0 - (actions == RIGHT))
     return Driven(actions, FORWARD_METRES * (actions == FORWARD), turned)

@@ -1,7 +1,8 @@
-"""Define the interface of an opened recording: time steps with poses and frames of named cameras.
+"""The interface of an opened recording, which has time steps with poses and with frames of named
+cameras.
 
-A source reads times and poses when it is opened, and reads frames only on request. ``folders.py``
-and ``bags.py`` open sources from files.
+An opened recording is called a source. Times and poses are read when a source is opened, and frames
+are read on request. ``folders.py`` and ``bags.py`` open files as sources.
 """
 
 from __future__ import annotations
@@ -16,18 +17,21 @@ import numpy as np
 from mitigate.core.observation import POSE, VIEW_STEP_DEGREES
 
 # Heuristic limits.
-MAX_FRAME_GAP = 0.1  # maximum seconds between frames of the same time step: one frame at 10 Hz
-MAX_POSE_GAP = 2.0  # maximum seconds between two poses for interpolation
-MAX_INSTANTS = 1 << 20  # maximum time steps per drive: 9 hours at 30 Hz
-MAX_TEXT_BYTES = 1 << 28  # maximum bytes of a text file that lists files or poses
+# maximum time in seconds between the frames of one time step, which is one frame at 10 Hz
+MAX_FRAME_GAP = 0.1
+# maximum time in seconds between recorded poses for which poses in between are interpolated
+MAX_POSE_GAP = 2.0
+MAX_INSTANTS = 1 << 20  # maximum number of time steps per drive, which is 9 hours at 30 Hz
+MAX_TEXT_BYTES = 1 << 28  # maximum number of bytes of a text file that lists files or poses
 MAX_INSTRUCTION_BYTES = 1 << 16
 MIN_HFOV = 10.0  # limits of the horizontal field of view in degrees
 MAX_HFOV = 179.0
 MIN_VFOV = 1.0  # minimum vertical field of view in degrees
-# maximum distance of the principal point from the image centre, in image widths or heights
+# maximum distance of the principal point from the image centre, as a fraction of the image width or
+# height
 MAX_CENTRE_OFFSET = 4.0
-# minimum horizontal component of a unit vector that has a heading; such a vector points at most
-# 73 degrees up or down
+# minimum horizontal component of a direction (a unit vector) for which a heading is defined; the
+# direction then points at most 73 degrees up or down
 MIN_LEVEL = 0.3
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02
@@ -35,16 +39,17 @@ MAX_ASPECT_ERROR = 0.02
 
 @dataclass(frozen=True)
 class Lens:
-    """A pinhole camera, described by its field of view or by its intrinsics.
+    """A pinhole camera. It is described by its field of view or by its intrinsics.
 
     Attributes:
         kind: "rgb" or "depth".
-        hfov: Horizontal field of view in degrees; ignored if ``focal`` is set.
-        yaw: Degrees to the right of the heading.
+        hfov: Horizontal field of view in degrees. It is ignored if ``focal`` is set.
+        yaw: Direction of the camera in degrees to the right of the heading.
         focal: Focal lengths (fx, fy) in pixels of an image of ``size``.
         centre: Principal point (cx, cy) in pixels of an image of ``size``.
         size: Width and height of the image in pixels.
-        assumed: Whether ``hfov`` is a default that the recording does not confirm.
+        assumed: Whether ``hfov`` is a default, because the recording does not contain the field of
+            view.
 
     Raises:
         ValueError: The field of view or the principal point is out of range.
@@ -77,7 +82,7 @@ class Lens:
             )
 
     def intrinsics(self, height: int, width: int) -> tuple[float, float, float, float]:
-        """Return (fx, fy, cx, cy) in pixels of an image of this size.
+        """Return (fx, fy, cx, cy) in pixels for an image of this size.
 
         Raises:
             ValueError: The aspect ratio of the image differs from the aspect ratio of ``size``.
@@ -98,7 +103,7 @@ class Lens:
         return fx * scale_x, fy * scale_y, cx * scale_x, cy * scale_y
 
     def fields_of_view(self, height: int, width: int) -> tuple[float, float]:
-        """Return the horizontal and vertical field of view in degrees of an image of this size."""
+        """Return the horizontal and vertical field of view in degrees for an image of this size."""
         fx, fy, _, _ = self.intrinsics(height, width)
         across = 2 * math.degrees(math.atan2(width / 2, fx))
         return across, 2 * math.degrees(math.atan2(height / 2, fy))
@@ -117,17 +122,17 @@ class Source:
         name: Name of the drive.
         instruction: Instruction text, which may be empty.
         cameras: Lens of each camera by name.
-        times: float64 [N], seconds, increasing.
+        times: float64 [N], increasing, in seconds.
         poses: float64 [N, 3], (x, y, heading) in the plan frame of ``core/observation.py``, or
             None if unknown.
-        stepped: Whether each time step is one step of an agent; otherwise it is a frame of the
-            camera.
+        stepped: Whether each time step is one step of an agent. If false, each time step is one
+            frame of the camera.
         dropped: Number of time steps that were skipped because no pose or no frame of the other
             camera was near in time.
         signals: Recorded numbers by name, such as "action": float64 [N, size].
-        formats: Where and how frames and poses are stored, as text by camera and for "pose", such
-            as "/odom" or "16-bit PNG, 0.001 metres per count (assumed)".
-        damaged: A description of each damaged image that ``frames`` has met.
+        formats: Descriptions of where and how the frames of each camera and "pose" are stored.
+            Examples are "/odom" and "16-bit PNG, 0.001 metres per count (assumed)".
+        damaged: Descriptions of the damaged images that ``frames`` has found so far.
     """
 
     name: str
@@ -142,20 +147,22 @@ class Source:
     damaged: list[str] = field(default_factory=list, kw_only=True)
 
     def depth_advice(self) -> str:
-        """Return how to correct depth that is not in metres."""
+        """Return advice on how to correct depth that is not in metres."""
         return "Convert it to metres."
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frames of all cameras at each chosen time step, in order.
 
         Args:
-            chosen: Increasing indices of instants.
+            chosen: Increasing indices of time steps.
 
-        Yields: frames by camera, uint8 [H, W, 3] or float32 metres [H, W] with 0 for missing depth.
-            The dict is empty if an image is damaged, which is then described in ``damaged``.
+        Yields: the frames by camera: RGB as uint8 [H, W, 3], depth in metres as float32 [H, W] with
+        0 for missing depth. If an image is damaged, the dict is empty and ``damaged`` describes the
+        image.
 
         Raises:
-            ValueError: A frame is damaged, and this kind of recording tolerates no damage.
+            ValueError: A frame is damaged in a kind of recording that must not contain damaged
+                frames.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
@@ -163,13 +170,13 @@ class Source:
 def plan_pose(
     x: float, y: float, quaternion: Sequence[float], axis: Sequence[float]
 ) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of an agent at (x, y); z points up.
+    """Return the plan pose (x, y, heading) of an agent. The z axis points up.
 
     Args:
-        x: Metres.
-        y: Metres.
-        quaternion: Rotation (x, y, z, w) of the agent or its camera.
-        axis: Direction [3] that is forward before the rotation.
+        x: Position in metres.
+        y: Position in metres.
+        quaternion: Rotation of the agent or its camera, as (x, y, z, w).
+        axis: Forward direction [3] before the rotation is applied.
 
     Returns:
         The pose. The heading is NaN if the agent faces up or down, or if ``quaternion`` is not a
@@ -188,14 +195,14 @@ def plan_pose(
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the element of ``others`` nearest to each of ``times``.
+    """Find the element of ``others`` that is nearest to each element of ``times``.
 
     Args:
         times: float64 [N], seconds.
-        others: float64 [M], seconds, increasing.
+        others: float64 [M], increasing, in seconds.
 
     Returns:
-        Indices into ``others``, int [N], and distances in seconds, float64 [N].
+        Indices into ``others`` (int [N]), and the distances in seconds (float64 [N]).
     """
     right = np.clip(np.searchsorted(others, times), 1, max(1, len(others) - 1))
     left = right - 1
@@ -212,11 +219,11 @@ def interpolate_poses(
     Args:
         times: float64 [N], seconds.
         table: float64 [M, 4], (time, x, y, heading) of the known poses.
-        tolerance: Seconds from a recorded pose within which a time always has a pose.
+        tolerance: A time that is at most this many seconds from a recorded pose always has a pose.
 
     Returns:
-        Poses, float64 [N, 3], and whether each is known, bool [N]. Poses in a gap of more than
-        ``MAX_POSE_GAP`` seconds are unknown.
+        The poses (float64 [N, 3]), and whether each pose is known (bool [N]). Poses are unknown
+        where recorded poses are more than ``MAX_POSE_GAP`` seconds apart.
     """
     table = table[np.isfinite(table).all(1)]
     if not len(table):
@@ -238,10 +245,11 @@ class Instants:
     Attributes:
         times: float64 [N], seconds.
         poses: float64 [N, 3], or None if unknown.
-        frames: Index of each camera's frame at each time step, int [N], by camera.
+        frames: int [N] for each camera: the index of its frame at each time step.
         dropped: Number of skipped time steps.
-        distances: Median time difference in seconds between a time step, skipped or not, and the
-            nearest frame or pose; one entry per camera, and one named "pose".
+        distances: Median time difference in seconds between a time step and the nearest frame or
+            pose. There is one entry per camera, and one named "pose". Skipped time steps are
+            included.
     """
 
     times: np.ndarray
@@ -251,11 +259,12 @@ class Instants:
     distances: dict[str, float]
 
     def mismatch(self, tolerance: float, names: Mapping[str, str] | None = None) -> str:
-        """Return a message for a recording without a complete time step.
+        """Return the error message for a recording that has no complete time step.
 
         Args:
-            tolerance: The maximum seconds that :func:`match_times` used.
-            names: Displayed name of each camera and of "pose"; default: the keys.
+            tolerance: The maximum time difference in seconds that :func:`match_times` used.
+            names: Displayed names of the cameras and of "pose". The default is the keys of
+                ``distances``.
         """
         first, *others = [(names or {}).get(name, name) for name in self.distances]
         _, *seconds = self.distances.values()
@@ -272,16 +281,16 @@ def match_times(
     table: np.ndarray | None,
     tolerance: float = MAX_FRAME_GAP,
 ) -> Instants:
-    """Match the frames of several cameras and the poses by time.
+    """Find frames of several cameras and poses that belong to the same times.
 
     Args:
         stamps: Times of the frames of each camera, in seconds. The first camera defines the time
             steps.
         table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
-        tolerance: Maximum seconds between a time step and its frames.
+        tolerance: Maximum time difference in seconds between a time step and its frames.
 
     Returns:
-        The complete time steps, possibly none.
+        The complete time steps. There may be none.
     """
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
@@ -326,7 +335,8 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         ValueError: The file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
-        # read() allocates memory for its maximum, so the maximum is limited to the size of the file
+        # read() allocates memory for the maximum that it is given, so the maximum is at most the
+        # size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
         raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")

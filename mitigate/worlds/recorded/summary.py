@@ -17,20 +17,20 @@ if TYPE_CHECKING:
     from mitigate.worlds.recorded.recording import Recording, Step
 
 # Heuristic limits of warnings.
-MAX_BORDER = 0.1  # fraction of a view's pixels
+MAX_BORDER = 0.1  # maximum fraction of a view's pixels that are border
 NEAR_MEDIAN = 0.2  # median depth in metres
 FAR_MEDIAN = 10.0
 
 
 @dataclass(frozen=True)
 class Camera:
-    """The front camera of a sensor.
+    """The camera of a sensor that faces forward.
 
     Attributes:
-        lens: Its lens.
-        shape: Height and width of its images in pixels.
-        format: Where and how its images are stored.
-        border: Fraction of each view's pixels that the camera does not cover.
+        lens: Lens of the camera.
+        shape: Height and width of the images in pixels.
+        format: Description of where and how the images are stored.
+        border: Fraction of the pixels of a view that the camera does not cover.
     """
 
     lens: Lens
@@ -45,13 +45,13 @@ def describe(
     cameras: Mapping[str, Camera],
     step: Step,
 ) -> list[str]:
-    """Return one line for the drive, one per camera and one for the pose.
+    """Return a description with one line for the drive, one per camera and one for the pose.
 
     Args:
-        source: The source of the recording.
+        source: The source from which the drive was loaded.
         recording: The loaded drive.
-        cameras: The front camera by sensor.
-        step: Distance between two steps.
+        cameras: The camera that faces forward, for each sensor.
+        step: Distance between two time steps.
     """
     seconds = float(source.times[-1] - source.times[0])
     drive = f"{recording.name}: {counted(len(recording.times), 'step')}"
@@ -94,7 +94,7 @@ def describe(
 
 
 def _depth_range(depth: np.ndarray, border: float) -> str:
-    """Return median, maximum and missing readings of depth as text."""
+    """Return a text with the median and the maximum depth, and the fraction of missing readings."""
     readings = depth[depth > 0]
     if not len(readings):
         return "no readings"
@@ -107,7 +107,9 @@ def _depth_range(depth: np.ndarray, border: float) -> str:
 
 
 def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camera]) -> None:
-    """Warn about a large border, an implausible scale of depth, and a missing instruction."""
+    """Warn if the border is large, if the scale of depth is implausible, or if the instruction is
+    missing.
+    """
     name = recording.name
     border = max(camera.border for camera in cameras.values())
     if border > MAX_BORDER:

@@ -21,27 +21,28 @@ POSES = (
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
 OFF = "none"  # value of a topic option that disables the topic
-# this pattern does not match /depth_camera/image_raw
+# matches topics whose name contains the word "depth", but not /depth_camera/image_raw
 _DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
-# names of infrared images and masks
+# matches the topic names of infrared images and masks
 _OTHER_IMAGES = re.compile(r"infra|mask|(?:^|[/_])ir(?:$|[/_])")
-# names of poses that are not the robot's position
+# matches the names of pose topics that do not contain the robot's position
 _OTHER_POSES = re.compile(r"goal|target|waypoint|initial_?pose")
 
-COMPRESSED = ("/compressed", "/compressedDepth")  # image_transport appends these to a topic
+# image_transport appends these suffixes to the name of a topic
+COMPRESSED = ("/compressed", "/compressedDepth")
 
 
 @dataclass(frozen=True)
 class Topics:
-    """The names of the topics in a bag. None means the only suitable topic, and "none" means that
-    the topic is not read.
+    """The names of the topics to read from a bag. None selects the only suitable topic, and "none"
+    disables the topic.
 
     Attributes:
-        rgb: Images of the RGB camera.
-        depth: Images of the depth camera.
-        pose: Poses of the robot.
-        info: CameraInfo of the RGB camera.
-        depth_info: CameraInfo of the depth camera.
+        rgb: Topic with images of the RGB camera.
+        depth: Topic with images of the depth camera.
+        pose: Topic with poses of the robot.
+        info: Topic with the CameraInfo of the RGB camera.
+        depth_info: Topic with the CameraInfo of the depth camera.
     """
 
     rgb: str | None = None
@@ -63,18 +64,18 @@ def choose_topics(
     Args:
         path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
-        topics: The user's choice.
-        counts: Number of messages of each topic, if known. If there is one message but several
-            images, the topic contains no trajectory.
-        encodings: Encoding of the first image of each topic, if known. Topics without a known
-            encoding count as depth if their names say so.
+        topics: The topics that the user chose.
+        counts: Number of messages of each topic, if known. A pose topic with a single message is no
+            trajectory if an image topic has several messages.
+        encodings: Encoding of the first image of each topic, if known. If it is unknown, the name
+            of the topic decides whether the topic contains depth.
 
     Returns:
-        The topics that the bag contains, by name.
+        The chosen topics by name. Names for which the bag has no topic are absent.
 
     Raises:
-        ValueError: A chosen topic is missing or has a wrong type, several topics are suitable, or
-            the bag contains no images.
+        ValueError: A topic that the user chose is missing or has a wrong type, several topics are
+            suitable, or the bag contains no images.
     """
     counts = counts or {}
     images = [
@@ -121,7 +122,7 @@ def choose_topics(
 
 
 def _drop_copies(images: Sequence[str], counts: Mapping[str, int]) -> list[str]:
-    """Return the image topics without compressed copies of other topics that have messages."""
+    """Return the image topics, but leave out compressed copies of topics that have messages."""
     copies = {raw + suffix for raw in images if counts.get(raw, 1) for suffix in COMPRESSED}
     return [name for name in images if name not in copies]
 
@@ -129,11 +130,11 @@ def _drop_copies(images: Sequence[str], counts: Mapping[str, int]) -> list[str]:
 def _sort_images(
     images: Sequence[str], topics: Topics, encodings: Mapping[str, str]
 ) -> tuple[list[str], list[str]]:
-    """Return the topics with RGB images and those with depth images.
+    """Return the topics that contain RGB images and the topics that contain depth images.
 
-    The encoding decides, and the name if the encoding does not show it. If several topics of one
-    kind have a fitting encoding, those with a fitting name come first: a topic such as
-    ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
+    The encoding decides the kind of a topic. If the encoding allows both kinds, the name decides.
+    If several topics of one kind have a suitable encoding, topics with a suitable name are
+    preferred. For example, ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
     """
     named_depth = [name for name in images if _DEPTH_TOPIC.search(name)]
     depth = []
@@ -156,7 +157,7 @@ def _candidates(
     available: Mapping[str, str | None],
     kinds: Sequence[str],
 ) -> list[str]:
-    """Return the topic that the user named, or the fitting topics."""
+    """Return the topic that the user named, or all suitable topics."""
     if named is None:
         return list(fitting)
     if named == OFF:
@@ -172,22 +173,22 @@ def _candidates(
 
 
 def _check_single(path: Path, candidates: Mapping[str, Sequence[str]]) -> None:
-    """Raise ValueError if several topics fit an option."""
+    """Raise ValueError if several topics are suitable for an option."""
     open_choices = {option: names for option, names in candidates.items() if len(names) > 1}
     if open_choices:
         listed = "; ".join(f"{option}: {', '.join(n)}" for option, n in open_choices.items())
         choice = " ".join(f"topics.{option}={n[0]}" for option, n in open_choices.items())
         raise ValueError(
-            f"{path} has several topics for {listed}. Choose one each, for example with {choice} "
-            f"({OFF}: do not read this sensor)."
+            f"{path} has several topics for {listed}. Choose one for each, for example with "
+            f"{choice} (or {OFF} to leave out this sensor)."
         )
 
 
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
     """Return the CameraInfo topics of an image topic.
 
-    In ROS, the name is ``<camera>/camera_info``. If that is missing, return the topics with the
-    same first name that share most of the further words.
+    In ROS, the name is ``<camera>/camera_info``. If that topic is missing, return the topics that
+    start with the same namespace and share the most words with the image topic.
     """
     namespace = topic
     while "/" in namespace.strip("/"):
@@ -200,6 +201,8 @@ def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
 
 
 def _shared_words(topic: str, other: str) -> int:
-    """Return how many words at the start of two topics are equal; / and _ separate words."""
+    """Return how many words at the start of two topic names are equal. Words are separated by / and
+    _.
+    """
     pairs = zip(re.split("[/_]", topic), re.split("[/_]", other), strict=False)
     return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])

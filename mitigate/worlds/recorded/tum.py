@@ -1,7 +1,8 @@
-"""Read drives in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012).
+"""Read recorded drives in the layout of the TUM RGB-D benchmark (Sturm et al., IROS 2012).
 
-A folder has ``rgb.txt``, ``depth.txt`` and ``groundtruth.txt``; ``associations.txt`` may replace
-both lists. Most tools for RGB-D cameras write this layout.
+A folder contains the image lists ``rgb.txt`` and ``depth.txt``, and the poses in
+``groundtruth.txt``. The file ``associations.txt`` may replace both image lists. Most tools for
+RGB-D cameras can write this layout.
 """
 
 from __future__ import annotations
@@ -25,11 +26,11 @@ from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import match_times, plan_pose, read_instruction
 
 LISTS = ("rgb.txt", "depth.txt")
-# both lists in one file, written by associate.py of that benchmark
+# file that contains both lists, written by associate.py of the TUM RGB-D benchmark
 ASSOCIATIONS = "associations.txt"
 TRAJECTORY = "groundtruth.txt"
-TUM_UNIT = 1 / 5000  # metres per count (TUM RGB-D benchmark, file formats)
-# TUM's default calibration: width 640 pixels, focal length 525
+TUM_UNIT = 1 / 5000  # metres per integer step of depth (TUM RGB-D benchmark, file formats)
+# field of view of the default calibration of TUM RGB-D: 640 pixels width, focal length 525 pixels
 TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
 
 
@@ -41,12 +42,12 @@ def is_tum(folder: Path) -> bool:
 def read_tum(path: Path, options: Options) -> list[Frames]:
     """Read the drive in a folder with the layout of TUM RGB-D.
 
-    A time step consists of an RGB image with the depth image and the pose that are nearest in time.
-    The heading is the direction of the camera's optical axis.
+    A time step consists of an RGB image, and of the depth image and the pose that are nearest to it
+    in time. The heading is the direction of the camera's optical axis.
 
     Raises:
-        ValueError: A file is damaged, or no frame of one list is near in time to frames of the
-            others.
+        ValueError: A file is damaged, or the times of RGB images, depth images and poses are too
+            far apart.
     """
     if any((path / name).is_file() for name in LISTS):
         listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
@@ -77,14 +78,15 @@ def read_tum(path: Path, options: Options) -> list[Frames]:
 
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
-    """Read the lines of a list of images as (time, file); raise ValueError for a file outside the
+    """Read a list of images as tuples (time, file). Raise ValueError if a file is outside the
     folder.
     """
     return sorted(_read_entry(path, name, line, row) for line, row in read_rows(path / name, 2))
 
 
 def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
-    """Read lines "time file time file"; the files of the first line tell RGB from depth.
+    """Read lines of the form "time file time file". The files of the first line determine which
+    column contains RGB and which depth.
 
     Raises:
         ValueError: A file lies outside the folder, or both files have the same kind.
@@ -107,7 +109,7 @@ def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
 
 
 def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
-    """Return the time and the file in a line of a list."""
+    """Return the time and the file that a line of a list contains."""
     file = path / row[1]
     if "\0" in row[1] or path.resolve() not in file.resolve().parents:
         raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
@@ -115,11 +117,12 @@ def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[f
 
 
 def _read_trajectory(file: Path) -> np.ndarray:
-    """Read lines "time x y z qx qy qz qw" as float64 [N, 4], (time, x, y, heading).
+    """Read lines of the form "time x y z qx qy qz qw". Return float64 [N, 4] with time, x, y and
+    heading.
 
     Raises:
-        ValueError: Most poses face up or down. This happens if the poses describe a robot frame (x
-            forward) instead of a camera's optical axis.
+        ValueError: The camera faces up or down in most poses. This happens if the poses describe a
+            robot frame (x forward) instead of the frame of the camera (z forward).
     """
     rows = []
     for line, row in read_rows(file, 8):

@@ -1,9 +1,9 @@
 """Protect against decompression bombs and executable SQLite schemas in bags from untrusted sources.
 
-``rosbags`` decompresses chunks, messages and whole files without a limit, and queries anything that
-a database declares as a table. This module replaces the decompressors of ``rosbags``, once per
-process, by versions with a limit. It also checks databases and metadata before ``rosbags`` opens
-them.
+``rosbags`` decompresses chunks, messages and whole files without a limit, and queries everything
+that a database declares as a table. This module replaces the decompressors of ``rosbags`` by
+versions that have a limit. The replacement happens once per process. It also checks databases and
+metadata before ``rosbags`` opens them.
 """
 
 from __future__ import annotations
@@ -19,18 +19,20 @@ from typing import Any
 from mitigate.core.files import FREE, RATIO
 
 METADATA = "metadata.yaml"
-# maximum bytes of metadata (heuristic); the metadata of 100 topics has 1e5 bytes
+# maximum number of bytes of the metadata (heuristic); the metadata of 100 topics has 1e5 bytes
 MAX_METADATA_BYTES = 1 << 20
 COMPRESSED = (".zstd", ".zst")
-_budgets: list[Budget] = []  # one budget per open bag, with the newest last
+_budgets: list[Budget] = []  # one budget per open bag, in the order of opening
 
 
 class Bomb(ValueError):
-    """Raised if compressed data expand to far more bytes than their size."""
+    """Raised if compressed data expand to far more bytes than their compressed size."""
 
 
 class Budget:
-    """The number of bytes to which a bag of ``size`` bytes may expand while it is read once."""
+    """Counter of decompressed bytes, with a limit on how many bytes a bag of ``size`` bytes may
+    expand to.
+    """
 
     def __init__(self, size: int) -> None:
         self.limit = self.left = FREE + RATIO * size
@@ -51,11 +53,11 @@ class Budget:
 
 @contextmanager
 def bounded(path: Path) -> Iterator[None]:
-    """Limit what ``rosbags`` may decompress while it reads ``path`` (a file or a folder).
+    """Limit how much data ``rosbags`` may decompress while it reads ``path``, a file or a folder.
 
     Raises:
-        ValueError: The database or the metadata contain something that no recorder writes. Inside
-            the context, :class:`Bomb` is raised if the bag expands to too many bytes.
+        ValueError: The database contains objects that no recorder writes, or the metadata is too
+            large. Inside the context, :class:`Bomb` is raised if the bag expands to too many bytes.
     """
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     size = sum(file.stat().st_size for file in files)
@@ -75,7 +77,8 @@ def _check(files: list[Path], size: int) -> None:
             raise ValueError(f"its {METADATA} has more than {MAX_METADATA_BYTES} bytes")
         if file.suffix == ".db3":
             check_tables(file)
-        if file.suffix in COMPRESSED:  # rosbags decompresses these files to the disk
+        # check the expanded size now, because rosbags decompresses these files to the disk
+        if file.suffix in COMPRESSED:
             with open(file, "rb") as compressed, _zstd().open(compressed, "rb") as unpacked:
                 budget = Budget(size)
                 while block := unpacked.read(1 << 20):
@@ -109,14 +112,16 @@ def check_tables(file: Path) -> None:
 
 
 def _count(unpacked: bytes) -> bytes:
-    """Subtract decompressed bytes from the budget of the newest bag, and return them."""
+    """Subtract the length of decompressed data from the budget of the last opened bag, and return
+    the data.
+    """
     if _budgets:
         _budgets[-1].spend(len(unpacked))
     return unpacked
 
 
 def _max_length() -> int:
-    """Return the budget plus one byte, so that an excess is noticed."""
+    """Return the remaining budget plus one byte, so that exceeding the budget is noticed."""
     return _budgets[-1].left + 1 if _budgets else FREE
 
 

@@ -11,16 +11,16 @@ import numpy as np
 from mitigate.core.observation import DEPTH
 from mitigate.worlds.recorded.source import MIN_HFOV, Lens
 
-SUPERSAMPLING = 4  # canvas pixels per pixel of a partially covered view, along each side
+SUPERSAMPLING = 4  # enlargement factor of the canvas on which a partially covered view is drawn
 
 
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
-    """Return the tangent of half the largest square field of view that all cameras cover.
+    """Return the tangent of half of the largest square field of view that all cameras cover.
 
-    The largest value is 1, for 90 degrees.
+    The maximum is 1, which means 90 degrees.
 
     Args:
-        cameras: The lens of each camera, with the height and width of its images.
+        cameras: The lens of each camera, and the height and width of its images.
 
     Raises:
         ValueError: The field of view would be narrower than ``MIN_HFOV``.
@@ -38,7 +38,7 @@ def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
 
 
 def border_fraction(lens: Lens, height: int, width: int, tangent: float = 1.0) -> float:
-    """Return the fraction of pixels of a square view that an image does not cover."""
+    """Return the fraction of the pixels of a square view that an image does not cover."""
     left, right, top, bottom = _edges(lens, height, width, tangent)
     covered_x = max(0.0, min(width, right) - max(0.0, left)) / (right - left)
     covered_y = max(0.0, min(height, bottom) - max(0.0, top)) / (bottom - top)
@@ -48,7 +48,9 @@ def border_fraction(lens: Lens, height: int, width: int, tangent: float = 1.0) -
 def _edges(
     lens: Lens, height: int, width: int, tangent: float
 ) -> tuple[float, float, float, float]:
-    """Return the left, right, top and bottom edge of a square view in pixels of the image."""
+    """Return the left, right, top and bottom edges of a square view, in pixel coordinates of the
+    image.
+    """
     fx, fy, cx, cy = lens.intrinsics(height, width)
     half_x = fx * tangent
     half_y = fy * tangent
@@ -62,11 +64,11 @@ def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) 
         frame: uint8 [H, W, 3] or float32 [H, W].
         lens: Lens of the camera that took the frame.
         size: Height and width of the view in pixels.
-        tangent: Tangent of half the view's field of view; 1 for 90 degrees.
+        tangent: Tangent of half the field of view of the view, which is 1 for 90 degrees.
 
     Returns:
-        uint8 [size, size, 3] or float32 [size, size, 1]. A frame that already is such a view is
-        returned unchanged.
+        The view, uint8 [size, size, 3] or float32 [size, size, 1]. If the frame already is such a
+        view, it is returned unchanged.
     """
     is_depth = lens.kind == DEPTH
     frame = frame.reshape(*frame.shape[:2], -1)
@@ -105,9 +107,7 @@ def _partial_view(
 
 
 def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.ndarray:
-    """Resize a frame. Depth is resized to the nearest pixel, so that missing depth stays
-    missing.
-    """
+    """Resize a frame. Depth uses nearest-neighbour resampling, so missing depth stays missing."""
     shrinks = width < frame.shape[1] or height < frame.shape[0]
     smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
     return cv2.resize(
