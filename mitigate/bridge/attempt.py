@@ -33,6 +33,10 @@ CRASH = (
     " If the agent crashes on corrupted input, count that as a failure: catch the exception, and "
     "let the agent stop (with Habitat), or call episode.finish(success=False) (docs/bridge.md)."
 )
+DIFFERENT = (
+    "a process died or gave up before its first step, or the command draws its episodes at random "
+    "(fix its seed, and choose some by episodes=)."
+)
 NOT_LOADED = (
     "no Python process of it loaded the hook. Does a script replace PYTHONPATH (let it append), "
     "does it run python with -E, -I or -S, with a Python before 3.6, or in a container "
@@ -62,6 +66,7 @@ class Attempt:
         self.root: output.Root | None = None
         self.process: Command | None = None
 
+    @uninterrupted()  # otherwise an interrupt could leave a started process unknown to ``kill``
     def start(self) -> None:
         """Start the server and the command in an empty folder.
 
@@ -70,11 +75,6 @@ class Attempt:
         Raises:
             ValueError: Another run uses the folder, or the command cannot be started.
         """
-        # otherwise an interrupt could leave a started process that ``kill`` does not know
-        with uninterrupted():
-            self._start()
-
-    def _start(self) -> None:
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)
         self.lock = open_output(folder / LOCK, "a", encoding="utf-8")
@@ -91,11 +91,12 @@ class Attempt:
             delete_drafts(cell.recording)
         put_aside(folder, "finished" if output.is_regular(folder / DONE) else "unfinished")
         self.events = open_output(folder / EVENTS, "x", encoding="utf-8")
-        chosen = cell.chosen if cell.clean is None else None
-        if chosen is not None and not any(chosen.folder.glob(f"conditions/*/{DONE}")):
-            chosen.delete()  # no condition has finished, so episodes are chosen again
+        chosen = cell.condition.chosen
+        finished = chosen and any(chosen.folder.glob(f"conditions/*/{DONE}"))
+        if chosen is not None and cell.clean is None and not finished:
+            chosen.delete()  # episodes are chosen again
         self.files = hash_files(cell.command)
-        self.listener = Listener(cell.condition, folder, cell.patience).__enter__()
+        self.listener = Listener(cell.condition, folder, cell.config.patience).__enter__()
         words = self._words()
         environment = {**os.environ, **self.listener.environment(), **cell.environment}
         with open_output(cell.log, "w", encoding="utf-8") as log:
@@ -134,14 +135,16 @@ class Attempt:
         status = self.process.status()
         if status is None:
             problem = self._describe_hang()
-            if problem is None:
-                return None
-            self.kill()
+            if problem is not None:
+                self.kill()
             return problem
         self.loaded = self.listener.was_loaded()
         self.left = self.process.left()
         self._end_command()
-        self._settle()
+        if not self._wait_for_disconnects(DISCONNECT_TIME):
+            # some processes run longer than the command, for example in another session
+            self.listener.close_connections()
+            self._wait_for_disconnects(GRACE)
         self._check_events()
         self.kill()
         problem = self._describe_problem(status)
@@ -149,22 +152,23 @@ class Attempt:
         if cell.clean is not None and cell.extra_episodes():
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:
-            entries = {**cell.settings, "condition": cell.corruption.name}
-            entries |= {"severity": cell.corruption.severity, "repeat": cell.repeat}
-            entries |= {"files": self.files, "created": self._created_files()}
-            entries |= {"episodes_told": len(cell.reports().ends)}
-            write_done(cell.folder, entries)
+            named = map(str, files_in(cell.command))
+            own = {
+                "condition": cell.corruption.name,
+                "severity": cell.corruption.severity,
+                "repeat": cell.repeat,
+                "files": self.files,
+                "created": [file for file in named if file not in self.files],  # its outputs
+                "episodes_told": len(cell.reports().ends),
+            }
+            write_done(cell.folder, cell.settings | own)
         return problem
 
-    def _created_files(self) -> list[str]:
-        """Return the files that the command names and that did not exist at its start: its
-        outputs.
+    def _advice(self) -> str:
+        """Return the end of the command's output, and advice for agents that crash on corrupted
+        input.
         """
-        return [str(file) for file in files_in(self.cell.command) if str(file) not in self.files]
-
-    def _crash_hint(self) -> str:
-        """Return advice for agents that crash on corrupted input, or "" for a clean run."""
-        return CRASH if self.cell.corruption.severity else ""
+        return (CRASH if self.cell.corruption.severity else "") + self.cell.output_excerpt()
 
     def _check_events(self) -> None:
         """Raise FolderLostError if the file of events or its folder was removed or replaced."""
@@ -203,17 +207,6 @@ class Attempt:
         except ValueError:  # other code reports damaged events
             return False
 
-    def _settle(self) -> None:
-        """Wait until the server has recorded all unfinished episodes.
-
-        This includes episodes of processes that run longer than the command, for example in a
-        different session or in a container.
-        """
-        assert self.listener is not None
-        if not self._wait_for_disconnects(DISCONNECT_TIME):
-            self.listener.close_connections()
-            self._wait_for_disconnects(GRACE)
-
     def _wait_for_disconnects(self, seconds: float) -> bool:
         """Wait at most ``seconds``, and return whether all connections have closed."""
         until = time.monotonic() + seconds
@@ -232,16 +225,18 @@ class Attempt:
         if not events.is_file():
             return None
         silence = time.time() - events.stat().st_mtime
-        if silence < self.cell.patience:
+        if silence < self.cell.config.patience:
             return None
         reports = self.cell.reports()
         if reports.problems:
-            return f"{reports.problems[0]}"
-        if reports.lost and (reports.connected < 1 or silence > MAX_SILENCE * self.cell.patience):
+            return reports.problems[0]
+        if reports.lost and (
+            reports.connected < 1 or silence > MAX_SILENCE * self.cell.config.patience
+        ):
             return (
                 f"a process of the command ended in the middle of episode {reports.lost[0]}, and "
                 f"no other process sent a message for {silence:.0f} s. The command was stopped."
-                f"{self._crash_hint()}{self.cell.output_excerpt()}"
+                f"{self._advice()}"
             )
         return None
 
@@ -254,39 +249,36 @@ class Attempt:
             excerpt = self.cell.output_excerpt()
             if not reports.hellos and not self.loaded:
                 return f"the command ended with status {status}, and {NOT_LOADED}{excerpt}"
-            hint = f"\n{self._crash_hint().strip()}" if reports.lost else ""
-            return f"the command ended with status {status}.{excerpt}{hint}"
+            return (
+                f"the command ended with status {status}."
+                f"{self._advice() if reports.lost else excerpt}"
+            )
         if self.left and not reports.lost:
-            return self._describe_left()
+            names = ", ".join(self.left[:MAX_NAMED]) + ", ..." * (len(self.left) > MAX_NAMED)
+            count = "1 process" if len(self.left) == 1 else f"{len(self.left)} processes"
+            return (
+                f"the command ended, but {count} that it started still ran: {names}. They were "
+                "ended. The command must wait for its processes (without &, nohup or setsid) or "
+                f"end them itself. Change it, and run again.{self.cell.output_excerpt()}"
+            )
         return (
             self._check_interception(reports)
             or self._check_episodes(reports)
             or self._check_count(reports)
         )
 
-    def _describe_left(self) -> str:
-        """Describe the processes that were still running after the command ended."""
-        names = ", ".join(self.left[:MAX_NAMED]) + ", ..." * (len(self.left) > MAX_NAMED)
-        count = "1 process" if len(self.left) == 1 else f"{len(self.left)} processes"
-        return (
-            f"the command ended, but {count} that it started "
-            f"still ran: {names}. They were ended, and the condition is not finished. The command "
-            "must wait for the processes that it starts (without &, nohup or setsid), and must end "
-            f"its helpers itself. Change it, and run again.{self.cell.output_excerpt()}"
-        )
-
     def _check_count(self, reports: Reports) -> str:
         """Describe the problem if too few episodes ended, else return ""."""
         cell = self.cell
-        chosen = cell.chosen.least() if cell.chosen is not None and cell.clean is None else 0
-        least = max(reports.announced, chosen)
+        subset = cell.condition.chosen
+        least = max(reports.announced, 0 if subset is None else subset.least())
         if len(reports.ends) >= least:
             return ""
         who = "wanted() returned" if reports.announced == least else "episodes= chose"
         return (
             f"the command ended after {counted(len(reports.ends), 'episode')}, and {who} {least}. "
-            "Let it run all of them. To run fewer, choose them by episodes=, or pass only these to "
-            f"wanted(). Then run again; the condition is measured again.{cell.output_excerpt()}"
+            "Let it run all of them, or pass fewer to wanted() or episodes=. Then run again; the "
+            f"condition is measured again.{cell.output_excerpt()}"
         )
 
     def _check_interception(self, reports: Reports) -> str:
@@ -297,9 +289,8 @@ class Attempt:
             return (
                 "the command ended, and its Python loaded the hook, but it used neither "
                 "habitat-lab (habitat.core.env) nor habitat-sim (habitat_sim.simulator) and never "
-                "called mitigate_hook.connect, so the bridge received nothing. A different package "
-                "named habitat does not count: it needs the three calls of a loop without Habitat "
-                f"(docs/bridge.md).{self.cell.output_excerpt()}"
+                "called mitigate_hook.connect. A different package named habitat needs the three "
+                f"calls of a loop without Habitat (docs/bridge.md).{self.cell.output_excerpt()}"
             )
         if mitigate_hook.ADAPTERS in self.cell.environment and not reports.adapted:
             return (
@@ -308,10 +299,9 @@ class Attempt:
             )
         if not reports.ends and not reports.lost:
             return (
-                "the command ended without an episode. Did it find results of an earlier run, or "
-                "of another condition? Delete them, and let the command write to {out}, which is "
-                f"replaced by {self.cell.folder}: each condition starts with an empty folder."
-                f"{self.cell.output_excerpt()}"
+                "the command ended without an episode. Did it find results of another run or "
+                "condition? Delete them, and let the command write to {out}, which is replaced by "
+                f"{self.cell.folder}, an empty folder.{self.cell.output_excerpt()}"
             )
         return ""
 
@@ -323,7 +313,7 @@ class Attempt:
         if reports.lost:
             return (
                 f"the command ended, but {describe_lost(reports)}. Then run again; the condition "
-                f"is measured again.{self._crash_hint()}{cell.output_excerpt()}"
+                f"is measured again.{self._advice()}"
             )
         if reports.connected > 0:
             return (
@@ -333,26 +323,21 @@ class Attempt:
         missing = cell.missing_episodes()
         if missing:
             return (
-                f"{cell.describe_missing(missing)}, such as {missing[0]}: a process died or gave "
-                "up before its first step, or the command draws its episodes at random (fix its "
-                "seed, and choose some by episodes=). Run again; the condition is measured again."
-                f"{self._crash_hint()}{cell.output_excerpt()}"
+                f"{cell.describe_missing(missing)}, such as {missing[0]}: {DIFFERENT} Run again; "
+                f"the condition is measured again.{self._advice()}"
             )
         extra = cell.extra_episodes()
         if extra:
             return (
                 f"{counted(len(extra), 'episode')} ended under it that the clean run lacks, such "
-                f"as {extra[0]}: a process of the clean run died or gave up before its first step, "
-                "or the command draws its episodes at random (fix its seed, and choose some by "
-                "episodes=). Run again; clean is measured again, too."
+                f"as {extra[0]}: there, {DIFFERENT} Run again; clean is measured again, too."
             )
         if problem := cell.rule_problem():
             return problem
         if not cell.rows():
             return (
-                f"none of {counted(len(reports.ends), 'episode')} that ended reported a result, so "
-                "there are no rows: the metrics hold no success, and no success rule can judge "
-                "the episodes. Add the Success measure to the task, set rule=, or call "
-                "episode.finish(success=...)."
+                f"none of {counted(len(reports.ends), 'episode')} that ended reported a result "
+                "that its own or another success rule can judge. Add the Success measure to the "
+                "task, set rule=, or call episode.finish(success=...)."
             )
         return ""

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -231,7 +231,7 @@ class Rig:
             for camera in self.cameras
         }
 
-    def lay_out(self, kinds: Sequence[str]) -> tuple[dict[str, int], int]:
+    def lay_out(self, kinds: Collection[str]) -> tuple[dict[str, int], int]:
         """Return the memory offset of each camera of the given ``kinds``, and the total size.
 
         Raises:

@@ -8,17 +8,16 @@ first, so that a damaged file is never used as a result.
 from __future__ import annotations
 
 import json
-import math
 import os
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from mitigate.bridge import results
-from mitigate.bridge.condition import SETTLE_TIME, Condition, Subset
-from mitigate.bridge.events import DONE, EVENTS, damaged
+from mitigate.bridge.condition import SETTLE_TIME, Condition, is_count
+from mitigate.bridge.config import RunConfig
+from mitigate.bridge.events import DONE, EVENTS, damaged, measure_again
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import (
@@ -39,34 +38,18 @@ from mitigate.worlds.measures import RULES
 LOG = "output.txt"
 TAIL = 12  # number of lines of the command's output that an error message repeats
 MAX_HASHED = 1 << 30  # for larger files (bytes) that the command names, only the size is compared
-_SHA256 = re.compile(r"[0-9a-f]{64}")
-
-
-def _is_number(value: Any) -> bool:
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    return number and math.isfinite(value)
-
-
-def _is_count(value: Any) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
-
-
-def _is_seal(value: Any) -> bool:
-    if not isinstance(value, dict) or not _is_count(value.get("bytes")):
-        return False
-    return isinstance(value.get("sha256"), str) and bool(_SHA256.fullmatch(value["sha256"]))
-
-
 SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "condition": (lambda value: isinstance(value, str) and value != "", "a name"),
-    "severity": (lambda value: _is_number(value) and 0 <= value <= 1, "a number from 0 to 1"),
-    "repeat": (_is_count, "a whole number >= 0"),
+    "severity": (
+        lambda value: type(value) in (int, float) and 0 <= value <= 1,
+        "a number from 0 to 1",
+    ),
+    "repeat": (is_count, "a whole number >= 0"),
     "files": (lambda value: isinstance(value, dict), "an object"),
     "created": (lambda value: isinstance(value, list), "a list"),
-    "episodes_told": (_is_count, "a whole number >= 0"),
-    "events": (_is_seal, "the size (bytes) and the sha256 of the events"),
+    "episodes_told": (is_count, "a whole number >= 0"),
+    "events": (lambda value: isinstance(value, dict), "the size and the sha256 of the events"),
 }
-OLDER = ("events", "created")  # entries that older versions of this project did not write
 
 
 def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
@@ -79,71 +62,53 @@ def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
     """Mark a condition as finished: write ``entries`` and a checksum of the events to
     ``done.json``.
     """
-    seal = {"bytes": (folder / EVENTS).stat().st_size, "sha256": sha256(folder / EVENTS)}
     with atomic_text(folder / DONE) as file:
-        json.dump({**entries, "events": seal}, file)
+        json.dump({**entries, "events": _seal(folder)}, file)
+
+
+def _seal(folder: Path) -> dict[str, Any]:
+    """Return the size and the sha256 of the events in ``folder``."""
+    events = folder / EVENTS
+    return {"bytes": events.stat().st_size, "sha256": sha256(events)}
 
 
 def read_done(folder: Path) -> dict[str, Any] | None:
     """Return the entries of a finished condition, or None if it is not finished.
-
-    Some entries may be missing, because older versions wrote fewer (:func:`missing_entries`).
 
     Raises:
         ValueError: ``done.json`` is damaged or belongs to a different condition, or the events
             changed after it was written. The message names the file and the next step.
     """
     file = folder / DONE
-    again = (
-        f"No file was changed. Move {folder} out of {folder.parent} and run the same command "
-        "again: it measures this condition again."
-    )
+    again = f"No file was changed. To continue, {measure_again(folder)}"
     if file.is_dir():
         raise ValueError(f"{file} must be a file, got a folder. {again}")
     if not output.is_regular(file):
         return None
     entries = read_object(file, again)
     for name, (is_valid, kind) in SCHEMA.items():
-        if name in entries and not is_valid(entries[name]):
-            raise ValueError(f"{file}: {name} must be {kind}, got {short(entries[name])}. {again}")
-    if not missing_entries(entries):
-        _compare_name(folder, entries)
-        _compare_events(folder, entries)
-    return entries
-
-
-def missing_entries(entries: Mapping[str, Any]) -> list[str]:
-    """Return the names of the missing entries that every version of ``done.json`` has."""
-    return [name for name in SCHEMA if name not in entries and name not in OLDER]
-
-
-def _compare_name(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Raise ValueError if the name of ``folder`` differs from the condition in ``done.json``."""
+        value = entries.get(name)
+        if not is_valid(value):
+            raise ValueError(f"{file}: {name} must be {kind}, got {short(value)}. {again}")
     name = folder_name(entries["condition"], entries["severity"], entries["repeat"])
     if name != folder.name:
         raise ValueError(
-            f"{folder} holds the condition {name} according to its {DONE}. The folder was renamed "
-            "or copied, or the file was edited. No file was changed. If it was renamed, restore "
-            f"the name {name}. Otherwise move {folder} out of {folder.parent} and run the same "
-            "command again: it measures this condition again."
+            f"{folder} holds the condition {name} according to its {DONE}. If the folder was "
+            f"renamed, restore the name {name}. {again}"
         )
+    _compare_events(folder, entries)
+    return entries
 
 
 def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     """Raise ValueError if the events in ``folder`` changed after the condition finished."""
-    events = folder / EVENTS
     count = entries["episodes_told"]
-    if not output.is_regular(events):
+    if not output.is_regular(folder / EVENTS):
         raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
     # read raises an error that names the damaged line
     reports = results.read(folder, count_closed=True)
-    seal = entries.get("events")
-    if seal is not None:
-        size = events.stat().st_size
-        if size != seal["bytes"]:
-            raise damaged(folder, f"it has {size} bytes, and {DONE} records {seal['bytes']}")
-        if sha256(events) != seal["sha256"]:
-            raise damaged(folder, f"its sha256 differs from the one in {DONE}")
+    if _seal(folder) != entries["events"]:
+        raise damaged(folder, f"its size or sha256 differs from that in {DONE}")
     if count not in {len(reports.ends), len(results.read(folder).ends)}:
         raise damaged(folder, f"{len(reports.ends)} episodes ended, and {DONE} records {count}")
 
@@ -162,37 +127,31 @@ class Cell:
         name: Name of the condition and of its folder.
         corruption: The corruption.
         repeat: Number of the repetition for a repeated clean run, else 0.
+        config: The options of the run.
         command: The words of the user's command.
         folder: Folder for the events and the output of the command.
         condition: Applies the corruption to frames and instructions.
         label: Entries that are added to all rows.
-        rule: Success rule that replaces the agent's rule, or None to keep it.
         settings: The settings that the result depends on. A finished condition is reused only if
             its settings are the same.
-        patience: Seconds that a process waits for an answer before it stops.
         environment: Environment variables that are set for the command.
         clean: Folder of the clean condition, or None for the clean condition itself. Each episode
             that ended there must also end under this condition.
         recording: The folder that the option ``record=`` names.
-        chosen: Object that chooses the episodes, or None to run all.
-        count_closed: See ``results.read``.
     """
 
     name: str
     corruption: Corruption
     repeat: int
+    config: RunConfig
     command: tuple[str, ...]
     folder: Path
     condition: Condition
     label: dict[str, Any]
-    rule: str | None
     settings: dict[str, Any]
-    patience: float = 25.0
-    environment: dict[str, str] = field(default_factory=dict)
+    environment: dict[str, str]
     clean: Path | None = None
     recording: Path | None = None
-    chosen: Subset | None = None
-    count_closed: bool = False
 
     @property
     def log(self) -> Path:
@@ -219,15 +178,9 @@ class Cell:
             return False
         if other := self.changed_settings():
             raise ValueError(
-                f"{self.folder} was run with another "
-                f"{', '.join(other)} ({entries.get(other[0])!r}, now {self.settings[other[0]]!r}). "
-                "Choose another folder (out=...), or delete this one."
-            )
-        if missing := missing_entries(entries):
-            raise ValueError(
-                f"{self.folder / DONE} lacks {', '.join(missing)}: it is damaged, or an older "
-                f"version wrote it. Move {self.folder} out of {self.folder.parent} and run the "
-                "same command again."
+                f"{self.folder} was run with another {', '.join(other)} "
+                f"({entries.get(other[0])!r}, now {self.settings[other[0]]!r}). Choose another "
+                "folder (out=...), or delete this one."
             )
         return not self.reason_to_repeat()
 
@@ -238,7 +191,7 @@ class Cell:
         if missing := self.missing_episodes():
             return self.describe_missing(missing)
         reports = self.reports()
-        if reports.lost:  # it was measured with another count_closed or by an older version
+        if reports.lost:  # it was measured with another count_closed
             return describe_lost(reports)
         if self.recording is not None and not is_whole(self.recording, reports.ends.values()):
             return f"it was not recorded in {self.recording}, or only in part"
@@ -246,29 +199,25 @@ class Cell:
 
     def changed_files(self, files: dict[str, Any]) -> list[str]:
         """Return the files named in the command that changed after the condition finished."""
-        before = (self.entries() or {}).get("files", {})
-        return [name for name, recorded in before.items() if files.get(name) != recorded]
+        before = self.entries() or {"files": {}}
+        return [name for name, seen in before["files"].items() if files.get(name) != seen]
 
     def missing_episodes(self) -> list[str]:
         """Return the episodes that ended under the clean condition, but not under this
         condition.
         """
-        return sorted(self.clean_episodes() - self.reports().ends.keys())
+        return sorted(self.clean_reports().ends.keys() - self.reports().ends.keys())
 
-    def clean_episodes(self) -> set[str]:
-        """Return the episodes that ended under the clean condition; none for the clean condition
-        itself.
-        """
-        if self.clean is None:
-            return set()
-        return set(results.read(self.clean, self.count_closed).ends)
+    def clean_reports(self) -> Reports:
+        """Return the reports of the clean condition, without episodes for that condition itself."""
+        return results.read(self.clean, self.config.count_closed) if self.clean else Reports()
 
     def extra_episodes(self) -> list[str]:
         """Return the episodes that ended under this condition, but not under the clean
         condition.
         """
-        clean = self.clean_episodes()
-        return sorted(self.reports().ends.keys() - clean) if clean else []
+        clean = self.clean_reports().ends
+        return sorted(self.reports().ends.keys() - clean.keys()) if clean else []
 
     def output_excerpt(self) -> str:
         """Return the last lines of the command's output, for an error message."""
@@ -280,72 +229,56 @@ class Cell:
 
     def reports(self) -> Reports:
         """Return everything that the command's processes have reported so far."""
-        return results.read(self.folder, self.count_closed)
+        return results.read(self.folder, self.config.count_closed)
 
     def rows(self) -> list[Row]:
         """Return the result rows."""
-        clean = None if self.clean is None else results.read(self.clean, self.count_closed)
-        return results.rows(self.reports(), self.corruption, self.label, self.rule, clean)
+        reports, clean = self.reports(), self.clean_reports()
+        return results.rows(reports, self.corruption, self.label, self.config.rule, clean)
 
     def rule_problem(self) -> str:
         """Return the reason why ``rule=`` cannot judge every episode, or "".
 
         A success rate over only some of the episodes would be misleading.
         """
-        reports = self.reports()
-        missing = {} if self.rule is None else results.count_missing(reports, self.rule)
+        reports, rule = self.reports(), self.config.rule
+        missing = results.count_missing(reports, rule) if rule else {}
         if not missing:
             return ""
         argument, count = next(iter(missing.items()))
-        who = "no episode reported"
-        if count < len(reports.ends):
-            who = f"{count} of {counted(len(reports.ends), 'episode')} did not report"
-        what = "whether the agent called STOP"
-        if argument == "distance_to_goal":
-            what = "the distance to the goal"
-        alternative = ""
-        if any("success" in end.get("metrics", {}) for end in reports.ends.values()):
-            alternative = ", or leave rule= out to count the reported success"
-        advice = f"Pass finish({argument}=...){alternative}."
-        return f"rule={self.rule} needs to know {what}, which {who}. {advice}"
+        stop, distance = "whether the agent called STOP", "the distance to the goal"
+        return (
+            f"rule={rule} needs to know {stop if argument == 'stopped' else distance}, which "
+            f"{count} of {counted(len(reports.ends), 'episode')} did not report. Pass "
+            f"finish({argument}=...), or leave rule= out to count the reported success."
+        )
 
     def describe_missing(self, missing: list[str]) -> str:
         """Return a text such as "3 of clean's 6 episodes are missing" ("clean" is the clean
         condition).
         """
         verb = "is" if len(missing) == 1 else "are"
-        return (
-            f"{len(missing)} of clean's {counted(len(self.clean_episodes()), 'episode')} {verb} "
-            "missing"
-        )
+        all_clean = counted(len(self.clean_reports().ends), "episode")
+        return f"{len(missing)} of clean's {all_clean} {verb} missing"
 
     def depth_warning(self) -> str:
         """Return a warning if depth may be normalised to [0, 1], else ""."""
-        names = maybe_normalised(self.reports())
-        if not names:
-            return ""
-        return (
-            f"run: the depth of {', '.join(names)} counts as metres, and never exceeded 1 in any "
-            f"episode: {NORMALISED_HINT}"
-        )
+        names = ", ".join(maybe_normalised(self.reports()))
+        warning = f"run: the depth of {names} counts as metres, and never exceeded 1 in any episode"
+        return f"{warning}: {NORMALISED_HINT}" if names else ""
 
     def summary(self) -> str:
         """Return a summary, such as "41 episodes, success 58.5 (own: ...), 2 left unfinished"."""
-        reports, rows = self.reports(), self.rows()
-        rule_text = "" if self.rule is None else str(RULES[self.rule])
-        first_rule = rule_text or (rows[0]["rule"] if rows else "")
+        reports, rows, rule = self.reports(), self.rows(), self.config.rule
+        first_rule = str(RULES[rule]) if rule else next((row["rule"] for row in rows), "")
         successes = [row["success"] for row in rows if row["rule"] == first_rule]
         parts = [counted(len(reports.ends), "episode") + self._describe_surplus(reports)]
         if successes:
             parts.append(f"success {100 * sum(successes) / len(successes):.1f} ({first_rule})")
         if reports.lost:
             parts.append(f"{len(reports.lost)} left unfinished")
-        without_path = count_without_path(reports, self.rule)
-        rules = {row["rule"] for row in rows}
-        same = len(set(without_path.values())) == 1 and len(without_path) == len(rules)
-        for rule, count in list(without_path.items())[: 1 if same else None]:
-            by_rule = "" if same else f" by {rule}"
-            parts.append(f"{count} successful without a path{by_rule}: their SPL is 1")
+        for name, count in count_without_path(reports, rule).items():
+            parts.append(f"{count} successful without a path by {name}: their SPL is 1")
         for how, name in ((RESET, "reset"), (CLOSE, "closed")):
             count = sum(end.get("how") == how for end in reports.ends.values())
             if 0 < count < len(reports.ends):
@@ -359,12 +292,12 @@ class Cell:
 
     def _describe_surplus(self, reports: Reports) -> str:
         """Return the reason why far more episodes ran than requested, or ""."""
-        count = len(reports.ends) if self.chosen is None else self.chosen.count
-        if len(reports.ends) <= 1.5 * count:
+        chosen = self.condition.chosen
+        if chosen is None or len(reports.ends) <= 1.5 * chosen.count:
             return ""
         return (
-            f" ({count} asked for: some processes connected more than {SETTLE_TIME:g} s after the "
-            "others, or there are more processes than episodes, and each keeps at least one)"
+            f" ({chosen.count} asked for: some processes connected more than {SETTLE_TIME:g} s "
+            "after the others, or there are more processes than episodes)"
         )
 
 
@@ -380,8 +313,8 @@ def describe_lost(reports: Reports) -> str:
     )
     if reports.dropped[name] not in ("", CUT_OFF):
         reason = (
-            f"it was reset or closed during an exception, {reason}. If the program ends its "
-            "episodes by exceptions, let it reset or close after the except block"
+            f"it was reset or closed during an exception, {reason}. To end episodes by "
+            "exceptions, reset or close after the except block"
         )
     verb = "was" if len(reports.lost) == 1 else "were"
     return (

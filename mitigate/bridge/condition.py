@@ -11,7 +11,7 @@ from __future__ import annotations
 import fcntl
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -75,7 +75,7 @@ class Condition:
             depend on it.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" or "right".
-        keep: Function that chooses episodes (:meth:`Subset.keep`), or None to keep all.
+        chosen: Chooses the episodes, or None to keep all.
         guards: Guards that change instructions and frames after the corruption.
         observers: Objects that receive every episode and frame before the corruption
             (``recording.py``).
@@ -87,7 +87,7 @@ class Condition:
     repeat: int = 0
     missing: float = 0.0
     turn: str = "left"
-    keep: Callable[[list[str], int], list[int]] | None = None
+    chosen: Subset | None = None
     guards: Guards = NO_GUARDS
     observers: list[Observer] = field(default_factory=list)
 
@@ -165,42 +165,26 @@ class Words:
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
-        if any(part.name == "white_box" for part in parts):
-            raise ValueError(
-                "white_box is not applicable: it corrupts an agent's system prompt, which the "
-                "bridge does not see. black_box puts the same sentences before the instruction."
-            )
         if not isinstance(text, str):
             if parts:
-                category = message.get("category")
-                has = "none"
-                if category:
-                    has = f"{category!r}, a category that agents read by number"
                 raise ValueError(
                     f"{corruption.name} corrupts the words of an instruction, but the episode has "
-                    f"{has}. Pass connect(..., instruction=...), or leave the corruption out."
+                    "none. Pass connect(..., instruction=...), or leave the corruption out."
                 )
             return {}
         changed = text
+        mask = (self.tokenizer and self.tokenizer.mask_token) or "[MASK]"
         for part in parts if is_english(message.get("language"), text) else ():
-            changed = corrupt_instruction(
-                changed, part.name, part.severity, key, mask_token=self._mask()
-            )
+            changed = corrupt_instruction(changed, part.name, part.severity, key, mask_token=mask)
         changed = guards.begin(EpisodeStart(key, changed))
         if changed == text:
             return {}
-        return {"text": changed, "tokens": self._tokenize(changed, tokens)}
-
-    def _mask(self) -> str:
-        return (self.tokenizer and self.tokenizer.mask_token) or "[MASK]"
-
-    def _tokenize(self, text: str, before: list[Any] | None) -> list[int] | None:
-        """Return the tokens of ``text``, or None if the episode had no tokens."""
-        if before is None:
-            return None
-        if self.tokenizer is None:
-            raise ValueError(NO_TOKENIZER)
-        return list(self.tokenizer.encode(text, self.length or padded_length(before))[0])
+        if tokens is not None:
+            if self.tokenizer is None:
+                raise ValueError(NO_TOKENIZER)
+            length = self.length or padded_length(tokens)
+            tokens = list(self.tokenizer.encode(changed, length)[0])
+        return {"text": changed, "tokens": tokens}
 
 
 def load_tokenizer(name: str) -> Tokenizer:
@@ -255,8 +239,7 @@ class Subset:
             least: The minimum number of episodes to keep, 0 or 1. The default is 1, because Habitat
                 rejects an empty dataset.
         """
-        bound = self._bound()
-        if bound is None:
+        if (bound := self._bound()) is None:
             bound = self._set_bound(names)
         hashes = [hash_episode(name) for name in names]
         indices = [i for i, value in enumerate(hashes) if value <= bound]
@@ -275,7 +258,7 @@ class Subset:
         again = f"Move {self.folder} aside, and run the same command again."
         choice = read_object(file, again)
         bound = choice.get("bound")
-        if not isinstance(bound, float) or not 0 <= bound <= 1 or not _is_count(choice.get("of")):
+        if not isinstance(bound, float) or not 0 <= bound <= 1 or not is_count(choice.get("of")):
             raise ValueError(
                 f'{file} is damaged: "bound" must be from 0 to 1, and "of" must be a whole number '
                 f">= 0. {again}"
@@ -293,8 +276,7 @@ class Subset:
         """
         if self._bound() is None:
             return 0
-        total = int(read_object(self.folder / "episodes.json", "")["of"])
-        return min(self.count, total)
+        return min(self.count, read_object(self.folder / "episodes.json", "")["of"])
 
     def _set_bound(self, names: list[str]) -> float:
         """Add ``names`` to the known names, wait for other environments, and store the bound."""
@@ -306,8 +288,7 @@ class Subset:
             time.sleep(0.1)
         with open_output(known, "r+", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
-            bound = self._bound()
-            if bound is None:
+            if (bound := self._bound()) is None:
                 hashes = sorted(hash_episode(_read_name(line, known)) for line in {*file})
                 bound = hashes[min(self.count, len(hashes)) - 1]
                 with atomic_text(self.folder / "episodes.json") as out:
@@ -315,8 +296,9 @@ class Subset:
         return bound
 
 
-def _is_count(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+def is_count(value: object) -> bool:
+    """Return whether a value from a file is a whole number >= 0."""
+    return type(value) is int and value >= 0
 
 
 def _read_name(line: str, file: Path) -> str:

@@ -34,15 +34,6 @@ def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, An
     return {**answer, "number": number} if isinstance(number, int) else answer
 
 
-def _use_one_thread() -> None:
-    """Limit torch to one thread, because environments run in parallel and this process is a
-    fork.
-    """
-    import torch
-
-    torch.set_num_threads(1)
-
-
 def _describe_error(kind: str, error: Exception) -> str:
     """Return the text that the agent's process gets if answering a message of this ``kind``
     failed.
@@ -50,9 +41,8 @@ def _describe_error(kind: str, error: Exception) -> str:
     if type(error) is ValueError:
         return str(error)
     if isinstance(error, OSError):  # the server, not the agent's process, caused the error
-        if error.strerror is None:
-            return str(error)
-        return f"the run cannot write {error.filename}: {error.strerror}."
+        reason = f"the run cannot write {error.filename}: {error.strerror}."
+        return reason if error.strerror else str(error)
     return (
         f"the message {kind!r} does not follow the protocol ({short(repr(error), 200)}). Use the "
         "mitigate_hook.py of this version."
@@ -150,7 +140,9 @@ class Connection:
             return
         self.channel.settimeout(None)
         if "torch" in sys.modules:  # a guard loaded torch before the fork
-            _use_one_thread()
+            import torch
+
+            torch.set_num_threads(1)  # environments run in parallel
         try:
             while (message := self._next()) is not None:
                 answer = self._answer(message)
@@ -190,12 +182,13 @@ class Connection:
         Habitat's first call belongs to the reset, so an episode with only one call had no step. In
         a loop without Habitat, each call is a step.
         """
-        if self.open and self.calls > (0 if self.loop else 1):
+        if not self.open:
+            return
+        if self.calls > (0 if self.loop else 1):
             fields = {"scene": self.scene, "episode": self.episode, "fault": fault}
             write_event(self.folder, event="dropped", **fields)
-        if self.open:
-            for observer in self.condition.observers:
-                observer.leave()
+        for observer in self.condition.observers:
+            observer.leave()
         self.open = False
 
     def _greet(self) -> bool:
@@ -218,12 +211,8 @@ class Connection:
         """Answer the description of the cameras with shared memory for their frames."""
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
-        kinds = (
-            *condition.corruption.modalities,
-            *condition.guards.frames,
-            *(k for o in condition.observers for k in o.kinds),
-        )
-        self.offsets, size = self.rig.lay_out(kinds)
+        kinds = {*condition.corruption.modalities, *condition.guards.frames}
+        self.offsets, size = self.rig.lay_out(kinds.union(*(o.kinds for o in condition.observers)))
         if message["cameras"] not in self.described:  # RGB and depth may come in separate calls
             self.described.append(message["cameras"])
             unread = [_one_line(text) for text in message.get("unread") or ()]
@@ -251,24 +240,24 @@ class Connection:
         for observer in self.condition.observers:
             observer.episode(message)
         fields = {n: message.get(n) for n in ("text", "category", "language")}
-        fields |= {"scene": self.scene, "heard": words.get("text")}
-        fields["tokens"] = message.get("tokens") is not None
-        write_event(self.folder, event="episode", episode=self.episode, **fields)
+        fields |= {"scene": self.scene, "episode": self.episode, "heard": words.get("text")}
+        write_event(
+            self.folder, event="episode", tokens=message.get("tokens") is not None, **fields
+        )
         return words
 
     def _check_chosen(self) -> None:
         """Raise ValueError if ``episodes=`` is set but the program did not ask which episodes to
         run.
         """
-        if self.condition.keep is None or self.chosen:
+        if self.condition.chosen is None or self.chosen:
             return
         self.chosen = any(e["event"] == "dataset" for _, e in read_events(self.folder))
         if not self.chosen:
             raise ValueError(
                 "episodes= asks for some of the program's episodes, but the program would run all. "
-                "Only datasets of habitat-lab are filtered automatically. A loop without Habitat "
-                "must run the episodes that mitigate_hook.wanted([(scene, id), ...]) returns; "
-                "WMNav has the option -ne. Or leave episodes= out."
+                "A loop without habitat-lab must run the episodes that mitigate_hook.wanted([(scene"
+                ", id), ...]) returns; WMNav has the option -ne. Or leave episodes= out."
             )
 
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
@@ -314,19 +303,12 @@ class Connection:
                 "program takes frames in a way that the bridge does not intercept, or no sensor "
                 "has the sensor_type SensorTypes.COLOR or SensorTypes.DEPTH (docs/bridge.md)."
             )
-        if self.calls and not failed:
+        if not failed:
             self._check_kinds()
         for observer in self.condition.observers:
             observer.end(message)
-        write_event(
-            self.folder,
-            event="end",
-            scene=self.scene,
-            episode=self.episode,
-            seconds=round(self.seconds, 4),
-            loop=self.loop,
-            **end,
-        )
+        fields = {"scene": self.scene, "episode": self.episode, "loop": self.loop, **end}
+        write_event(self.folder, event="end", seconds=round(self.seconds, 4), **fields)
         self.open = False
         return {}
 
@@ -337,9 +319,8 @@ class Connection:
             if sensors and not sensors & self.kinds:
                 raise ValueError(
                     f"{part.name!r} corrupts {part.modality}, but no call of episode "
-                    f"{self.episode} had such a camera (it has "
-                    f"{', '.join(sorted(self.kinds)) or 'none'}). Leave it out: suite=rgb, or "
-                    "conditions=[clean,...]."
+                    f"{self.episode} had such a camera (it has {', '.join(sorted(self.kinds))}). "
+                    "Leave it out: suite=rgb, or conditions=[clean,...]."
                 )
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
@@ -351,18 +332,17 @@ class Connection:
         known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
         dataset.
         """
-        keep = self.condition.keep
+        chosen = self.condition.chosen
         self.names += [str(key) for key in message["keys"]]
-        count = int(message.get("count", len(self.names)))
-        if keep is not None and len(self.names) < count:
+        count, least = int(message["count"]), int(message["least"])
+        if chosen is not None and len(self.names) < count:
             return {"more": count - len(self.names)}
         names, self.names = self.names, []
-        least = 0 if message.get("least") == 0 else 1
-        write_event(self.folder, event="dataset", episodes=count)
-        indices = None if keep is None else keep(names, least)
-        if least == 0:  # the names come from ``wanted``, so the program runs exactly these episodes
-            number = count if indices is None else len(indices)
-            write_event(self.folder, event="dataset", episodes=count, wanted=number)
+        indices = None if chosen is None else chosen.keep(names, least)
+        number = count if indices is None else len(indices)
+        # with least == 0, the names come from ``wanted``: the program runs exactly these episodes
+        wanted = None if least else number
+        write_event(self.folder, event="dataset", episodes=count, wanted=wanted)
         return {"keep": indices}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:

@@ -45,8 +45,16 @@ def damaged(folder: Path, what: str) -> ValueError:
     """Return the error for a damaged file of events; ``what`` describes the damage."""
     return ValueError(
         f"{folder / EVENTS}: {what}, so the episodes of this condition cannot be trusted. No file "
-        f"was changed. Copy the file back if you have it elsewhere. Or move {folder} "
-        f"out of {folder.parent} and run the same command again: it measures this condition again."
+        "was changed. Copy the file back if you have it elsewhere. Otherwise "
+        f"{measure_again(folder)}"
+    )
+
+
+def measure_again(folder: Path) -> str:
+    """Return the advice for a condition with damaged files."""
+    return (
+        f"move {folder} out of {folder.parent} and run the same command again: it measures this "
+        "condition again."
     )
 
 

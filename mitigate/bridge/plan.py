@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.bridge.cell import Cell, folder_name
-from mitigate.bridge.condition import Condition, Observer, Subset, Words, load_tokenizer
+from mitigate.bridge.condition import Condition, Subset, Words, load_tokenizer
 from mitigate.bridge.config import RunConfig, check_options, command_name
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.recording import Recorder, path_part
@@ -61,66 +61,44 @@ def make_cells(plan: Plan) -> list[Cell]:
     """
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
-    words = _open_words(config)
+    tokenizer = None if config.tokenizer is None else load_tokenizer(config.tokenizer)
+    words = Words(tokenizer, config.token_length)
     environment = _adapter_environment(config)
     guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
-    _check_guards(guards)
+    if guards.adapts:  # the agent runs in another process
+        raise ValueError(
+            f"The guard {guards.label} adapts the agent, which the bridge cannot do for another "
+            "program. Leave restore= out, or choose a guard of frames or instructions."
+        )
     chosen = None if config.episodes is None else Subset(config.episodes, out)
-    keep = None if chosen is None else chosen.keep
     options, agent = _settings(plan, guards)
     label = _make_label(plan, agent)
     cells: list[Cell] = []
-    for corruption, repeat in [
-        *((clean, number) for number in range(config.repeats)),
-        *((corruption, 0) for corruption in others),
-    ]:
+    runs = [(clean, number) for number in range(config.repeats)]
+    for corruption, repeat in [*runs, *((corruption, 0) for corruption in others)]:
         name = folder_name(corruption.name, corruption.severity, repeat)
         recording = None if config.record is None else Path(config.record) / name
-        observers: list[Observer] = []
-        if recording is not None:
-            observers.append(Recorder(recording, recording.parent))
         condition = Condition(
-            *(corruption, config.seed, words, repeat, config.missing, config.turn, keep),
-            guards=guards,
-            observers=observers,
+            *(corruption, config.seed, words, repeat, config.missing, config.turn, chosen, guards),
+            observers=[] if recording is None else [Recorder(recording, recording.parent)],
         )
         cells.append(
             Cell(
                 name,
                 corruption,
                 repeat,
+                config,
                 plan.command,
                 out / "conditions" / name,
                 condition,
                 label,
-                config.rule,
                 options | corruption_settings(corruption) | agent,
-                config.patience,
                 environment,
                 clean=cells[0].folder if cells else None,
                 recording=recording,
-                chosen=chosen,
-                count_closed=config.count_closed,
             )
         )
     return cells
-
-
-def _check_guards(guards: Guards) -> None:
-    """Raise ValueError for guards that need the agent itself, because it runs in another
-    process.
-    """
-    if guards.adapts:
-        raise ValueError(
-            f"The guard {guards.label} adapts the agent, which the bridge cannot do for another "
-            "program. Leave restore= out, or choose a guard that changes only frames or "
-            "instructions."
-        )
-
-
-def _open_words(config: RunConfig) -> Words:
-    tokenizer = None if config.tokenizer is None else load_tokenizer(config.tokenizer)
-    return Words(tokenizer, config.token_length)
 
 
 def _adapter_environment(config: RunConfig) -> dict[str, str]:
@@ -186,8 +164,8 @@ def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
     safeguard = None if agent["safeguard"] == "none" else agent["safeguard"]
     for part in (agent["restore"], safeguard, agent["adapters"], _as_text(agent["watch"])):
         sha = sha if part is None else _digest(f"{sha} {part}")
-    column = _column(config, plan.name)
-    return {"agent": sha, "name": column, "split": config.split, "seed": config.seed}
+    name = _column(config, plan.name)
+    return {"agent": sha, "name": name, "split": config.split, "seed": config.seed}
 
 
 def default_folder(config: RunConfig, name: str) -> Path:
@@ -208,8 +186,8 @@ def adapters_label(config: RunConfig) -> str | None:
     file = Path(folder) / WEIGHTS
     if not file.is_file():
         raise FileNotFoundError(
-            f"adapters={config.adapters} must name a folder with {WEIGHTS}, but {file} does not "
-            "exist. Name the agent/ folder of a training with the recipe encoder."
+            f"adapters={config.adapters}: there is no file {file}. Name the agent/ folder of a "
+            "training with the recipe encoder."
         )
     return f"{sha256(file)[:12]}:{module}:{target}"
 
@@ -224,7 +202,7 @@ def split_adapters(adapters: str) -> tuple[str, str, str]:
     if not target.partition(".")[0] or not module:
         raise ValueError(
             f"adapters={adapters} must be FOLDER:package.module:Class.attribute, where the "
-            "attribute of the class's instances is the encoder that the adapters were trained for: "
+            "attribute is the encoder that the adapters were trained for: "
             "runs/clip/agent:vlnce_baselines.models.encoders.resnet_encoders:CLIPEncoder.model"
         )
     return folder, module, target

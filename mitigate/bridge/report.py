@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from mitigate.bridge.cell import Cell, folder_name, missing_entries, read_done
+from mitigate.bridge.cell import Cell, folder_name, read_done
 from mitigate.bridge.events import DONE
 from mitigate.bridge.plan import corruption_settings
 from mitigate.bridge.results import OWN
@@ -50,7 +50,7 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
             f"No episode reported a result, so there is no table. The reports are in {out}."
         )
     _write_rows(out / ROWS, new_rows, left_out)
-    rule = cells[0].rule
+    rule = cells[0].config.rule
     first = OWN if rule is None else str(RULES[rule])
     paths = report.write(new_rows, out, first=first, least=2)
     if len({row["rule"] for row in new_rows}) > 1:
@@ -84,9 +84,8 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     if unexplained:
         raise ValueError(
             f"{file} holds {counted(len(before), 'row')}, and {lost.total()} of them belong to "
-            f"episodes of conditions that are not finished any more ({', '.join(unexplained)}). "
-            "The file was not changed. Run these conditions again, or move the file to another "
-            "folder and run the same command again."
+            f"conditions that are not finished any more ({', '.join(unexplained)}). The file was "
+            "not changed. Run these conditions again, or move the file to another folder."
         )
     labels = {name: {row[name] for row in new_rows} for name in LABELS}
     same_episodes = [row for row in before if _condition_and_episode(row) in now]
@@ -133,7 +132,7 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
         if file.parent.name in known:
             continue
         cell = _read_cell(cells[0], file)
-        reason = "by an older version, or with a corruption that no longer exists"
+        reason = "with a corruption that no longer exists"
         if cell is not None:
             reason = ", ".join(f"another {name}" for name in cell.changed_settings())
             reason = reason or cell.reason_to_repeat() or cell.rule_problem()
@@ -149,25 +148,22 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
 def _read_cell(clean: Cell, file: Path) -> Cell | None:
     """Return the condition that a ``done.json`` describes, with the options of ``clean``.
 
-    The result is None if an older version wrote the file or if the corruption no longer exists.
-    Raises ValueError if the file or its events are damaged.
+    The result is None if the corruption no longer exists. Raises ValueError if the file or its
+    events are damaged.
     """
-    entries = read_done(file.parent) or {}
-    if missing_entries(entries):
-        return None
+    folder = file.parent
+    entries = read_done(folder)
+    assert entries is not None
     try:
         severity = float(entries["severity"])
-        corruption = Corruption(str(entries["condition"]), severity) if severity else CLEAN
-        repeat = int(entries["repeat"])
-    # an older version wrote it, or the corruption was removed
-    except (ValueError, KeyError, TypeError):
+        corruption = Corruption(entries["condition"], severity) if severity else CLEAN
+    except ValueError:
         return None
-    folder = file.parent
     return replace(
         clean,
         name=folder.name,
         corruption=corruption,
-        repeat=repeat,
+        repeat=entries["repeat"],
         folder=folder,
         settings=clean.settings | corruption_settings(corruption),
         clean=clean.folder,

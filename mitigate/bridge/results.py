@@ -30,8 +30,9 @@ CUT_OFF = (
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-# these rules do not use STOP, because some programs never report it
-COMMON = {"words": RULES["etpnav"], "objects": RULES["wmnav"]}
+# the common rule of a task, by the entry of an episode that the task needs; these rules do not use
+# STOP, because some programs never report it
+COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 
 @dataclass
@@ -51,7 +52,7 @@ class Reports:
         problems: Failures of the server, and reasons why processes stopped themselves.
         first: The event that began the first episode.
         languages: Language of the instruction, by episode name.
-        adapted: Encoders to which adapters were attached.
+        adapted: Whether adapters were attached to an encoder.
         connected: Number of environments that are connected now.
         announced: Number of episodes that the program must run.
         ended: Number of episodes that ended.
@@ -67,7 +68,7 @@ class Reports:
     problems: list[str] = field(default_factory=list)
     first: dict[str, Any] = field(default_factory=dict)
     languages: dict[str, str | None] = field(default_factory=dict)
-    adapted: list[str] = field(default_factory=list)
+    adapted: bool = False
     connected: int = 0
     announced: int = 0
     ended: int = 0
@@ -76,11 +77,6 @@ class Reports:
     def lost(self) -> list[str]:
         """The episodes that were left unfinished and did not end later."""
         return sorted(self.dropped.keys() - self.ends.keys())
-
-    def announce(self, event: dict[str, Any]) -> None:
-        """Record how many episodes ``mitigate_hook.wanted`` returned to the program."""
-        if event.get("wanted") is not None:
-            self.announced = max(self.announced, int(event["wanted"]))
 
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Record the end of an episode; a complete end replaces an earlier incomplete end."""
@@ -100,18 +96,6 @@ class Reports:
                 f"{event['scene']}: episodes are named after them. Rename the files."
             )
 
-    def without_closed(self) -> Reports:
-        """Discard the episodes that closing an Env ended, if several Envs ran in parallel.
-
-        An evaluator with parallel environments cuts off running episodes when it closes the Envs. A
-        single Env, however, may be closed to end its episode.
-        """
-        if self.parallel:
-            closed = [name for name, end in self.ends.items() if _how(end) == CLOSE]
-            self.dropped.update(dict.fromkeys(closed, CUT_OFF))
-            self.ends = {n: end for n, end in self.ends.items() if n not in closed}
-        return self
-
 
 def read(folder: Path, count_closed: bool = False) -> Reports:
     """Read the reports from the events in ``folder``; ignore an incomplete last line.
@@ -130,7 +114,13 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
             _add(reports, event, began)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise damaged(folder, f"line {number} is not an event of this version") from error
-    return reports if count_closed else reports.without_closed()
+    # an evaluator with parallel Envs cuts off running episodes when it closes the Envs; a single
+    # Env, however, may be closed to end its episode
+    if reports.parallel and not count_closed:
+        closed = [name for name, end in reports.ends.items() if _how(end) == CLOSE]
+        reports.dropped |= dict.fromkeys(closed, CUT_OFF)
+        reports.ends = {name: end for name, end in reports.ends.items() if name not in closed}
+    return reports
 
 
 def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None:
@@ -154,20 +144,19 @@ def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None
         known = {camera.get("name") for camera in reports.cameras}
         reports.cameras += [c for c in event["cameras"] if c.get("name") not in known]
     elif kind == "dataset":
-        reports.announce(event)
+        reports.announced = max(reports.announced, int(event.get("wanted") or 0))
     elif kind == "episode":
         reports.first = reports.first or event
         reports.languages[name] = event.get("language")
         began[event.get("pid", 0)] = reports.ended
     elif kind == "end":
         reports.end(name, event)
-        ended_before = began.get(event.get("pid", 0), reports.ended)
-        reports.parallel = reports.parallel or ended_before < reports.ended
+        reports.parallel |= began.get(event.get("pid", 0), reports.ended) < reports.ended
         reports.ended += 1
     elif kind == "dropped":
         reports.dropped[name] = str(event.get("fault") or "")
     elif kind == "adapted":
-        reports.adapted.append(event["module"])
+        reports.adapted = True
     elif kind in ("refused", "stopped"):
         reports.problems.append(event["problem"])
 
@@ -193,10 +182,9 @@ def rows(
             ``rule`` and Success measure, an agent gets rows only by the common rule.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
-    result = []
     rules = _choose_rules(reports, rule, clean)
-    for name, end in reports.ends.items():
-        row = {
+    return [
+        {
             "agent": label["agent"],
             "name": label["name"],
             "corruption": corruption.name,
@@ -206,36 +194,31 @@ def rows(
             "seed": label["seed"],
             "suite": SUITE_VERSION,
             **version(corruption.name),
+            **judged,
+            **_measures(end),
         }
-        for judged in _judge(end, rule, rules):
-            result.append(row | judged | _measures(end))
-    return result
-
-
-def _common_rules(reports: Reports) -> list[Rule]:
-    """Return the common rule of the task; PointNav, without words or objects, has no common
-    rule.
-    """
-    if reports.first.get("category"):
-        return [COMMON["objects"]]
-    return [COMMON["words"]] if reports.first.get("text") else []
+        for name, end in reports.ends.items()
+        for judged in _judge(end, rule, rules)
+    ]
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
     """Return the requested success rule and the common success rule.
 
-    The common rule is omitted if the task has none. The common rule is also omitted if it cannot
-    judge every episode that the agent's own rule can judge, or if neither this condition nor the
-    clean condition reports a distance.
+    The common rule is omitted if the task has none, as PointNav, which has neither words nor
+    objects. It is also omitted if it cannot judge every episode that the agent's own rule can
+    judge, or if neither this condition nor the clean condition reports a distance.
     """
-    common = _common_rules(reports)
+    requested = [RULES[rule]] if rule else []
+    task = next((name for name in COMMON if reports.first.get(name)), None)
+    if task is None:
+        return requested
     ends = [*reports.ends.values()]
     own = [end for end in ends if "success" in end.get("metrics", {})]
-    partial = any(_missing(end, each) for end in own for each in common)
+    partial = any(_missing(end, COMMON[task]) for end in own)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
-    requested = [RULES[rule]] if rule else []
-    return requested + ([] if partial or no_distance else common)
+    return requested + ([] if partial or no_distance else [COMMON[task]])
 
 
 def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
@@ -243,16 +226,15 @@ def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iter
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
         success = float(metrics["success"]) > 0
-        judged[OWN] = {
-            "success": float(success),
-            "spl": metrics["spl"] if "spl" in metrics else _spl(end, success),
-        }
+        spl_value = metrics["spl"] if "spl" in metrics else _spl(end, success)
+        judged[OWN] = {"rule": OWN, "success": float(success), "spl": spl_value}
     for known in rules:
         if not _missing(end, known):
             metres = _goal_distance(end)
             success = metres is not None and known.met(metres, bool(end.get("stopped")))
-            judged[str(known)] = {"success": float(success), "spl": _spl(end, success)}
-    return [{"rule": name, **values} for name, values in judged.items()]
+            values = {"rule": str(known), "success": float(success), "spl": _spl(end, success)}
+            judged[str(known)] = values
+    return judged.values()
 
 
 def _goal_distance(end: dict[str, Any]) -> Any:
@@ -328,8 +310,7 @@ def _shortest_path(end: dict[str, Any]) -> float | None:
 
 
 def _path_length(end: dict[str, Any]) -> float | None:
-    path = end.get("path") or []
-    if len(path) > 0:
+    if path := end.get("path"):
         return path_length(np.array(path))
     return end.get("metrics", {}).get("path_length")
 
@@ -337,12 +318,12 @@ def _path_length(end: dict[str, Any]) -> float | None:
 def _measures(end: dict[str, Any]) -> dict[str, Any]:
     """Return the entries of a row that do not depend on a success rule."""
     metrics = end.get("metrics", {})
-    measures: dict[str, Any] = {name: metrics[name] for name in MEASURES if name in metrics}
-    recorded = {
+    measures: dict[str, Any] = {
         "path_length": _path_length(end),
         "geodesic_distance": end.get("start_distance"),
         "distance_to_goal": end.get("distance"),
     }
-    measures = {name: value for name, value in recorded.items() if value is not None} | measures
-    measures = {name: value for name, value in measures.items() if math.isfinite(value)}
-    return measures | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}
+    measures = {n: v for n, v in measures.items() if v is not None}
+    measures |= {n: metrics[n] for n in MEASURES if n in metrics}
+    finite = {n: v for n, v in measures.items() if math.isfinite(v)}
+    return finite | {"decisions": end.get("calls", 0), "steps": end.get("steps", 0)}

@@ -183,10 +183,10 @@ def test_wanted_sends_names_in_parts(tmp_path):
         "import mitigate_hook\nmitigate_hook.KEYS_PER_MESSAGE = 7\n"
         "print([n for _, n in mitigate_hook.wanted([('x.glb', n) for n in range(20)])])"
     )
-    keep = Subset(4, tmp_path, settled=0.0).keep
-    with Listener(condition(keep=keep), tmp_path / "told") as listener:
+    chosen = Subset(4, tmp_path, settled=0.0)
+    with Listener(condition(chosen=chosen), tmp_path / "told") as listener:
         printed = python(listener, code).stdout
-    expected = keep([f"x.glb/{n}" for n in range(20)])
+    expected = chosen.keep([f"x.glb/{n}" for n in range(20)])
     assert printed.strip() == str(expected) and len(expected) == 4
     assert json.loads((tmp_path / "episodes.json").read_text())["of"] == 20
 

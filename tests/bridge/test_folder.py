@@ -247,14 +247,6 @@ def test_run_fails_if_a_worker_stops_itself(run, tmp_path):
     )
 
 
-def test_run_names_conditions_of_an_older_version(run, program, tmp_path):
-    out = tmp_path / "o"
-    (out / "conditions" / "flare-s0.6").mkdir(parents=True)
-    (out / "conditions" / "flare-s0.6" / "done.json").write_text('{"seed": 0}')
-    result = run(out, "conditions=[clean]", program)
-    assert "flare-s0.6: measured before, but not in the table: by an older version" in result.stdout
-
-
 def make_attempt(options, folder):
     """Return the first condition of a run with options, and the default folder."""
     typed = config(*options)

@@ -185,10 +185,10 @@ for scene, name in mitigate_hook.wanted(pairs):
 
 
 def test_wanted_returns_the_chosen_episodes(tmp_path):
-    keep = Subset(4, tmp_path, settled=0.0).keep
-    process, reports = run_loop(tmp_path, WANTED, condition("spatter", keep=keep))
+    chosen = Subset(4, tmp_path, settled=0.0)
+    process, reports = run_loop(tmp_path, WANTED, condition("spatter", chosen=chosen))
     assert len(reports.ends) == 4 and len(process.stdout.split()) == 4
-    numbers = keep([f"x.glb/{n}" for n in range(12)])
+    numbers = chosen.keep([f"x.glb/{n}" for n in range(12)])
     assert sorted(reports.ends) == sorted(f"x/{n}" for n in numbers)
     assert len(run_loop(tmp_path / "all", WANTED)[1].ends) == 12
 
@@ -196,7 +196,7 @@ def test_wanted_returns_the_chosen_episodes(tmp_path):
 @pytest.mark.parametrize("workers", [1, 5])
 def test_wanted_does_not_depend_on_the_number_of_workers(tmp_path, workers):
     # on a busy machine, one worker may ask later than the others
-    keep = Subset(2, tmp_path, settled=0.3 if workers == 1 else 1.5).keep
+    chosen = Subset(2, tmp_path, settled=0.3 if workers == 1 else 1.5)
     code = (
         f"for n in range({workers}):\n    if os.fork() == 0:\n"
         f"        pairs = [('x.glb', n) for n in range(20)][n::{workers}]\n"
@@ -205,7 +205,7 @@ def test_wanted_does_not_depend_on_the_number_of_workers(tmp_path, workers):
         "            episode.corrupt({'rgb': rgb})\n            episode.finish(success=1)\n"
         f"        os._exit(0)\nfor n in range({workers}): os.wait()"
     )
-    _, reports = run_loop(tmp_path, code, condition("spatter", keep=keep))
+    _, reports = run_loop(tmp_path, code, condition("spatter", chosen=chosen))
     places = sorted(range(20), key=lambda n: hash_episode(f"x.glb/{n}"))
     assert sorted(reports.ends) == sorted(f"x/{n}" for n in places[:2])
 
@@ -237,8 +237,8 @@ def test_rows_count_an_unreachable_goal_as_failure(tmp_path):
 
 
 def test_connect_stops_if_no_episodes_were_chosen(tmp_path):
-    keep = Subset(2, tmp_path, settled=0.0).keep
-    process, _ = run_loop(tmp_path, "mitigate_hook.connect('a')", condition(keep=keep))
+    chosen = Subset(2, tmp_path, settled=0.0)
+    process, _ = run_loop(tmp_path, "mitigate_hook.connect('a')", condition(chosen=chosen))
     assert process.returncode == 97 and "mitigate_hook.wanted([(scene, id), ...])" in process.stdout
 
 

@@ -67,7 +67,7 @@ def test_rows_count_a_failure_without_stop(run, tmp_path, far):
     )
     assert f"success 50.0 ({RULES['objectnav']})" in result.stdout, result.stderr
     result_rows = [json.loads(line) for line in (out / "rows.jsonl").read_text().splitlines()]
-    for rule in (RULES["objectnav"], COMMON["words"]):
+    for rule in (RULES["objectnav"], COMMON["text"]):
         successes = [
             r["success"]
             for r in result_rows
@@ -118,7 +118,7 @@ def test_rows_omit_common_rule_without_all_episodes(tmp_path):
 def test_rows_judge_failures_if_clean_reports_distance(tmp_path):
     _, clean, _ = judge(tmp_path / "c", "episode.finish(success=True, distance_to_goal=1)", None)
     _, reports, _ = judge(tmp_path / "t", "episode.finish(success=False)", None)
-    common = str(COMMON["words"])
+    common = str(COMMON["text"])
     assert common not in {row["rule"] for row in rows(reports, CLEAN, LABEL, None)}
     result_rows = rows(reports, CLEAN, LABEL, None, clean)
     assert [row["success"] for row in result_rows if row["rule"] == common] == [0.0, 0.0]
