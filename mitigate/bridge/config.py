@@ -95,18 +95,15 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
         )
     if moving := [name for name in config.names if family(name) == MOTION]:
         raise ValueError(
-            f"{moving[0]} changes actions, which mitigate run does not intercept: it corrupts "
-            "frames and instructions only. Leave it out (suite=temporal and suite=camera work)."
+            f"{moving[0]} changes actions, which mitigate run does not intercept. Leave it out "
+            "(suite=temporal and suite=camera work)."
         )
-    for option, value in (("jobs", config.jobs), ("repeats", config.repeats)):
-        if value < 1:
+    for option in ("jobs", "repeats", "episodes", "token_length"):
+        value = vars(config)[option]
+        if value is not None and value < 1:
             raise ValueError(f"{option} must be >= 1, got {value}.")
     if not 0 <= config.missing < math.inf:
-        raise ValueError(
-            f"missing must be metres >= 0, got {config.missing:g}. Example: missing=10."
-        )
-    if config.token_length is not None and config.token_length < 1:
-        raise ValueError(f"token_length must be >= 1 or null, got {config.token_length}.")
+        raise ValueError(f"missing must be metres >= 0, got {config.missing:g}. Try missing=10.")
     for option, text in (("split", config.split), ("name", config.name or command_name(command))):
         if constraint := allowed(option, text):  # check it now, not after hours of measuring
             raise ValueError(f"{option}={short(text)} cannot be written to rows: {constraint}.")
@@ -119,11 +116,8 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
     if config.episodes is not None and config.patience < SETTLE_TIME + 1:
         raise ValueError(
             f"patience must be >= {SETTLE_TIME + 1:g} seconds with episodes={config.episodes}, got "
-            f"{config.patience:g}: episodes are chosen {SETTLE_TIME:g} s after the last "
-            "environment connected. The default is 25."
+            f"{config.patience:g}. The default is 25."
         )
-    if config.episodes is not None and config.episodes < 1:
-        raise ValueError(f"episodes must be >= 1, or null for all, got {config.episodes}.")
     if config.record is not None:
         make_folder(config.record)
 
@@ -145,9 +139,8 @@ def _check_watched(name: str) -> None:
     similar = difflib.get_close_matches(name, [*os.environ, *files], n=3)
     hint = f" Did you mean {' or '.join(similar)}?" if similar else ""
     raise ValueError(
-        f"watch={name} must be a file or an environment variable, and neither exists.{hint} If "
-        f"the variable is meant to be unset, set it to empty text: {Path(name).name}= mitigate "
-        "run ..."
+        f"watch={name} must be a file or an environment variable, and neither exists.{hint} A "
+        f"variable may be empty: {Path(name).name}= mitigate run ..."
     )
 
 

@@ -14,13 +14,12 @@ import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
-import hydra
 from omegaconf import DictConfig
 
 from mitigate.bridge.attempt import Attempt
@@ -30,6 +29,7 @@ from mitigate.bridge.config import RunConfig
 from mitigate.bridge.plan import Plan, make_cells, make_plan
 from mitigate.cluster.launcher import chosen, results
 from mitigate.core import conf
+from mitigate.core.names import counted
 from mitigate.core.output import output_folder
 from mitigate.core.progress import Progress
 from mitigate.core.signals import raise_ended
@@ -41,12 +41,14 @@ PAUSE = 0.2  # seconds between two polls of a running command
 MAX_REASON = 100
 
 
-def split_command(arguments: Sequence[str]) -> tuple[list[str], list[str]]:
+def _say(text: str) -> None:
+    print(text, flush=True)
+
+
+def split_command(arguments: list[str]) -> tuple[list[str], list[str]]:
     """Return the options before ``--`` and the command after it."""
-    if "--" not in arguments:
-        return list(arguments), []
-    index = list(arguments).index("--")
-    return list(arguments[:index]), list(arguments[index + 1 :])
+    index = arguments.index("--") if "--" in arguments else len(arguments)
+    return arguments[:index], arguments[index + 1 :]
 
 
 def run(config: RunConfig, command: Sequence[str]) -> Path:
@@ -64,20 +66,19 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
     cells = make_cells(plan)
     check_finished(plan.out)
     with output_folder(plan.out):
-        return _measure(plan, cells)
+        _measure(plan, cells)
+    return plan.out
 
 
-def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
+def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
     """Run all conditions and write the report. Raises the same errors as :func:`run`."""
     from mitigate.bridge.report import write_report
 
     out = plan.out
     clean = cells[0]
-    count = "1 condition" if len(cells) == 1 else f"{len(cells)} conditions"
-    print(
-        f"run: {shlex.join(plan.command)}\nrun: {count} at severity {plan.config.severity:g}, "
-        f"rows in {out}",
-        flush=True,
+    _say(
+        f"run: {shlex.join(plan.command)}\nrun: {counted(len(cells), 'condition')} at severity "
+        f"{plan.config.severity:g}, rows in {out}"
     )
     known = _warn_changed_files(cells, out)
     was_done = clean.is_done()
@@ -85,10 +86,9 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     if problems:
         raise ValueError("\n".join(problems))
     _check_rule([clean])
-    depth_warning = clean.depth_warning()
-    if depth_warning:
+    if depth_warning := clean.depth_warning():
         # check it now, before hours of measuring, and again at the end
-        print(depth_warning, flush=True)
+        _say(depth_warning)
     applicable, untokenized = _select_applicable(cells)
     if untokenized:
         problems = [f"{', '.join(untokenized)}: {NO_TOKENIZER}"]
@@ -96,10 +96,9 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     _check_rule(applicable)
     all_done = was_done and all(cell.is_done() for cell in applicable)
     if all_done:
-        print(
+        _say(
             f"run: nothing was left to run, all results are in {out}. To measure again, choose "
-            "another folder (out=...), or remove this one.",
-            flush=True,
+            "another folder (out=...), or remove this one."
         )
     problems += run_all(plan, applicable)
     _warn_changed_files([clean, *applicable], out, known if all_done else ())
@@ -111,13 +110,12 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> Path:
     except ValueError as error:  # list the failed conditions before this error
         raise ValueError("\n".join([*problems, str(error)])) from error
     if depth_warning:
-        print(depth_warning, flush=True)
+        _say(depth_warning)
     if problems:
         raise ValueError(
             "Some conditions failed. Run the same command again to continue.\n"
             + "\n".join(problems)
         )
-    return out
 
 
 def _describe_removed(cells: Sequence[Cell], problems: Sequence[str]) -> list[str]:
@@ -154,14 +152,14 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     for cell in cells[1:]:
         reason = why_not_applicable(cell.corruption, reports)
         if reason:
-            print(f"{cell.name}: not applicable, {reason}", flush=True)
+            _say(f"{cell.name}: not applicable, {reason}")
         elif needs_tokenizer(cell.corruption, reports, cell.condition.words):
             untokenized.append(cell.name)
         else:
             applicable.append(cell)
     others = Counter(str(name) for name in reports.languages.values() if not is_english(name))
     if others and any("instruction" in cell.corruption.modalities for cell in applicable):
-        print(f"run: {passed_through(others)}", flush=True)
+        _say(f"run: {passed_through(others)}")
     return applicable, untokenized
 
 
@@ -181,13 +179,11 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
             continue
         more = f" and {len(names) - 3} more" if len(names) > 3 else ""
         was = "was" if len(names) == 1 else "were"
-        print(
-            f"run: {file} changed since {', '.join(names[:3])}{more} {was} run. The old results "
-            "are kept, and one table holds old and new results. To measure again, choose another "
-            f"folder (out=...) or remove {out / 'conditions'}. With watch=[{file}] a changed file "
-            "counts as another agent. If the command writes this file, name it "
-            f"{{out}}/{Path(file).name} in the command.",
-            flush=True,
+        _say(
+            f"run: {file} changed since {', '.join(names[:3])}{more} {was} run. One table holds "
+            f"old and new results. To measure again, remove {out / 'conditions'}, choose another "
+            f"folder (out=...), or set watch=[{file}]. If the command writes this file, name it "
+            f"{{out}}/{Path(file).name} in the command."
         )
     return list(changed)
 
@@ -199,7 +195,7 @@ def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
-            print(f"{cell.name}: done before, {cell.summary()}", flush=True)
+            _say(f"{cell.name}: done before, {cell.summary()}")
     if plan.config.launcher.name == "local":
         return _run_here(waiting, plan.config.jobs)
     return _run_on_launcher(plan, waiting)
@@ -223,17 +219,13 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
             time.sleep(PAUSE)
             for attempt in list(running):
                 problem = attempt.poll()
-                if problem is None:
-                    continue
-                running.remove(attempt)
-                cell = attempt.cell
-                outcome = _describe_outcome(cell, problem, len(cells) == 1)
-                print(f"{cell.name}: {outcome}", flush=True)
-                problems += [f"{cell.name}: {problem}"] if problem else []
+                if problem is not None:
+                    running.remove(attempt)
+                    problems += _report(attempt.cell, problem, len(cells) == 1, _say)
             if running and time.monotonic() - last_print > PROGRESS_INTERVAL:
                 last_print = time.monotonic()
                 for attempt in running:
-                    print(f"{attempt.cell.name}, so far: {attempt.cell.summary()}", flush=True)
+                    _say(f"{attempt.cell.name}, so far: {attempt.cell.summary()}")
     finally:
         for attempt in running:
             attempt.kill()
@@ -248,22 +240,25 @@ def _start(attempt: Attempt) -> str:
         attempt.start()
     except ValueError as error:
         attempt.kill()
-        print(f"{cell.name}: {error}", flush=True)
+        _say(f"{cell.name}: {error}")
         return str(error)
-    print(f"{cell.name}: started{again}; its output is in {cell.log}", flush=True)
+    _say(f"{cell.name}: started{again}; its output is in {cell.log}")
     return ""
 
 
-def _describe_outcome(cell: Cell, problem: str, single: bool) -> str:
-    """Return one line with the summary or the failure of a condition that ended.
+def _report(cell: Cell, problem: str, single: bool, say: Callable[[str], None]) -> list[str]:
+    """Say the summary or the failure of a condition that ended in one line; return its problem.
 
     At the end of the run, the full text of each problem is printed. If the run has a ``single``
     condition, that end is now.
     """
     if not problem:
-        return cell.summary()
+        say(f"{cell.name}: {cell.summary()}")
+        return []
     line = problem.splitlines()[0]
-    return "failed" if single else f"failed: {line[:MAX_REASON]}{'...' * (len(line) > MAX_REASON)}"
+    reason = "" if single else f": {line[:MAX_REASON]}{'...' * (len(line) > MAX_REASON)}"
+    say(f"{cell.name}: failed{reason}")
+    return [f"{cell.name}: {problem}"]
 
 
 class ConditionTask:
@@ -332,38 +327,30 @@ def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
         for result in results(launcher, task, groups, plan.config.jobs, progress):
             if result is None:
                 continue
-            cell, problem = cells[result[0]], str(result[1])
-            progress.say(f"{cell.name}: {_describe_outcome(cell, problem, len(cells) == 1)}")
-            problems += [f"{cell.name}: {problem}"] if problem else []
+            problems += _report(cells[result[0]], result[1], len(cells) == 1, progress.say)
             progress.advance()
     return problems
-
-
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="run")
-def hydra_main(cfg: DictConfig) -> None:
-    """Run the user's command with the composed config."""
-    config = conf.typed(cfg, "run")
-    assert isinstance(config, RunConfig)
-    if config.check:
-        from mitigate.bridge.check import check
-
-        check(config, _command)
-    else:
-        run(config, _command)
-
-
-_command: list[str] = []  # the words after "--"
 
 
 def main() -> None:
     """Run from the command line."""
     options, command = split_command(sys.argv[1:])
-    _command[:] = command
     # SIGHUP is sent when the terminal closes; core/conf.py handles SIGTERM
     signal.signal(signal.SIGHUP, raise_ended)
     options = ["check=true" if option == "--check" else option for option in options]
     sys.argv[1:] = options
-    conf.main(hydra_main, "run", lambda: _check_line(options), ["--", *command] if command else ())
+
+    def program(cfg: DictConfig) -> None:
+        config = conf.typed(cfg, "run")
+        if config.check:
+            from mitigate.bridge.check import check
+
+            check(config, command)
+        else:
+            run(config, command)
+
+    behind = ["--", *command] if command else ()
+    conf.main(conf.hydra_program("run", program), "run", lambda: _check_line(options), behind)
 
 
 def _check_line(options: Sequence[str]) -> None:

@@ -99,7 +99,7 @@ def test_run_names_a_damaged_marker(run, skips, tmp_path):
     ("options", "words"),
     [
         ("missing=-5", "missing must be metres >= 0, got -5"),
-        ("token_length=-5", "token_length must be >= 1 or null, got -5"),
+        ("token_length=-5", "token_length must be >= 1, got -5"),
         ("split=", "split='' cannot be written to rows"),
         (f"name={'x' * 201}", "cannot be written to rows: a line of at most 200"),
     ],

@@ -340,7 +340,6 @@ def test_run_lists_the_launchers(monkeypatch):
     monkeypatch.setattr(sys, "argv", ["mitigate run", "launcher=foo", "--", "true"])
     monkeypatch.delenv("HYDRA_FULL_ERROR", raising=False)
     monkeypatch.setattr(run_module.signal, "signal", lambda *_: None)
-    monkeypatch.setattr(run_module, "_command", [])
     with pytest.raises(SystemExit, match="Choose one of: local, ray, slurm."):
         run_module.main()
 
