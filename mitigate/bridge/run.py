@@ -14,7 +14,7 @@ import signal
 import sys
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
@@ -31,7 +31,7 @@ from mitigate.cluster.launcher import chosen, results
 from mitigate.core import conf
 from mitigate.core.names import counted
 from mitigate.core.output import output_folder
-from mitigate.core.progress import Progress
+from mitigate.core.progress import Progress, say
 from mitigate.core.signals import raise_ended
 from mitigate.corruptions.language.text import is_english, passed_through
 
@@ -39,10 +39,6 @@ PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
 # maximum characters of a problem in a progress line (heuristic); the full text is printed later
 MAX_REASON = 100
-
-
-def _say(text: str) -> None:
-    print(text, flush=True)
 
 
 def split_command(arguments: list[str]) -> tuple[list[str], list[str]]:
@@ -76,7 +72,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
 
     out = plan.out
     clean = cells[0]
-    _say(
+    say(
         f"run: {shlex.join(plan.command)}\nrun: {counted(len(cells), 'condition')} at severity "
         f"{plan.config.severity:g}, rows in {out}"
     )
@@ -88,7 +84,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
     _check_rule([clean])
     if depth_warning := clean.depth_warning():
         # check it now, before hours of measuring, and again at the end
-        _say(depth_warning)
+        say(depth_warning)
     applicable, untokenized = _select_applicable(cells)
     if untokenized:
         problems = [f"{', '.join(untokenized)}: {NO_TOKENIZER}"]
@@ -96,7 +92,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
     _check_rule(applicable)
     all_done = was_done and all(cell.is_done() for cell in applicable)
     if all_done:
-        _say(
+        say(
             f"run: nothing was left to run, all results are in {out}. To measure again, choose "
             "another folder (out=...), or remove this one."
         )
@@ -110,7 +106,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
     except ValueError as error:  # list the failed conditions before this error
         raise ValueError("\n".join([*problems, str(error)])) from error
     if depth_warning:
-        _say(depth_warning)
+        say(depth_warning)
     if problems:
         raise ValueError(
             "Some conditions failed. Run the same command again to continue.\n"
@@ -152,14 +148,14 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
     for cell in cells[1:]:
         reason = why_not_applicable(cell.corruption, reports)
         if reason:
-            _say(f"{cell.name}: not applicable, {reason}")
+            say(f"{cell.name}: not applicable, {reason}")
         elif needs_tokenizer(cell.corruption, reports, cell.condition.words):
             untokenized.append(cell.name)
         else:
             applicable.append(cell)
     others = Counter(str(name) for name in reports.languages.values() if not is_english(name))
     if others and any("instruction" in cell.corruption.modalities for cell in applicable):
-        _say(f"run: {passed_through(others)}")
+        say(f"run: {passed_through(others)}")
     return applicable, untokenized
 
 
@@ -179,7 +175,7 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
             continue
         more = f" and {len(names) - 3} more" if len(names) > 3 else ""
         was = "was" if len(names) == 1 else "were"
-        _say(
+        say(
             f"run: {file} changed since {', '.join(names[:3])}{more} {was} run. One table holds "
             f"old and new results. To measure again, remove {out / 'conditions'}, choose another "
             f"folder (out=...), or set watch=[{file}]. If the command writes this file, name it "
@@ -195,7 +191,7 @@ def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
-            _say(f"{cell.name}: done before, {cell.summary()}")
+            say(f"{cell.name}: done before, {cell.summary()}")
     if plan.config.launcher.name == "local":
         return _run_here(waiting, plan.config.jobs)
     return _run_on_launcher(plan, waiting)
@@ -221,11 +217,11 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
                 problem = attempt.poll()
                 if problem is not None:
                     running.remove(attempt)
-                    problems += _report(attempt.cell, problem, len(cells) == 1, _say)
+                    problems += _report(attempt.cell, problem, len(cells) == 1)
             if running and time.monotonic() - last_print > PROGRESS_INTERVAL:
                 last_print = time.monotonic()
                 for attempt in running:
-                    _say(f"{attempt.cell.name}, so far: {attempt.cell.summary()}")
+                    say(f"{attempt.cell.name}, so far: {attempt.cell.summary()}")
     finally:
         for attempt in running:
             attempt.kill()
@@ -240,13 +236,13 @@ def _start(attempt: Attempt) -> str:
         attempt.start()
     except ValueError as error:
         attempt.kill()
-        _say(f"{cell.name}: {error}")
+        say(f"{cell.name}: {error}")
         return str(error)
-    _say(f"{cell.name}: started{again}; its output is in {cell.log}")
+    say(f"{cell.name}: started{again}; its output is in {cell.log}")
     return ""
 
 
-def _report(cell: Cell, problem: str, single: bool, say: Callable[[str], None]) -> list[str]:
+def _report(cell: Cell, problem: str, single: bool) -> list[str]:
     """Say the summary or the failure of a condition that ended in one line; return its problem.
 
     At the end of the run, the full text of each problem is printed. If the run has a ``single``
@@ -327,7 +323,7 @@ def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
         for result in results(launcher, task, groups, plan.config.jobs, progress):
             if result is None:
                 continue
-            problems += _report(cells[result[0]], result[1], len(cells) == 1, progress.say)
+            problems += _report(cells[result[0]], result[1], len(cells) == 1)
             progress.advance()
     return problems
 

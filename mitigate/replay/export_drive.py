@@ -78,13 +78,22 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
         raise ValueError("A drive has one camera. Set env.views=1.")
     listed = episodes(env, config.split, config.episodes)
     if config.form == "lerobot":
-        return [_write_dataset(world, listed, out)]
+        from mitigate.replay.export_dataset import check_empty, write_dataset
+
+        check_empty(out)
+        with output_folder(out), Progress("export_drive", len(listed), unit="episode") as progress:
+            recorded = []
+            for episode in listed:
+                recorded.append((*oracle(world, episode), episode.instruction.text))
+                progress.advance(note=episode.episode_id)
+            write_dataset(out, recorded)
+        return [out]
     paths = _drive_paths(out, [episode.episode_id for episode in listed], config.form)
     progress = Progress("export_drive", len(listed), unit="drive")
     delete_abandoned(out.glob(".drive.*.tmp"))
     with output_folder(out) as root, progress:
         for episode, path in zip(listed, paths, strict=True):
-            steps = list(oracle(world, episode))
+            steps, _ = oracle(world, episode)
             instruction = episode.instruction.text
             root.check()
             with tempfile.TemporaryDirectory(f".{os.getpid()}.tmp", ".drive.", out) as temporary:
@@ -99,22 +108,6 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
             root.expected.append(path)
             progress.advance(note=path.name)
     return paths
-
-
-def _write_dataset(world: Any, listed: Sequence[Any], out: Path) -> Path:
-    """Write the episodes as a LeRobot dataset and return its path."""
-    from mitigate.core.progress import Progress
-    from mitigate.replay.export_dataset import DatasetWriter
-
-    writer = DatasetWriter(out)
-    with output_folder(out), Progress("export_drive", len(listed), unit="episode") as progress:
-        for episode in listed:
-            actions: list[int] = []
-            steps = list(oracle(world, episode, actions))
-            writer.add(steps, actions, episode.instruction.text)
-            progress.advance(note=episode.episode_id)
-        writer.write()
-    return out
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
@@ -137,25 +130,17 @@ def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
     return paths
 
 
-def oracle(
-    world: Any, episode: Any, actions: list[int] | None = None
-) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the observation of each step of the expert, the one before STOP included.
-
-    Args:
-        world: The world.
-        episode: The episode.
-        actions: The expert's action at each step is appended to this list.
-    """
+def oracle(world: Any, episode: Any) -> tuple[list[dict[str, np.ndarray]], list[int]]:
+    """Return the observation and the action of each step of the expert, including STOP."""
     from mitigate.worlds.world import expert_of
 
     observation = world.reset(episode)
+    steps, actions = [], []
     while not world.done:
-        yield {name: np.asarray(observation[name]).copy() for name in (RGB, DEPTH, POSE)}
-        action = expert_of(world).action()
-        if actions is not None:
-            actions.append(int(action))
-        observation = world.step(action)
+        steps.append({name: np.asarray(observation[name]).copy() for name in (RGB, DEPTH, POSE)})
+        actions.append(int(expert_of(world).action()))
+        observation = world.step(actions[-1])
+    return steps, actions
 
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
@@ -227,21 +212,18 @@ def messages(
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
     """Return the odometry at a plan pose; the yaw in ROS is the heading plus a quarter turn."""
-    half = (float(pose[2]) + np.pi / 2) / 2
-    z, w = float(np.sin(half)), float(np.cos(half))
-    point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)
-    orientation = types["geometry_msgs/msg/Quaternion"](0.0, 0.0, z, w)
-    still = types["geometry_msgs/msg/Vector3"](0.0, 0.0, 0.0)
-    covariance = np.zeros(36)
-    place = types["geometry_msgs/msg/Pose"](point, orientation)
-    return types["nav_msgs/msg/Odometry"](
-        header,
-        "base_link",
-        types["geometry_msgs/msg/PoseWithCovariance"](place, covariance),
-        types["geometry_msgs/msg/TwistWithCovariance"](
-            types["geometry_msgs/msg/Twist"](still, still), covariance
-        ),
-    )
+
+    def make(name: str, *fields: Any) -> Any:
+        return types[f"geometry_msgs/msg/{name}"](*fields)
+
+    x, y, heading = map(float, pose)
+    half = (heading + np.pi / 2) / 2
+    orientation = make("Quaternion", 0.0, 0.0, float(np.sin(half)), float(np.cos(half)))
+    place = make("Pose", make("Point", x, y, 0.0), orientation)
+    still = make("Vector3", 0.0, 0.0, 0.0)
+    twist = make("TwistWithCovariance", make("Twist", still, still), np.zeros(36))
+    place = make("PoseWithCovariance", place, np.zeros(36))
+    return types["nav_msgs/msg/Odometry"](header, "base_link", place, twist)
 
 
 def main() -> None:

@@ -120,7 +120,7 @@ def replay_recordings(
         ValueError: An option is invalid, or a drive is damaged or lacks inputs of an agent.
     """
     loaded = load_agents(agents)
-    paths = [recordings] if isinstance(recordings, (str, Path)) else list(recordings)
+    paths = [recordings] if isinstance(recordings, (str, Path)) else recordings
     if "out" in options:
         options["out"] = str(options["out"])
     cfg = conf.load_config("replay", [f"suite={suite}"])
@@ -272,17 +272,9 @@ def replay(
         ``out``.
     """
     from mitigate.core.progress import Progress
-    from mitigate.replay import report
-    from mitigate.replay.walk import (
-        Answers,
-        Changes,
-        compare,
-        decision_lines,
-        neglected_actions,
-        walk,
-    )
+    from mitigate.replay import report, walk
 
-    changes: dict[str, dict[str, Changes]] = {}
+    changes: dict[str, dict[str, walk.Changes]] = {}
     pictures: list[Path] = []
     steps = [len(drive.times) for drive in next(iter(recordings.values()))]
     total = len(agents) * len(corruptions) * len(steps)
@@ -290,7 +282,7 @@ def replay(
     with Progress("replay", total, unit="run") as progress, atomic_text(out / DECISIONS) as file:
         for name, agent in agents.items():
             drives = recordings[views_of(agent)]
-            answers: dict[str, dict[str, Answers]] = {}
+            answers: dict[str, dict[str, walk.Answers]] = {}
             for corruption in corruptions:
                 reason = inapplicable(corruption, agent, drives)
                 if reason:
@@ -305,23 +297,25 @@ def replay(
                 }
                 corrupted = answers.setdefault(corruption.name, {})
                 for drive in drives:
-                    clean = answers["clean"].get(drive.name)
-                    answer = walk(agent, drive, corruption, seed, clean=clean, guards=guards)
+                    before = answers["clean"].get(drive.name)
+                    answer = walk.walk(agent, drive, corruption, seed, clean=before, guards=guards)
                     corrupted[drive.name] = answer
-                    lines = decision_lines(labels, drive, answers["clean"][drive.name], answer)
+                    lines = walk.decision_lines(labels, drive, before or answer, answer)
                     file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
-                if corruption.name == "clean" and (rare := neglected_actions(drives, corrupted)):
+                rare = walk.neglected_actions(drives, answers["clean"])
+                if rare and corruption.name == "clean":
                     notes.append(
                         f"{name} rarely chooses {' or '.join(rare)} on clean frames, but the "
                         "driver often does. The agent may not fit this camera or drive: few "
                         "changed decisions then do not mean that it is robust."
                     )
                     progress.say(f"Warning: {notes[-1]}")
-            changes[name] = {n: compare(drives, answers["clean"], a) for n, a in answers.items()}
+            clean = answers["clean"]
+            changes[name] = {n: walk.compare(drives, clean, a) for n, a in answers.items()}
             worst = _worst(corruptions, changes[name])
             if worst is not None:
-                draw = partial(walk, agent, corruption=worst, seed=seed, guards=guards)
+                draw = partial(walk.walk, agent, corruption=worst, seed=seed, guards=guards)
                 path = _picture_file(out, name, worst.name)
                 pictures += _draw(drives, worst, answers, draw, path)
     with atomic_text(out / TABLE) as table:
@@ -371,7 +365,7 @@ def _draw(
     clean, corrupted = answers["clean"], answers[corruption.name]
     differs = {name: changed_steps(clean[name], corrupted[name]) for name in clean}
     drive = max(drives, key=lambda d: int(differs[d.name].sum()))
-    steps = report.spread([int(i) for i in differs[drive.name].nonzero()[0]])
+    steps = report.spread(differs[drive.name].nonzero()[0].tolist())
     if not steps:
         return []
     answer = rerun(drive, keep=steps, clean=clean[drive.name])

@@ -71,12 +71,11 @@ def table(
             "corruptions: replay a longer drive, or several drives.",
             "",
         ]
-    rows = []
-    for name in conditions:
-        cells = [
-            changes[a][name].changed.text(".1f", 100) if name in changes[a] else "–" for a in agents
-        ]
-        rows.append([name, *cells])
+    found = {name: [changes[a].get(name) for a in agents] for name in conditions}
+    rows = [
+        [name, *(change.changed.text(".1f", 100) if change else "–" for change in row)]
+        for name, row in found.items()
+    ]
     means = []
     for agent in agents:
         shares = [c.changed.value for name, c in changes[agent].items() if name != "clean"]
@@ -114,12 +113,13 @@ def _other_measures(changes: AgentChanges) -> list[str]:
     rows = []
     for agent, by_condition in changes.items():
         for name, change in by_condition.items():
-            aim = "–" if change.aim is None else change.aim.text(".1f", 100)
-            agreement = "–" if change.agreement is None else change.agreement.text(".1f", 100)
-            cells = [markdown_of(agent), name, change.stops, change.missed, aim, agreement]
-            gap = change.distance
-            distance = "–" if gap is None else gap.text(".3g")
-            rows.append([*cells, distance][: len(head)])
+            shares = [
+                "–" if share is None else share.text(".1f", 100)
+                for share in (change.aim, change.agreement)
+            ]
+            distance = "–" if change.distance is None else change.distance.text(".3g")
+            cells = [markdown_of(agent), name, change.stops, change.missed, *shares, distance]
+            rows.append(cells[: len(head)])
     return [text, "", markdown_table(head, rows, words=2)]
 
 
@@ -157,10 +157,10 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
     return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
-def spread(changed: Sequence[int]) -> list[int]:
+def spread(changed: list[int]) -> list[int]:
     """Choose at most ``MAX_CELLS`` steps, spread evenly."""
     if len(changed) <= MAX_CELLS:
-        return list(changed)
+        return changed
     return [changed[i] for i in np.linspace(0, len(changed) - 1, MAX_CELLS).round().astype(int)]
 
 

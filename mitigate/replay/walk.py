@@ -202,7 +202,6 @@ class Changes:
             has no aim.
         agreement: Fraction of steps with the driver's action, among steps whose motion is an
             action; None if the driver's actions are unknown, or the agent's are continuous.
-        steps: Number of steps.
         distance: Mean Euclidean distance of continuous actions to those on clean frames, or None.
     """
 
@@ -211,7 +210,6 @@ class Changes:
     missed: int
     aim: Estimate | None
     agreement: Estimate | None
-    steps: int
     distance: Estimate | None = None
 
 
@@ -223,8 +221,7 @@ def compare(
     changed = [changed_steps(a, b) for a, b in pairs]
     if pairs[0][0].actions.ndim == 2:
         gaps = [np.linalg.norm(b.actions - a.actions, axis=1) for a, b in pairs]
-        steps = sum(map(len, changed))
-        return Changes(_share(changed), 0, 0, None, None, steps, _mean(gaps))
+        return Changes(_share(changed), 0, 0, None, None, _mean(gaps))
     stops = sum(int(((b.actions == STOP) & (a.actions != STOP)).sum()) for a, b in pairs)
     missed = sum(int(((a.actions == STOP) & (b.actions != STOP)).sum()) for a, b in pairs)
     moved = [np.hypot(*(b.aims - a.aims).T) for a, b in pairs]
@@ -236,14 +233,8 @@ def compare(
             same = corrupted[recording.name].actions == driver
             if (driver != NO_ACTION).any():
                 agrees.append(same[driver != NO_ACTION])
-    return Changes(
-        changed=_share(changed),
-        stops=stops,
-        missed=missed,
-        aim=_share(moved) if moved else None,
-        agreement=_share(agrees) if agrees else None,
-        steps=sum(map(len, changed)),
-    )
+    aim = _share(moved) if moved else None
+    return Changes(_share(changed), stops, missed, aim, _share(agrees) if agrees else None)
 
 
 def _share(drives: Sequence[np.ndarray]) -> Estimate:
