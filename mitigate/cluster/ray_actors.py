@@ -120,12 +120,11 @@ class _Crew:
         self.done = 0
         self.size = min(workers, len(self.waiting))
         self.task = ray.put(task)
-        reserved = {"num_cpus": launcher.cpus, "max_restarts": 0}
+        self.reserved = {"num_cpus": launcher.cpus, "max_restarts": 0}
         if launcher.memory:
-            reserved["memory"] = int(launcher.memory * GIGABYTE)
-        self._reserved = reserved
+            self.reserved["memory"] = int(launcher.memory * GIGABYTE)
         self.failures = 0
-        self.make = ray.remote(Worker).options(**reserved).remote
+        self.make = ray.remote(Worker).options(**self.reserved).remote
         self.name = task.name
         self.idle: list[Any] = []
         self.starting: dict[Any, Any] = {}  # maps a pending result of ``started`` to its actor
@@ -148,7 +147,7 @@ class _Crew:
                     yield from self._hear(answer)
             if not self.busy and time.monotonic() - heard > STUCK:
                 heard = time.monotonic()
-                self.progress.say(f"No worker runs: the cluster has no room for {self._reserved}.")
+                self.progress.say(f"No worker runs: the cluster has no room for {self.reserved}.")
             self.progress.advance(0)
             yield None
 

@@ -94,13 +94,9 @@ def results(
                 running.remove(current)
                 if current.left:
                     again = _again(current, task, launcher, progress, done, total)
-                    groups_left = [
-                        [j for j in group if j[0] in current.left] for group in current.groups
-                    ]
-                    groups_left = [group for group in groups_left if group]
-                    running.append(
-                        _submit(executor, folder, launcher, groups_left, again, submitted)
-                    )
+                    left = [[j for j in group if j[0] in current.left] for group in current.groups]
+                    rest = [group for group in left if group]
+                    running.append(_submit(executor, folder, launcher, rest, again, submitted))
                     submitted += 1
             progress.advance(0)
             yield None

@@ -327,7 +327,6 @@ class Session:
         self.active = False  # whether an episode has begun and not ended
         self.busy = False
         self.handled = id(None)  # id of the exception that was being handled when the episode began
-        self.farthest = {}  # maps a depth camera to the maximum depth in its first frame
         # whether this episode received frames from habitat-sim without habitat-lab
         self.simulated = False
         self.episode_pid = None  # id of the process that began the episode
@@ -344,7 +343,7 @@ class Session:
         self.path = []
         self.actions = []
         self.start = None
-        self.farthest = {}
+        self.farthest = {}  # maps a depth camera to the maximum depth in its first frame
 
     def renew_lock(self):
         """Replace the lock in a forked process, because a thread of the parent may have held it."""
@@ -391,10 +390,10 @@ class Session:
         self._check(observations, cameras)
         channel = self.connected()
         heading = None if heading is None else float(heading)
-        described = [
-            dict(_plain_data(c), **_describe_array(observations[c["name"]], c["name"]))
-            for c in cameras
-        ]
+        # as plain data, because descriptions are compared with ``==`` at each step
+        described = json.loads(json.dumps(cameras, default=_as_python))
+        for camera in described:
+            camera.update(_describe_array(observations[camera["name"]], camera["name"]))
         if described != self.cameras:
             channel.map_memory(described, self.unread)
             self.cameras = described
@@ -426,17 +425,15 @@ class Session:
         if self.episode_pid not in (None, os.getpid()):
             stop(
                 f"process {self.episode_pid} began the current episode, and its fork "
-                f"{os.getpid()} continues it, so that its frames would belong to no episode. "
-                "Reset the environment in the process that runs it, or start workers before the "
-                "first reset."
+                f"{os.getpid()} continues it. Reset the environment in the process that runs it, "
+                "or start workers before the first reset."
             )
         for camera in cameras:
             if _is_corrupted(observations[camera["name"]]):
                 stop(
-                    f"the frame {camera['name']} is corrupted already and would be corrupted "
-                    "twice. Pass each frame once, as the camera returned it. Frames of "
-                    "habitat-lab and habitat-sim are corrupted as they are taken: such a loop "
-                    "calls connect and finish only."
+                    f"the frame {camera['name']} is corrupted already. Pass each frame once, as "
+                    "the camera returned it. A loop with habitat-lab or habitat-sim, whose frames "
+                    "are corrupted as they are taken, calls connect and finish only."
                 )
 
     def position(self):
@@ -451,7 +448,7 @@ class Session:
             self.handled = id(None)
         self.actions.append(_plain_action(action))
         position = self.position()
-        if position is not None and (not self.path or position != self.path[-1]):
+        if position is not None and position not in self.path[-1:]:
             self.path.append(position)
 
     @_uninterrupted("the result of the episode could not be reported")
@@ -522,24 +519,12 @@ def _describe_array(frame, name):
     if not isinstance(frame, np.ndarray):
         stop(
             f"the camera {name} must return a numpy array, got {type(frame).__name__}. Set "
-            "Habitat's GPU_GPU (gpu_gpu) to False, or pass numpy arrays (of a tensor: "
-            ".cpu().numpy()). For an entry that is not a frame: cameras={name: {'type': 'other'}}."
+            "Habitat's GPU_GPU (gpu_gpu) to False, or convert it (tensor.cpu().numpy()). For an "
+            "entry that is not a frame: cameras={name: {'type': 'other'}}."
         )
     alpha = frame.dtype == np.uint8 and frame.ndim == 3 and frame.shape[-1] == 4
     shape = [*frame.shape[:-1], 3] if alpha else list(frame.shape)
     return {"shape": shape, "dtype": frame.dtype.name, "alpha": alpha}
-
-
-def _plain_data(value):
-    """Return a camera's description with Python lists and numbers instead of numpy values.
-
-    Descriptions are compared with ``==`` at each step, and numpy arrays do not support that.
-    """
-    if isinstance(value, dict):
-        return {name: _plain_data(entry) for name, entry in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [_plain_data(entry) for entry in value]
-    return _as_python(value) if isinstance(value, (np.generic, np.ndarray)) else value
 
 
 def _median_and_maximum(depth):
@@ -687,13 +672,9 @@ def _task_reset(original, task, episode, *args, **kwargs):
     session.sim, session.task, session.episode = sim, task, episode
     words = _get(episode, "instruction")
     text, tokens = _original_words(words)
-    fields = {
-        "text": text,
-        "tokens": _plain_tokens(tokens),
-        "language": _get(words, "language"),
-        "category": _get(episode, "object_category"),
-    }
-    answer = session.begin(episode.scene_id, episode.episode_id, **fields)
+    plain = None if tokens is None else [t if isinstance(t, str) else int(t) for t in tokens]
+    fields = {"language": _get(words, "language"), "category": _get(episode, "object_category")}
+    answer = session.begin(episode.scene_id, episode.episode_id, text=text, tokens=plain, **fields)
     if words is not None and answer.get("text") is not None:
         words._mitigate_own = (answer["text"], text, tokens)
         session.words = words
@@ -737,10 +718,6 @@ def _restore_words(session):
     originals = vars(words).pop("_mitigate_own", None)
     if originals is not None:
         _set_words(words, *originals[1:])
-
-
-def _plain_tokens(tokens):
-    return None if tokens is None else [t if isinstance(t, str) else int(t) for t in tokens]
 
 
 def _update_measures(original, measurements, *args, **kwargs):
@@ -811,14 +788,8 @@ def _env_close(original, env, *args, **kwargs):
     try:
         return original(env, *args, **kwargs)
     finally:
-        _release(suite)
-
-
-def _release(suite):
-    """Discard a sensor suite, its session and its connection."""
-    if suite is not None:
         _, session = _sessions.pop(id(suite), (None, None))
-        for sensor in suite.sensors.values():
+        for sensor in suite.sensors.values() if suite is not None else ():
             _descriptions.pop(id(sensor), None)
         if session is not None:
             _restore_words(session)
@@ -827,13 +798,8 @@ def _release(suite):
 
 def _end_episode(env, how):
     suite = _get(env.sim, "sensor_suite")
-    session = None if suite is None else _session_of(suite)
-    if session is not None and session.active:
-        session.end(env.get_metrics(), how)
-
-
-def _env_render(original, env, *args, **kwargs):
-    return _call_clean(original, env, *args, **kwargs)
+    if suite is not None and _session_of(suite).active:
+        _session_of(suite).end(env.get_metrics(), how)
 
 
 # habitat-sim without habitat-lab
@@ -844,8 +810,6 @@ def _sensor_observations(original, sim, *args, **kwargs):
     """Wrap ``Simulator.get_sensor_observations``."""
     # some versions call this method again for each agent; those inner calls must stay clean
     observations = _call_clean(original, sim, *args, **kwargs)
-    if _is_clean_call() or _is_called_by_lab(sim):
-        return observations
     return _corrupt_acting_agent(sim, observations, args[0] if args else kwargs.get("agent_ids"))
 
 
@@ -853,8 +817,6 @@ def _async_observations(original, sim, *args, **kwargs):
     """Wrap ``Simulator.get_sensor_observations_async_finish``, if habitat-sim has it."""
     agent_ids = _get(sim, "_async_draw_agent_ids")  # read first, because the call clears it
     observations = _call_clean(original, sim, *args, **kwargs)
-    if _is_clean_call() or _is_called_by_lab(sim):
-        return observations
     return _corrupt_acting_agent(sim, observations, agent_ids)
 
 
@@ -880,9 +842,8 @@ def _is_called_by_lab(sim):
         return True
     stop(
         f"{frame.f_code.co_filename}:{frame.f_lineno} calls get_sensor_observations of "
-        "habitat-lab's simulator. These frames do not pass the lab's sensors and would be clean. "
-        "Use env.step or env.sim.get_observations_at(...), or env.render for frames that the agent "
-        "does not see."
+        "habitat-lab's simulator, whose frames would be clean. Use env.step or env.sim."
+        "get_observations_at(...), or env.render for frames that the agent does not see."
     )
 
 
@@ -891,13 +852,15 @@ def _package(module):
 
 
 def _corrupt_acting_agent(sim, observations, agent_ids):
-    """Corrupt only the observations of the acting agent.
+    """Corrupt only the observations of the acting agent, unless habitat-lab or a clean call asked.
 
     Args:
         sim: The simulator.
         observations: Observations by sensor, or by agent number if there are several agents.
         agent_ids: The ids of the requested agents; None means the acting agent.
     """
+    if _is_clean_call() or _is_called_by_lab(sim):
+        return observations
     acting = _default_agent(sim)
     if observations and all(isinstance(value, dict) for value in observations.values()):
         if acting in observations:
@@ -918,9 +881,8 @@ def _corrupt_observations(sim, observations):
         )
     session.simulated = True
     cameras = [c for c in _describe_simulator(sim) if c["name"] in observations]
-    return session.corrupt(
-        observations, cameras, _heading(sim.get_agent(_default_agent(sim)).get_state())
-    )
+    heading = _heading(sim.get_agent(_default_agent(sim)).get_state())
+    return session.corrupt(observations, cameras, heading)
 
 
 def _default_agent(sim):
@@ -966,10 +928,13 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
         result = original(env, number, *args, **kwargs)
     finally:
         del env._initialize_episode
-    metrics = {"success": env.wandb_log_data["goal_reached"], "spl": env.wandb_log_data["spl"]}
-    metrics["distance_to_goal"] = env.path_calculator.geodesic_distance
-    metrics["path_length"] = env.agent_distance_traveled
-    metrics["geodesic_distance"] = episode["info"]["geodesic_distance"]
+    metrics = {
+        "success": env.wandb_log_data["goal_reached"],
+        "spl": env.wandb_log_data["spl"],
+        "distance_to_goal": env.path_calculator.geodesic_distance,
+        "path_length": env.agent_distance_traveled,
+        "geodesic_distance": episode["info"]["geodesic_distance"],
+    }
     session.end(metrics)
     return result
 
@@ -1049,8 +1014,7 @@ class Episode:
         if self._session.simulated:
             stop(
                 "frames of habitat-sim are corrupted as its simulator returns them, and "
-                "episode.corrupt() would corrupt them twice. Leave it out: such a loop calls "
-                "connect() and finish() only."
+                "episode.corrupt() would corrupt them twice. Leave it out."
             )
         try:
             observations, described = _find_cameras(observations, cameras)
@@ -1078,7 +1042,7 @@ class Episode:
         if stopped is not None:
             stopped = bool(_check_flag(stopped, "stopped"))
         if spl is not None:
-            report["spl"] = _check_fraction(spl, "spl")
+            report["spl"] = _check_number(spl, "spl", 1)
             if report["spl"] and not report["success"]:
                 raise ValueError(
                     f"finish(success={success!r}, spl={spl!r}): the SPL of a failed episode must "
@@ -1086,7 +1050,7 @@ class Episode:
                 )
         for name in ("path_length", "geodesic_distance", "distance_to_goal"):
             if metrics.get(name) is not None:
-                report[name] = _check_non_negative(metrics[name], name)
+                report[name] = _check_number(metrics[name], name)
         self._session.end(report, OVER, stopped)
 
     def _check(self):
@@ -1098,42 +1062,33 @@ class Episode:
         if self._session.episode_pid != os.getpid():
             stop(
                 f"process {self._session.episode_pid} began episode {self._name}, and process "
-                f"{os.getpid()} continues it, so that its frames would belong to no episode. Call "
-                "mitigate_hook.connect() in the process that runs the episode."
+                f"{os.getpid()} continues it. Call mitigate_hook.connect() in the process that "
+                "runs the episode."
             )
         if self._thread != threading.get_ident():
             stop(
-                f"another thread began episode {self._name}, and frames of two threads might be "
-                "mixed up. Call mitigate_hook.connect() in the thread that runs the episode."
+                f"another thread began episode {self._name}. Call mitigate_hook.connect() in the "
+                "thread that runs the episode."
             )
 
 
 def _check_flag(value, name):
     """Return 0.0 or 1.0. Raises ValueError for all other values."""
-    number = _check_fraction(value, name)
+    number = _check_number(value, name, 1)
     if number not in (0.0, 1.0):
         raise ValueError(f"finish({name}={value!r}): it must be 1 (or True) or 0 (or False).")
     return number
 
 
-def _check_fraction(value, name):
-    """Return a number from 0 to 1. Raises ValueError for all other values."""
-    number = _check_non_negative(value, name)
-    if not number <= 1:
-        raise ValueError(
-            f"finish({name}={value!r}): it must be a number from 0 to 1, not percent: 0.8."
-        )
-    return number
-
-
-def _check_non_negative(value, name):
-    """Return a number that is 0 or more, or infinite. Raises ValueError for all other values."""
+def _check_number(value, name, most=math.inf):
+    """Return a number from 0 to ``most``. Raises ValueError for all other values."""
     try:
         number = float(value)  # float also accepts an array or tensor with one item
     except (TypeError, ValueError):
         number = math.nan
-    if not number >= 0:
-        raise ValueError(f"finish({name}={value!r}): it must be a number >= 0.")
+    if not 0 <= number <= most:
+        kind = ">= 0" if most == math.inf else "from 0 to 1, not percent: 0.8"
+        raise ValueError(f"finish({name}={value!r}): it must be a number {kind}.")
     return number
 
 
@@ -1167,8 +1122,7 @@ def _find_cameras(observations, cameras):
                 stop(
                     f"the entry {array[0]} of an observation may be a frame {array[1]}, and it is "
                     f"not described. Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} (or "
-                    "'depth'; it must be an array [H, W, channels] and a separate entry, not in a "
-                    "dict or list), or {'type': 'other'} to leave it as it is."
+                    "'depth', for a separate array [H, W, channels]; 'other' leaves it as it is)."
                 )
     return observations, described
 
@@ -1284,7 +1238,7 @@ PATCHES = {  # maps a module to tuples (class, method, wrapper); the class is ""
         ("Env", "reset", _env_reset),
         ("Env", "step", _env_step),
         ("Env", "close", _env_close),
-        ("Env", "render", _env_render),
+        ("Env", "render", _call_clean),
     ),
     "habitat_sim.simulator": (
         ("Simulator", "get_sensor_observations", _sensor_observations),
