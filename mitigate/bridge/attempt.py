@@ -10,6 +10,7 @@ import fcntl
 import os
 import signal
 import time
+from contextlib import ExitStack
 from typing import IO, Any
 
 from mitigate.bridge.cell import Cell, describe_lost, files_in, hash_files, write_done
@@ -61,10 +62,9 @@ class Attempt:
         self.loaded = False
         self.left: list[str] = []
         self.listener: Listener | None = None
-        self.lock: IO[str] | None = None
         self.events: IO[str] | None = None
-        self.root: output.Root | None = None
         self.process: Command | None = None
+        self._opened = ExitStack()
 
     @uninterrupted()  # otherwise an interrupt could leave a started process unknown to ``kill``
     def start(self) -> None:
@@ -77,33 +77,33 @@ class Attempt:
         """
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)
-        self.lock = open_output(folder / LOCK, "a", encoding="utf-8")
+        lock = self._opened.enter_context(open_output(folder / LOCK, "a", encoding="utf-8"))
         try:
-            fcntl.flock(self.lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError as error:
-            self.lock.close()
             raise ValueError(
                 f"Another run is using {folder}. Wait until it ends, or choose another folder "
                 "(out=...)."
             ) from error
-        self.root = output.register(folder, self.lock)
+        self._opened.callback(output.unregister, output.register(folder, lock))
         if cell.recording is not None:
             delete_drafts(cell.recording)
         put_aside(folder, "finished" if output.is_regular(folder / DONE) else "unfinished")
-        self.events = open_output(folder / EVENTS, "x", encoding="utf-8")
+        events = open_output(folder / EVENTS, "x", encoding="utf-8")
+        self.events = self._opened.enter_context(events)
         chosen = cell.condition.chosen
         finished = chosen and any(chosen.folder.glob(f"conditions/*/{DONE}"))
         if chosen is not None and cell.clean is None and not finished:
             chosen.delete()  # episodes are chosen again
         self.files = hash_files(cell.command)
-        self.listener = Listener(cell.condition, folder, cell.config.patience).__enter__()
+        listener = Listener(cell.condition, folder, cell.config.patience)
+        self.listener = self._opened.enter_context(listener)
         words = self._words()
         environment = {**os.environ, **self.listener.environment(), **cell.environment}
         with open_output(cell.log, "w", encoding="utf-8") as log:
             try:
                 self.process = Command(words, log, environment, self.listener.address)
             except OSError as error:
-                self.kill()
                 raise ValueError(f"{words[0]} cannot be started: {error.strerror}.") from error
 
     def _words(self) -> list[str]:
@@ -182,19 +182,10 @@ class Attempt:
         """End all processes of the command, and the server."""
         before = signal.signal(signal.SIGINT, signal.SIG_IGN)  # ignore a second Ctrl-C
         try:
-            self._end_command()
-            if self.listener is not None:
-                self.listener.__exit__()
-                self.listener = None
+            with self._opened:
+                self._end_command()
         finally:
             signal.signal(signal.SIGINT, before)
-            if self.root is not None:
-                output.unregister(self.root)
-                self.root = None
-            for file in (self.events, self.lock):
-                if file is not None:
-                    file.close()
-            self.events = self.lock = None
 
     def _end_command(self) -> None:
         """End all processes of the command; connected processes get ``GRACE`` seconds to end."""

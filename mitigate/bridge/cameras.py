@@ -74,16 +74,15 @@ class Camera:
         """Raise ValueError if the median depth of a frame contradicts the description."""
         if self.normalised and median > 1.01:
             raise ValueError(
-                f"Depth of the camera {self.name!r} must be from 0 to 1, because it is described "
-                f"as normalised, got {median:.4g} (median of the first frame). Leave "
+                f"Depth of the camera {self.name!r}, which is described as normalised, must be "
+                f"from 0 to 1, got {median:.4g} (median of the first frame). Leave "
                 "normalize_depth out if it returns metres."
             )
         if not self.normalised and median > max(MAX_MEDIAN, self.sensor.z_max):
             raise ValueError(
-                f"Depth of the camera {self.name!r} must be metres in a range up to "
-                f"{self.sensor.z_max:g}, got {median:.4g} (median of the first frame). Divide "
-                "millimetres by 1000, or describe the range: "
-                f"cameras={{{self.name!r}: {{'type': 'depth', 'min_depth': 0, 'max_depth': 500}}}}."
+                f"Depth of the camera {self.name!r} must be metres up to {self.sensor.z_max:g}, "
+                f"got {median:.4g} (median of the first frame). Divide millimetres by 1000, or set "
+                f"cameras={{{self.name!r}: {{'type': 'depth', 'max_depth': 500}}}}."
             )
 
     def panorama_key(self) -> tuple:
@@ -117,32 +116,29 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
     if description.get("dtype") not in _DTYPES[kind]:
         raise ValueError(
             f"The dtype of {kind} of the camera {name!r} must be {' or '.join(_DTYPES[kind])}, got "
-            f"{description.get('dtype')}."
-            f"{' Divide millimetres by 1000.' if kind == DEPTH else ''}"
+            f"{description.get('dtype')}.{' Divide millimetres by 1000.' * (kind == DEPTH)}"
         )
     pitch, yaw, roll = _read_orientation(description.get("orientation"), name)
-    low, high = (_optional_float(description.get(end)) for end in ("min_depth", "max_depth"))
-    if low is not None or high is not None:
-        low = sensor.z_min if low is None else low
-        high = sensor.z_max if high is None else high
-        sensor = DepthSensor(low, high, sensor.missing)
+    low, high, hfov = (
+        None if description.get(name) is None else float(description[name])
+        for name in ("min_depth", "max_depth", "hfov")
+    )
+    sensor = DepthSensor(
+        sensor.z_min if low is None else low, sensor.z_max if high is None else high, sensor.missing
+    )
     position = description.get("position")
     return Camera(
         name,
         kind,
         shape,
         description["dtype"],
-        _optional_float(description.get("hfov")),
+        hfov,
         None if position is None else tuple(map(float, position)),
         yaw,
         abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
         sensor,
         kind == DEPTH and bool(description.get("normalize_depth")),
     )
-
-
-def _optional_float(value: Any) -> float | None:
-    return None if value is None else float(value)
 
 
 def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
@@ -178,9 +174,8 @@ class Group:
 
     def stream(self) -> FrameStream:
         """Return a new stream for the frames of these cameras."""
-        first = self.cameras[0]
-        hfov = {first.kind: first.hfov}
-        return FrameStream(first.sensor, normalised=first.normalised, hfov=hfov)
+        one = self.cameras[0]
+        return FrameStream(one.sensor, normalised=one.normalised, hfov={one.kind: one.hfov})
 
 
 class Rig:
@@ -389,9 +384,8 @@ def corrupt_group(
     ignored.
     """
     first = group.cameras[0]
-    frames: dict[str, Any] = {first.kind: views}
-    if first.kind == DEPTH:
-        frames = {DEPTH: views.astype(np.float32, copy=False)}
+    dtype = np.float32 if first.kind == DEPTH else np.uint8
+    frames: dict[str, Any] = {first.kind: views.astype(dtype, copy=False)}
     if heading is not None:
         frames[POSE] = np.array([0.0, 0.0, heading])
     if group.suffix:

@@ -239,8 +239,7 @@ class Subset:
             least: The minimum number of episodes to keep, 0 or 1. The default is 1, because Habitat
                 rejects an empty dataset.
         """
-        if (bound := self._bound()) is None:
-            bound = self._set_bound(names)
+        bound = (self._choice() or self._choose(names))["bound"]
         hashes = [hash_episode(name) for name in names]
         indices = [i for i, value in enumerate(hashes) if value <= bound]
         return indices if indices or not least else [hashes.index(min(hashes))]
@@ -250,8 +249,8 @@ class Subset:
         for name in ("episodes.json", "episodes.txt"):
             (self.folder / name).unlink(missing_ok=True)
 
-    def _bound(self) -> float | None:
-        """Return the stored bound for the hashes, or None if no bound is stored yet."""
+    def _choice(self) -> dict[str, Any] | None:
+        """Return the stored choice: the bound for the hashes, and the number of episodes."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -268,18 +267,17 @@ class Subset:
                 f"{self.folder} belongs to a run with episodes={choice.get('episodes')}, got "
                 f"episodes={self.count}. Name another folder (out=...), or delete this one."
             )
-        return bound
+        return choice
 
     def least(self) -> int:
         """Return the number of episodes that the program must run, or 0 before episodes are
         chosen.
         """
-        if self._bound() is None:
-            return 0
-        return min(self.count, read_object(self.folder / "episodes.json", "")["of"])
+        choice = self._choice()
+        return min(self.count, choice["of"]) if choice else 0
 
-    def _set_bound(self, names: list[str]) -> float:
-        """Add ``names`` to the known names, wait for other environments, and store the bound."""
+    def _choose(self, names: list[str]) -> dict[str, Any]:
+        """Add ``names`` to the known names, wait for other environments, and store the choice."""
         known = self.folder / "episodes.txt"
         with open_output(known, "a", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
@@ -288,12 +286,13 @@ class Subset:
             time.sleep(0.1)
         with open_output(known, "r+", encoding="utf-8") as file:
             fcntl.flock(file, fcntl.LOCK_EX)
-            if (bound := self._bound()) is None:
+            if (choice := self._choice()) is None:
                 hashes = sorted(hash_episode(_read_name(line, known)) for line in {*file})
                 bound = hashes[min(self.count, len(hashes)) - 1]
+                choice = {"bound": bound, "episodes": self.count, "of": len(hashes)}
                 with atomic_text(self.folder / "episodes.json") as out:
-                    json.dump({"bound": bound, "episodes": self.count, "of": len(hashes)}, out)
-        return bound
+                    json.dump(choice, out)
+        return choice
 
 
 def is_count(value: object) -> bool:

@@ -80,7 +80,7 @@ def make_cells(plan: Plan) -> list[Cell]:
         recording = None if config.record is None else Path(config.record) / name
         condition = Condition(
             *(corruption, config.seed, words, repeat, config.missing, config.turn, chosen, guards),
-            observers=[] if recording is None else [Recorder(recording, recording.parent)],
+            observers=[] if recording is None else [Recorder(recording)],
         )
         cells.append(
             Cell(

@@ -50,6 +50,10 @@ def unique_part(name: str) -> str:
     return f"{part}-{hashlib.sha256(name.encode('utf-8', 'replace')).hexdigest()[:8]}"
 
 
+def _episode_folder(scene: str, episode: str) -> str:
+    return f"{unique_part(stem_of(scene))}/{unique_part(episode)}"
+
+
 @dataclass
 class Recorder(Observer):
     """Observer that writes frames, poses and results to ``folder``.
@@ -58,8 +62,7 @@ class Recorder(Observer):
     any earlier recording of the episode.
 
     Attributes:
-        folder: The folder of the condition.
-        root: The folder that the user named, if ``folder`` is inside it.
+        folder: The folder of the condition, in the folder that the user named.
         output_root: Checks during an episode that no other process replaces the folder.
         draft: The temporary folder of the current episode.
         target: The final folder of the current episode.
@@ -67,7 +70,6 @@ class Recorder(Observer):
     """
 
     folder: Path
-    root: Path | None = None
     output_root: output.Root | None = None
     draft: Path | None = None
     target: Path | None = None
@@ -76,10 +78,9 @@ class Recorder(Observer):
 
     def episode(self, message: Mapping[str, Any]) -> None:
         """Create the temporary folder of an episode."""
-        scene = unique_part(stem_of(str(message["scene"])))
-        target = self.folder / scene / unique_part(str(message["id"]))
+        target = self.folder / _episode_folder(str(message["scene"]), str(message["id"]))
         self.leave()
-        self.output_root = output.register(make_folder(self.root or self.folder))
+        self.output_root = output.register(make_folder(self.folder.parent))
         draft = draft_path(target)
         output.make_checked(draft)
         self.draft, self.target, self.cameras = draft, target, {}
@@ -155,9 +156,7 @@ def delete_drafts(folder: Path) -> None:
 
 def is_whole(folder: Path, ends: Iterable[Mapping[str, Any]]) -> bool:
     """Return whether the recording ``folder`` contains all episodes in ``ends``."""
-    folders = [
-        folder / unique_part(stem_of(end["scene"])) / unique_part(end["episode"]) for end in ends
-    ]
+    folders = (folder / _episode_folder(end["scene"], end["episode"]) for end in ends)
     return all((episode / "end.json").is_file() for episode in folders)
 
 
