@@ -20,13 +20,7 @@ from mitigate.bridge.config import RunConfig
 from mitigate.bridge.events import DONE, EVENTS, damaged, measure_again
 from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
-from mitigate.bridge.results import (
-    CUT_OFF,
-    NORMALISED_HINT,
-    Reports,
-    count_without_path,
-    maybe_normalised,
-)
+from mitigate.bridge.results import Reports
 from mitigate.core import output
 from mitigate.core.files import atomic_text, last_lines, sha256
 from mitigate.core.json_files import read_object
@@ -263,9 +257,9 @@ class Cell:
 
     def depth_warning(self) -> str:
         """Return a warning if depth may be normalised to [0, 1], else ""."""
-        names = ", ".join(maybe_normalised(self.reports()))
+        names = ", ".join(results.maybe_normalised(self.reports()))
         warning = f"run: the depth of {names} counts as metres, and never exceeded 1 in any episode"
-        return f"{warning}: {NORMALISED_HINT}" if names else ""
+        return f"{warning}: {results.NORMALISED_HINT}" if names else ""
 
     def summary(self) -> str:
         """Return a summary, such as "41 episodes, success 58.5 (own: ...), 2 left unfinished"."""
@@ -277,7 +271,7 @@ class Cell:
             parts.append(f"success {100 * sum(successes) / len(successes):.1f} ({first_rule})")
         if reports.lost:
             parts.append(f"{len(reports.lost)} left unfinished")
-        for name, count in count_without_path(reports, rule).items():
+        for name, count in results.count_without_path(reports, rule).items():
             parts.append(f"{count} successful without a path by {name}: their SPL is 1")
         for how, name in ((RESET, "reset"), (CLOSE, "closed")):
             count = sum(end.get("how") == how for end in reports.ends.values())
@@ -311,7 +305,7 @@ def describe_lost(reports: Reports) -> str:
         "a process of the command died, or the program left the episode. If it left the episode, "
         "let it call env.close(), or episode.finish() in a loop of your own"
     )
-    if reports.dropped[name] not in ("", CUT_OFF):
+    if reports.dropped[name] not in ("", results.CUT_OFF):
         reason = (
             f"it was reset or closed during an exception, {reason}. To end episodes by "
             "exceptions, reset or close after the except block"

@@ -10,7 +10,7 @@ import io
 import textwrap
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -21,8 +21,8 @@ from matplotlib.figure import Figure
 from mitigate.bridge.attempt import Attempt
 from mitigate.bridge.cameras import Group, Rig, corrupt_group
 from mitigate.bridge.condition import Observer, needs_tokenizer, why_not_applicable
-from mitigate.bridge.config import RunConfig, check_options, command_name
-from mitigate.bridge.plan import Plan, make_cells
+from mitigate.bridge.config import RunConfig
+from mitigate.bridge.plan import make_cells, make_plan
 from mitigate.bridge.results import NORMALISED_HINT, NORMALISED_LIMIT, Reports
 from mitigate.core.files import write_bytes, write_figure
 from mitigate.core.names import counted
@@ -76,10 +76,9 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         ValueError: An option is invalid, or the command sends no frame within
             ``FIRST_FRAME_LIMIT`` seconds or before it ends.
     """
-    check_options(config, command)
-    name = config.name or command_name(command)
-    out = Path(config.out or f"{config.runs}/run/{name}-check")
-    cells = make_cells(Plan(config, tuple(command), "check", out))
+    plan = make_plan(config, command)
+    out = Path(config.out or f"{config.runs}/run/{plan.name}-check")
+    cells = make_cells(replace(plan, out=out))
     cell = cells[0]
     file = out / "first.npz"
     cell.folder = out / "check"
@@ -102,12 +101,13 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     print("\n".join(describe(reports, rig, frames, cell.condition.guards)))
     applicable = []
     for other in cells[1:]:
-        reason = why_not_applicable(other.corruption, reports)
+        if reason := why_not_applicable(other.corruption, reports):
+            print(f"  {other.name}: not applicable, {reason}")
+            continue
         no_tokenizer = needs_tokenizer(other.corruption, reports, other.condition.words)
         applies = "needs tokenizer=, the agent reads tokens" if no_tokenizer else "applies"
-        print(f"  {other.name}: {f'not applicable, {reason}' if reason else applies}")
-        if not reason:
-            applicable += [p for p in other.corruption.parts if _sensors(p) and not _shows_past(p)]
+        print(f"  {other.name}: {applies}")
+        applicable += [p for p in other.corruption.parts if _sensors(p) and not _shows_past(p)]
     if not rig.groups:
         print("no frame is named or described as rgb or depth: nothing to draw", flush=True)
         return None
@@ -197,9 +197,8 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
     if not depth.size:
         return f"{declared}; the frames hold only holes"
     low, median, high = (f"{x:.2f}" for x in (depth.min(), np.median(depth), depth.max()))
-    warning = ""
-    if not first.normalised and depth.max() < NORMALISED_LIMIT:
-        warning = f" - {NORMALISED_HINT}"
+    doubtful = not first.normalised and depth.max() < NORMALISED_LIMIT
+    warning = f" - {NORMALISED_HINT}" if doubtful else ""
     return f"{declared}; seen {low} to {high} (median {median}) m{warning}"
 
 
@@ -242,9 +241,9 @@ def draw_sheet(
             key = Key(seed, episode, call)
             views = corrupt_group(group, before.copy(), corruption, key, heading, group.stream())
             if not np.array_equal(views, before, equal_nan=True):
+                note = f"at call {call}" if call else ""
                 break
-        note = f"at call {call}" if call else ""
-        if np.array_equal(views, before, equal_nan=True):
+        else:
             note = f"no change in {TRIED_CALLS} calls"
             print(f"  {corruption.name}: {note} with the first frame", flush=True)
         rows.append(([corruption.name, note], group, views))

@@ -230,9 +230,7 @@ class Connection:
         self.streams.clear()
         self.guards.clear()
         self.loop = message.get("loop") is True
-        self.seconds = 0.0
-        self.calls = 0
-        self.kinds = set()
+        self.seconds, self.calls, self.kinds = 0.0, 0, set()
         key = self.condition.key(self.scene, self.episode, 0)
         words = self.condition.words.corrupt(
             message, self.condition.corruption, key, self.condition.guards

@@ -45,9 +45,11 @@ class Listener:
         self.folder = folder
         self.patience = patience
         self.token = secrets.token_hex(16)
-        temporary = _socket_folder(tempfile.gettempdir())
+        # a socket path has <= 107 bytes, unix(7)
+        temporary = tempfile.gettempdir() if len(tempfile.gettempdir()) < 60 else "/tmp"
         self.socket_folder = Path(tempfile.mkdtemp(prefix="mitigate-", dir=temporary))
-        self.memory = _make_memory_folder()
+        shared = MEMORY if MEMORY.is_dir() and os.access(MEMORY, os.W_OK) else None
+        self.memory = Path(tempfile.mkdtemp(prefix="mitigate-", dir=shared))
         self.address = str(self.socket_folder / "bridge")
         self.pid = 0
 
@@ -107,12 +109,12 @@ class Listener:
 
     def environment(self) -> dict[str, str]:
         """Return the environment variables that the command's processes need."""
-        path = os.environ.get("PYTHONPATH", "")
+        path = filter(None, [str(HOOK), os.environ.get("PYTHONPATH")])
         return {
             mitigate_hook.ADDRESS: self.address,
             mitigate_hook.TOKEN: self.token,
             mitigate_hook.PATIENCE: f"{self.patience:g}",
-            "PYTHONPATH": os.pathsep.join([str(HOOK), *([path] if path else [])]),
+            "PYTHONPATH": os.pathsep.join(path),
         }
 
     def _accept(self, listening: socket.socket) -> None:
@@ -130,27 +132,15 @@ class Listener:
             if os.fork() == 0:
                 listening.close()
                 signal.signal(signal.SIGTERM, raise_ended)  # this records an unfinished episode
+                settings = (self.condition, self.folder, self.token, self.memory)
                 try:
-                    Connection(
-                        channel, self.condition, self.folder, self.token, self.memory
-                    ).serve()
+                    Connection(channel, *settings).serve()
                 finally:
                     os._exit(0)
             channel.close()
 
 
-def _make_memory_folder() -> Path:
-    parent = str(MEMORY) if MEMORY.is_dir() and os.access(MEMORY, os.W_OK) else None
-    return Path(tempfile.mkdtemp(prefix="mitigate-", dir=parent))
-
-
-def _socket_folder(folder: str) -> str:
-    """Return ``folder``, or /tmp if it is too long (a socket path has <= 107 bytes, unix(7))."""
-    return folder if len(folder) < 60 else "/tmp"
-
-
 def warm_up(corruption: Corruption) -> None:
     """Compile the code of a corruption in advance, so that the first frame does not wait for it."""
     rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
-    frames: dict[str, np.ndarray] = {"rgb": rgb, "depth": depth}
-    FrameStream().corrupt(frames, corruption, 0)
+    FrameStream().corrupt({"rgb": rgb, "depth": depth}, corruption, 0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -44,9 +45,7 @@ def _unique_names(agents: Sequence[Any]) -> list[str]:
         raise ValueError(
             "agents must list at least one folder of weights or module:callable, got []."
         )
-    texts = [
-        str(agent) if isinstance(agent, (str, Path)) else type(agent).__name__ for agent in agents
-    ]
+    texts = [str(a) if isinstance(a, (str, Path)) else type(a).__name__ for a in agents]
     if len(set(texts)) < len(texts):
         raise ValueError(
             f"agents must be different, got [{','.join(texts)}]. In Python, give names: "
@@ -112,10 +111,9 @@ def open_drives(config: ReplayConfig, paths: Iterable[str | Path]) -> list[Sourc
             episodes=config.episodes,
             tolerance=config.tolerance,
         )
-    names = [source.name for source in sources]
-    duplicates = {name for name in names if names.count(name) > 1}
-    if duplicates:
-        raise ValueError(f"Two drives have the name {duplicates.pop()!r}. Rename one.")
+    name, count = Counter(source.name for source in sources).most_common(1)[0]
+    if count > 1:
+        raise ValueError(f"Two drives have the name {name!r}. Rename one.")
     return sources
 
 

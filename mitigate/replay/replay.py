@@ -30,7 +30,7 @@ from mitigate.core.names import short
 from mitigate.core.options import paths_and_overrides
 from mitigate.core.output import is_regular
 from mitigate.evaluation.conditions import conditions, suite_conditions
-from mitigate.guards.guard import NO_GUARDS, Guards
+from mitigate.guards.guard import Guards
 from mitigate.replay.inputs import check_drives, load_agents, load_drives, open_drives, views_of
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
@@ -161,8 +161,7 @@ def run(
     guards = open_guards(None, config.restore)
     if agents is None:
         agents = load_agents(list(config.agents))
-    settings = _settings(config, paths, agents)
-    settings["restorer"] = guards.frames_hash()
+    settings = {**_settings(config, paths, agents), "restorer": guards.frames_hash()}
     _check_earlier(out, settings)
     sources = open_drives(config, paths)
     check_drives(sources, agents, guards)
@@ -173,15 +172,7 @@ def run(
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
-        return replay(
-            agents,
-            recordings,
-            corruptions,
-            out,
-            severity=config.severity,
-            seed=config.seed,
-            guards=guards,
-        )
+        return replay(config, agents, recordings, corruptions, guards, out)
 
 
 def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
@@ -232,41 +223,37 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     if out.exists() and not out.is_dir():
         raise ValueError(f"{out} must be a folder, which a replay writes into. {fix}")
     if not is_regular(out / SETTINGS):
-        other_files = [out / name for name in (DECISIONS, TABLE) if (out / name).exists()]
-        if other_files:
-            raise ValueError(f"{other_files[0]} was not written by a replay. {fix}")
+        for file in (out / DECISIONS, out / TABLE):
+            if file.exists():
+                raise ValueError(f"{file} was not written by a replay. {fix}")
         return
     earlier = read_json(out / SETTINGS, fix)
     if not isinstance(earlier, dict):
         raise ValueError(f"{out / SETTINGS} was not written by a replay. {fix}")
-    different = [name for name, value in settings.items() if earlier.get(name) != value]
-    if different:
-        name = different[0]
-        raise ValueError(
-            f"{out} contains a replay with another {name} ({short(earlier.get(name))}). {fix}"
-        )
+    for name, value in settings.items():
+        if earlier.get(name) != value:
+            raise ValueError(
+                f"{out} contains a replay with another {name} ({short(earlier.get(name))}). {fix}"
+            )
 
 
 def replay(
+    config: ReplayConfig,
     agents: Mapping[str, Any],
     recordings: Mapping[int, Sequence[Any]],
     corruptions: Sequence[Any],
+    guards: Guards,
     out: Path,
-    *,
-    severity: float,
-    seed: int,
-    guards: Guards = NO_GUARDS,
 ) -> Path:
     """Run agents on recordings under corruptions and write the report.
 
     Args:
+        config: The options.
         agents: Agents by name.
         recordings: Recordings by number of views.
         corruptions: Corruptions, clean first.
-        out: Folder of the report.
-        severity: Severity, for titles.
-        seed: Corruption seed.
         guards: Guards between the drives and the agents.
+        out: Folder of the report.
 
     Returns:
         ``out``.
@@ -274,6 +261,7 @@ def replay(
     from mitigate.core.progress import Progress
     from mitigate.replay import report, walk
 
+    seed, severity = config.seed, config.severity
     changes: dict[str, dict[str, walk.Changes]] = {}
     pictures: list[Path] = []
     steps = [len(drive.times) for drive in next(iter(recordings.values()))]

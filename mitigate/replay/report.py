@@ -16,14 +16,8 @@ from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
 from mitigate.evaluation.plots import COLOURS, DPI, plain, text_colour
 from mitigate.guards.guard import NO_GUARDS, Guards
-from mitigate.replay.walk import (
-    BLOCK_STEPS,
-    MIN_ACTION_SHIFT,
-    MIN_BLOCKS,
-    Answers,
-    Changes,
-    named_action,
-)
+from mitigate.replay import walk
+from mitigate.replay.walk import Answers, Changes
 from mitigate.worlds.recorded import Recording
 
 AgentChanges = Mapping[str, Mapping[str, Changes]]  # maps agent and condition to the changes
@@ -61,14 +55,15 @@ def table(
         f"Decisions that a corruption of severity {severity:g} changes, in %, of {steps} steps in "
         f"{drives} drive{'s' * (drives > 1)}, compared with the same agent on clean frames. "
         "Brackets are 95 % bootstrap intervals over blocks of ten steps; with fewer than "
-        f"{MIN_BLOCKS} blocks, or if all are equal, Wilson's intervals.{restorer}",
+        f"{walk.MIN_BLOCKS} blocks, or if all are equal, Wilson's intervals.{restorer}",
         "",
         *(f"**Warning:** {markdown_of(note)}\n" for note in notes),
     ]
-    if steps < MIN_BLOCKS * BLOCK_STEPS:
+    enough = walk.MIN_BLOCKS * walk.BLOCK_STEPS
+    if steps < enough:
         lines += [
-            f"Below {MIN_BLOCKS * BLOCK_STEPS} steps the intervals are too wide to compare "
-            "corruptions: replay a longer drive, or several drives.",
+            f"Below {enough} steps the intervals are too wide to compare corruptions: replay a "
+            "longer drive, or several drives.",
             "",
         ]
     found = {name: [changes[a].get(name) for a in agents] for name in conditions}
@@ -108,7 +103,7 @@ def _other_measures(changes: AgentChanges) -> list[str]:
         text += (
             " Distance: mean Euclidean distance of continuous actions to those on clean frames. "
             "Such a decision counts as changed if one number moves by more than "
-            f"{100 * MIN_ACTION_SHIFT:g} % of its range on clean frames."
+            f"{100 * walk.MIN_ACTION_SHIFT:g} % of its range on clean frames."
         )
     rows = []
     for agent, by_condition in changes.items():
@@ -182,7 +177,7 @@ def picture(
         gap = np.full((len(before), max(1, len(before) // 40), 3), 255, np.uint8)
         views = (before, gap, _view(seen[modality], frames[step]))
         axis.imshow(np.concatenate(views, 1), interpolation="nearest")
-        old, new = (named_action(a.actions[step]) for a in (clean, corrupted))
+        old, new = (walk.named_action(a.actions[step]) for a in (clean, corrupted))
         text = f"step {step}, {recording.times[step]:.1f} s: {old} -> {new}"
         axis.set_title(text, fontsize=8)
     legend = ""

@@ -106,14 +106,13 @@ def receive(channel):
 
 def _read(channel, size):
     """Return ``size`` bytes, or None if the channel ends earlier."""
-    parts, missing = [], size
-    while missing:
-        part = channel.recv(min(missing, 1 << 16))
+    data = bytearray()
+    while len(data) < size:
+        part = channel.recv(min(size - len(data), 1 << 16))
         if not part:
             return None
-        parts.append(part)
-        missing -= len(part)
-    return b"".join(parts)
+        data += part
+    return bytes(data)
 
 
 def stop(problem, reported=False):
@@ -276,10 +275,9 @@ def _load_numpy():
 
 def _versions():
     """Return the process id and the versions of Python and of the libraries in use."""
-    names = ("habitat", "habitat_sim", "torch")
-    libraries = {n: str(_get(sys.modules.get(n), "__version__", "")) for n in names}
-    versions = {"pid": os.getpid(), "python": sys.version.split()[0], "numpy": np.__version__}
-    return {**versions, **libraries}
+    names = ("numpy", "habitat", "habitat_sim", "torch")
+    versions = {n: str(_get(sys.modules.get(n), "__version__", "")) for n in names}
+    return dict(versions, pid=os.getpid(), python=sys.version.split()[0])
 
 
 # one environment --------------------------------------------------------------------------------
@@ -544,15 +542,12 @@ def _finite_numbers(metrics, prefix=""):
         if isinstance(value, dict):
             numbers.update(_finite_numbers(value, f"{prefix}{name}."))
             continue
-        is_number = isinstance(value, (bool, int, float, np.bool_, np.integer, np.floating))
-        # the value may be an array or a tensor
-        if _get(value, "shape") == () and _get(value, "item"):
+        if _get(value, "shape") == () and _get(value, "item"):  # a scalar of numpy or torch
             value = value.item()
-            is_number = isinstance(value, (bool, int, float))
-        is_goal = prefix + str(name) == "distance_to_goal"
-        unreachable = is_goal and is_number and float(value) == math.inf
-        if unreachable or (is_number and math.isfinite(float(value))):
-            numbers[prefix + str(name)] = float(value)
+        name = prefix + str(name)
+        unreachable = name == "distance_to_goal" and value == math.inf
+        if isinstance(value, (int, float)) and (unreachable or math.isfinite(value)):
+            numbers[name] = float(value)
     return numbers
 
 
@@ -584,10 +579,8 @@ def _describe_sensor(sensor):
     config, description = _get(sensor, "config"), {}
     for option in CAMERA:
         value = _get(config, option, _get(config, option.upper()))
-        if isinstance(value, (bool, int, float)) or value is None:
-            description[option] = value
-        else:
-            description[option] = [float(x) for x in value]
+        is_plain = value is None or isinstance(value, (int, float))
+        description[option] = value if is_plain else [float(x) for x in value]
     kind = str(_get(sensor, "sensor_type", "")).rpartition(".")[2].lower()
     description.update(name=sensor.uuid, type=COLOR if kind == "color" else kind)
     _descriptions[id(sensor)] = (sensor, description)
@@ -961,14 +954,13 @@ def _make_adapter_wrapper(folder, file, path):
 def _attach_adapters(encoder, folder, file, path):
     module = encoder
     for name in filter(None, path.split(".")):
-        inner = _get(module, name)
-        if inner is None:
+        if _get(module, name) is None:
             children = ", ".join(n for n, _ in module.named_children()) or "none"
             stop(
                 f"adapters= names {path} in {type(encoder).__name__}, but there is no {name}: its "
                 f"modules there are {children}."
             )
-        module = inner
+        module = _get(module, name)
     spec = importlib.util.spec_from_file_location("mitigate_plain_adapters", file)
     plain_adapters = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(plain_adapters)
