@@ -33,7 +33,7 @@ ALONE = "set workers=1, or define its classes at the top level of a module"
 
 
 class Task(Protocol):
-    """What worker processes run; each worker receives a pickled copy."""
+    """A task that worker processes run; each worker receives a pickled copy."""
 
     preload: ClassVar[str]  # module that all workers need; it is imported once
 

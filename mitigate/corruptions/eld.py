@@ -1,13 +1,14 @@
 """Simulate low light with sensor noise, using the ELD model.
 
 Source: Wei et al., "Physics-based noise modeling for extreme low-light photography", IEEE TPAMI
-2021. D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications: sRGB is
-approximated by an exponent of 2.2, noise is sampled per channel without a Bayer pattern, and the
-three channels of a row have the same row noise. Clipping at 0 brightens dark areas, as in real
-cameras.
+2021. The noise model is D = K * Poisson(I) + TukeyLambda + row noise, rounded by the ADC.
+Simplifications: sRGB is approximated by an exponent of 2.2, noise is sampled per channel without a
+Bayer pattern, and the three channels of a row have the same row noise. Negative values are clipped
+to 0, which brightens dark areas, as in real cameras.
 
-Sampling needs two table look-ups per channel: a (signal level x quantile) table of photon counts
-and a quantile table of read noise, indexed by the bits of one hash per pixel.
+Sampling a channel needs two table look-ups. One table holds photon counts by signal level and
+quantile, the other one holds quantiles of read noise. The bits of one hash per pixel are the
+indices.
 """
 
 from __future__ import annotations
@@ -67,7 +68,9 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points], exactly up to mean 64, above by Cornish-Fisher."""
+    """Compute Poisson quantiles [means, points]; they are exact for means up to 64, and use the
+    Cornish-Fisher expansion above.
+    """
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -89,10 +92,11 @@ def _photon_table(means, points, deviates, out):
 
 @dataclass(frozen=True)
 class Tables:
-    """The look-up tables of one severity. int32 tables hold values in 1/256 of a sensor unit.
+    """The look-up tables of one severity. int32 tables hold values in units of 1/256 of a sensor
+    unit.
 
-    photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]. decode uint8 [D] maps the sum
-    of the three values plus ``offset``, in whole sensor units, to a grey level.
+    ``photons`` is int32 [LEVELS * 256]; ``read`` and ``row`` are int32 [4096]. ``decode`` (uint8
+    [D]) maps the sum of the three values and ``offset``, in whole sensor units, to a grey level.
     """
 
     photons: np.ndarray
@@ -122,7 +126,7 @@ def tables(severity: float) -> Tables:
 
 @njit(cache=True)
 def _levels(source, opacity, part, out):
-    """Darken one row like ``low_light``, but with a resolution of a quarter grey level."""
+    """Darken one row like ``low_light``, but with a resolution of a quarter of a grey level."""
     for i in range(part.size):
         gap = np.int16(np.int16(-np.int16(source[i])) << 7)
         part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
@@ -132,8 +136,8 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """Sample noisy frames uint8 [V, H, W, 3]; unsigned indices avoid numba's check for negative
-    ones.
+    """Sample noisy frames (uint8 [V, H, W, 3]). Unsigned indices avoid numba's check for negative
+    indices.
     """
     count, height, width, _ = views.shape
     size = 3 * width
