@@ -112,7 +112,7 @@ def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     text = complaint(run("corruption=spatter", "severity=0.5"))
     assert "severity=0.6 there, severity=0.5 now" in text and "Name another folder" in text
     save(walk / "in/a/frame1b.png", RGB[3])
-    assert "The first 12 frames of episode 'a'" in complaint(run(*SPATTER))
+    assert "among the first 12 frames of episode 'a'" in complaint(run(*SPATTER))
     (walk / "in/a/frame1b.png").unlink()
     assert run(*SPATTER)[0] == 0
     (walk / "out/corrupt.json").write_text('{"settings": 3}')
@@ -310,7 +310,7 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
         (("corruption=mask", "severity=0.5"), "For instructions use mitigate corrupt_episodes"),
-        ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or more metres, got -7"),
+        ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or a depth in metres, got -7"),
         ((*SPATTER, "missing=nan"), "0 (no reading) or more"),
         (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), got 1.2"),
         (("corruption=spatter", "severity=much"), "severity must be a number, got much"),

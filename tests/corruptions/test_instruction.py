@@ -177,7 +177,7 @@ def test_masks_keep_negations_compass_words_and_choices(text):
 def test_masks_write_the_tokenizers_own_mask_token():
     got = corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token="<mask>")
     assert "<mask>" in got and "[MASK]" not in got and "left" in got and "sofa" in got
-    with pytest.raises(ValueError, match="mask token is empty"):
+    with pytest.raises(ValueError, match="mask_token must not be empty"):
         corrupt_instruction(TEXT, "mask", 1.0, KEY, mask_token=" ")
 
 

@@ -190,7 +190,7 @@ def test_a_folder_with_other_settings_or_content_is_rejected(film, tmp_path):
     (tmp_path / "full/notes.txt").write_text("mine")
     with pytest.raises(ValueError, match="must be empty or have a corrupt.json"):
         copying.run(film, tmp_path / "full", SPATTER)
-    with pytest.raises(ValueError, match="must not be the same folder"):
+    with pytest.raises(ValueError, match="must be different folders"):
         copying.run(film, film / "out", SPATTER)
 
 
