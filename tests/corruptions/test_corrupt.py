@@ -118,7 +118,7 @@ def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     (walk / "out/corrupt.json").write_text('{"settings": 3}')
     assert "corrupt.json is damaged" in complaint(run(*SPATTER))
     (walk / "out/corrupt.json").unlink()
-    assert "must be empty or have a corrupt.json of this program" in complaint(run(*SPATTER))
+    assert "must be empty or contain corrupt.json, which this program writes" in complaint(run(*SPATTER))
 
 
 def test_16_bit_depth_is_in_millimetres_unless_said_otherwise(run, tmp_path):

@@ -203,7 +203,7 @@ def test_text_is_equal_in_another_process():
 @pytest.mark.parametrize("text", ["", "  \n", "...", "🙂", "\x00\x07"])
 @pytest.mark.parametrize("name", SPOKEN)
 def test_instruction_without_a_word_is_rejected(text, name):
-    with pytest.raises(ValueError, match="The instruction is empty"):
+    with pytest.raises(ValueError, match="The instruction must contain a word"):
         corrupt_instruction(text, name, 0.5, KEY)
 
 
@@ -248,7 +248,7 @@ def test_number_or_text_is_a_valid_key(short, key):
 
 
 def test_style_of_text_without_a_word_is_rejected():
-    with pytest.raises(ValueError, match="The instruction is empty"):
+    with pytest.raises(ValueError, match="The instruction must contain a word"):
         restyle(" ... ", "formal", KEY)
 
 

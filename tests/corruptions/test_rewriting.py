@@ -80,7 +80,7 @@ def test_cache_lines_without_answer_are_skipped(tmp_path):
     cache.write_bytes(b"\xff\xfe{\n" + b"[" * 100_000 + b"\n" + "\n".join(bad).encode() + b"\n")
     assert Rewriter(model, "m", cache)(TEXT, "friendly") == model.answer
     assert len(model.asked) == 2
-    with pytest.raises(ValueError, match="is a folder: name the file"):
+    with pytest.raises(ValueError, match="got the folder"):
         Rewriter(model, "m", tmp_path)
 
 

@@ -111,7 +111,7 @@ def test_open_dataset_keeps_cameras_that_it_cannot_read_apart(folder):
 @pytest.mark.parametrize(
     ("version", "message"),
     [
-        ("v2.1", "version 'v2.1', but v3.0 is needed. In the environment.*convert_dataset_v21"),
+        ("v2.1", "version 'v2.1', but v3.0 is needed. Run, in the environment.*convert_dataset_v21"),
         ("v2.0", "Convert it to v2.1 first"),
         ("v4.0", "newer release of mitigate"),
         (3, "codebase_version must be v3.0, got 3"),
