@@ -309,9 +309,9 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     ("options", "part"),
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
-        (("corruption=mask", "severity=0.5"), "For instructions use mitigate corrupt_episodes"),
+        (("corruption=mask", "severity=0.5"), "Corrupt instructions with mitigate corrupt_episodes"),
         ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or a depth in metres, got -7"),
-        ((*SPATTER, "missing=nan"), "0 (no reading) or more"),
+        ((*SPATTER, "missing=nan"), "0 (no reading) or a depth"),
         (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), got 1.2"),
         (("corruption=spatter", "severity=much"), "severity must be a number, got much"),
         (("corruption=spatter", "severity=nan"), "from 0 (clean) to 1"),

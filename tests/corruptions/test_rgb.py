@@ -224,5 +224,5 @@ def test_black_out_is_drawn_for_each_frame_and_view():
 def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
     """A light outside all views would leave the frame clean."""
     rgb, _ = scene.draw(24, 32)
-    with pytest.raises(ValueError, match="heading must be in finite radians"):
+    with pytest.raises(ValueError, match="heading must be a finite number"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

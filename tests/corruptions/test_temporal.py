@@ -367,14 +367,14 @@ def test_faults_are_rejected_where_they_cannot_apply():
     with pytest.raises(ValueError, match="one instant"):
         corrupt_habitat({RGB: frame}, Corruption("frame_delay", 0.5), Key(0, "e"))
     for pair in ("spatter+intermittent", "intermittent+frozen_frame", "intermittent+mask"):
-        with pytest.raises(ValueError, match="must be the first of a pair"):
+        with pytest.raises(ValueError, match="must be the first name of a pair"):
             Corruption(pair, 0.5)
     for check in (
         lambda: conditions(["intermittent"], 0.5, None),
         lambda: Settings("intermittent", 0.5),
         lambda: FrameStream().corrupt({RGB: frame}, Corruption("intermittent", 0.5), 0),
     ):
-        with pytest.raises(ValueError, match="must be the first of a pair"):
+        with pytest.raises(ValueError, match="must be the first name of a pair"):
             check()
     with pytest.raises(ValueError, match="same shape"):
         stream = FrameStream()
