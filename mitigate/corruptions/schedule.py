@@ -95,7 +95,7 @@ class Schedule:
             raise ValueError(
                 f"broad_share must be 0 in the mode clean, which corrupts nothing, got "
                 f"{self.broad_share!r}. Choose another mode (in a config: schedule=per_episode), "
-                "or leave it out."
+                "or leave out broad_share."
             )
         if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
             raise ValueError(
@@ -201,8 +201,8 @@ class Schedule:
         """
         if "success" not in state:
             raise ValueError(
-                f"The state of a Schedule must have the entry 'success', got only {sorted(state)}. "
-                "Pass the result of state_dict()."
+                f"The state of a Schedule must have the entry 'success', got only the entries "
+                f"{sorted(state)}. Pass the result of state_dict()."
             )
         self.success = None
         self._weights = [1.0 / len(self.names)] * len(self.names)
@@ -241,6 +241,6 @@ def _checked(severity: Severity) -> float | tuple[float, float]:
     if len(ends) != 2 or ends[0] > ends[1]:
         raise ValueError(
             f"A range of severities must be [low, high] with low <= high, got {list(severity)}. "
-            "Write for example schedule.severity=[0.3,1.0]."
+            "An example is schedule.severity=[0.3,1.0]."
         )
     return ends[0], ends[1]
