@@ -396,7 +396,7 @@ def test_fault_of_both_sensors_needs_one_of_them():
     met = [Corruption("frozen_frame", 0.6)]
     check_sensors(met, [RGB], "world")
     check_sensors(met, [DEPTH], "world")
-    with pytest.raises(ValueError, match="The suite has frozen_frame"):
+    with pytest.raises(ValueError, match="The suite contains frozen_frame"):
         check_sensors(met, ["state"], "world")
     assert [c.severity for c in conditions(["frozen_frame", "depth_lag"], 0.6, 0.4)] == [0.6, 0.4]
 
