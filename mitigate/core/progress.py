@@ -24,7 +24,7 @@ class Progress:
         title: name of the job.
         total: number of units.
         unit: name of a unit, in the singular.
-        start: number of units that are already done.
+        start: number of units that were done before.
 
     Raises ValueError unless ``start`` is between 0 and ``total``.
     """
@@ -73,10 +73,10 @@ class Progress:
             say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
 
     def advance(self, count: int = 1, note: str = "") -> None:
-        """Count ``count`` units as done; an empty ``note`` keeps the previous one.
+        """Record that ``count`` more units are done; an empty ``note`` keeps the previous note.
 
-        A job that waits calls this method with 0: if the last line is ``EVERY`` seconds old, a new
-        line is printed.
+        A job that waits calls this method with ``count`` 0, which prints a new line if the last one
+        is ``EVERY`` seconds old.
         """
         self.done += count
         self.note = note or self.note
@@ -113,7 +113,8 @@ class Progress:
         """Return the mean seconds per unit, or None while the mean is unknown.
 
         The mean excludes the first units, because their time includes compiling code and opening
-        files. It is known when a further 1 % of the units is done, because every worker compiles.
+        files. The mean is known only after a further 1 % of the units, because every worker
+        compiles.
         """
         least = max(1, (self.total - self.start) // 100)
         if self._first is None or self.done - self._first[0] < least:

@@ -1,4 +1,4 @@
-"""Read the settings file in a folder of weights: plain data with a fixed schema.
+"""Read the settings file in a folder of weights, which is plain data with a fixed schema.
 
 A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags and
 interpolations; nothing in it is resolved, instantiated or run. No other module reads such files.
@@ -29,7 +29,8 @@ _WARNING = "Settings that come with weights are plain data: do not use this fold
 def read(file: Path) -> dict[str, Any]:
     """Return the YAML mapping in ``file``.
 
-    Allowed values are None, bools, finite numbers, strings, and lists and str-keyed dicts of these.
+    Allowed values are None, bools, finite numbers and strings, and lists and dicts (with str keys)
+    that contain such values.
 
     Raises:
         ValueError: The file contains a value of another type, a repeated key or an OmegaConf
@@ -58,7 +59,7 @@ def read(file: Path) -> dict[str, Any]:
 
 
 def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any]:
-    """Return the settings under ``agent`` in ``file``, without ``_target_``.
+    """Return the settings in the mapping ``agent`` of ``file``, without ``_target_``.
 
     Args:
         file: the YAML file.
@@ -149,7 +150,7 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
             if not isinstance(name, str) or _problem(name):
-                yield inner, (name,)  # _problem reports the tuple
+                yield inner, (name,)  # _problem reports such a tuple as an invalid key
             yield inner, item
             yield from _entries(item, inner)
     elif isinstance(value, list):
@@ -159,7 +160,9 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` itself (without its items) is not plain data, or an empty text."""
+    """Return why ``value`` is not plain data, or "" if it is; the items of a container are not
+    checked.
+    """
     if isinstance(value, tuple):
         return "is not a plain key"
     if isinstance(value, str):

@@ -70,9 +70,9 @@ class SignalDelay:
 def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
-    The signal sets the attribute ``number`` of the yielded object and of those of all enclosing
-    blocks. A second signal ends the command immediately. Only the main thread can delay signals; in
-    other threads this has no effect.
+    The signal sets the attribute ``number`` of the yielded object, and of the objects that
+    enclosing blocks yielded. A second signal ends the command immediately. Only the main thread can
+    delay signals; in other threads this has no effect.
 
     Args:
         on: False delays nothing.

@@ -26,7 +26,7 @@ from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import delay_signals, leave_to_parent, start_worker
 
-SECOND = 1.0  # seconds to wait for messages before checking whether silent workers are alive
+SECOND = 1.0  # seconds to wait for messages from workers before other checks
 STUCK = 60.0  # seconds after which a worker that is still busy with one job is reported
 DEATHS = 1  # maximum number of workers that are replaced
 ALONE = "set workers=1, or define its classes at the top level of a module"
@@ -38,7 +38,7 @@ class Task(Protocol):
     preload: ClassVar[str]  # module that all workers need; it is imported once
 
     def ready(self) -> AbstractContextManager[None]:
-        """Return a context manager around all jobs of a process, for setup and cleanup."""
+        """Return a context manager for setup and cleanup, in which a process runs all its jobs."""
         ...
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
@@ -74,7 +74,7 @@ def cores() -> int:
 
 
 def count(requested: int | None, jobs: int, worth: int) -> int:
-    """Return how many processes to start.
+    """Return the number of processes to start.
 
     Args:
         requested: number from the options; None uses one per core.
@@ -135,7 +135,8 @@ class _Worker:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
         start_worker(self.process)
-        theirs.close()  # the worker alone keeps its end open, so the pipe closes if it dies
+        # only the worker keeps this end open, so the pipe closes when the worker dies
+        theirs.close()
         self.left: deque[tuple[int, Any]] = deque()
         self.heard = time.monotonic()
         self.reported = self.heard

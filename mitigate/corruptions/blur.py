@@ -69,10 +69,10 @@ def line(views, dy, dx, weights, step, strength, out):
     """Blur views (uint8 [V, H, W, 3]) along a line and blend the result with the original views:
     out = (1 - strength) * views + strength * (weighted mean of the taps).
 
-    ``dy, dx`` int64 [4 n] are offsets in pixels. ``weights`` int16 [4 n] are small integers; the
-    weights of each group of four taps sum to at most LINE_UNITS. If ``step`` is 2, the taps in a
-    row are 2 px apart. The image is then first smoothed along x by (1 2 1)/4, so that the pixels
-    between the taps also contribute.
+    ``dy`` and ``dx`` (int64 [4 n]) are offsets in pixels. ``weights`` int16 [4 n] are small
+    integers; the weights of each group of four taps sum to at most LINE_UNITS. If ``step`` is 2,
+    the taps in a row are 2 px apart. The image is then first smoothed along x by (1 2 1)/4, so that
+    the pixels between the taps also contribute.
     """
     count, height, width, _ = views.shape
     ry, rx = np.max(np.abs(dy)), np.max(np.abs(dx))
@@ -189,7 +189,8 @@ def gaussian(views, weights, levels, out):
     padded = np.empty((height + 2 * reach, 3 * (width + 2 * reach)), np.int16)
     tall, spare = np.empty(padded.shape[1], np.int16), np.empty(padded.shape[1], np.int16)
     total = np.empty(size, np.int16)
-    rounding = _I16((r + 1) // 2)  # truncating each product loses half a unit on average
+    # compensates for truncated products, which lose half a unit each on average
+    rounding = _I16((r + 1) // 2)
     for v in range(count):
         rows = height + 2 * reach
         for y in range(rows):

@@ -1,7 +1,7 @@
 """The four depth corruptions of the standard suite, for float32 panoramas [V, H, W] in metres.
 
 A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and do not
-affect their neighbours. Only ``missing_data`` makes valid depth invalid; all other valid depth is
+affect their neighbours. Only ``missing_data`` makes valid pixels invalid. All other valid depth is
 clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
@@ -34,7 +34,7 @@ ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Return the error of a depth reading in metres when the surface behind is ``gap`` metres
+    """Return the error of a depth reading, in metres, if the surface behind it is ``gap`` metres
     farther away.
 
     The value is computed from the phasor sum of two light paths.
@@ -136,14 +136,15 @@ def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor)
     return out
 
 
-# as in a D435, the RMS error grows with z^2; s = 0.1 is similar to a Kinect
+# the RMS error grows with z^2, as in a D435; severity 0.1 is similar to a Kinect
 NOISE_BASE, NOISE_SQUARE = 0.02, 0.02
 HOLE_CORRELATION = 0.025  # as a fraction of min(H, W)
-# fraction of missing pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
+# fraction of missing pixels at severity 1; indoors, often more than half are missing (Zhang &
+# Funkhouser 2018)
 HOLE_SHARE = 0.5
 FAR_SHARE = 0.25  # fraction of the holes that have the value z_max ("incorrectly large")
-HOLE_FRAMES = 5  # number of frames after which the holes move
-STEP = 0.5  # step of quantization in metres at s = 1
+HOLE_FRAMES = 5  # number of frames after which holes move
+STEP = 0.5  # step of quantization in metres at severity 1
 # minimum step in metres; dividing depth by a smaller step would overflow float32
 STEP_LEAST = 1e-30
 
@@ -171,7 +172,9 @@ def _add_noise(views, streams, base, square, z_max, table, out):
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add s * (0.02 + 0.02 z^2) * N(0, 1) to each pixel of each frame; z is limited to z_max."""
+    """Add severity * (0.02 + 0.02 z^2) * N(0, 1) to each pixel of each frame; z is limited to
+    z_max.
+    """
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
@@ -224,8 +227,8 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove depth at a fraction 0.5 s of the pixels, where a random field is highest; a quarter of
-    these pixels become z_max. The field moves every 5 frames.
+    """Remove depth at a fraction 0.5 * severity of the pixels, where a random field is highest; a
+    quarter of these pixels become z_max. The field moves every 5 frames.
     """
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
@@ -245,12 +248,12 @@ def _round_off(views, step, z_max, out):
 
 
 def depth_step(severity: float) -> float:
-    """Return the step of ``quantization`` in metres."""
+    """Return the step in metres to which ``quantization`` rounds."""
     return max(STEP * severity, STEP_LEAST)
 
 
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Round depth to multiples of 0.5 * s metres."""
+    """Round depth to multiples of 0.5 * severity metres."""
     out = np.empty_like(views)
     step, z_max = np.float32(depth_step(severity)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))

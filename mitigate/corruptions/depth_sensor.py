@@ -1,4 +1,4 @@
-"""Define the range of a depth camera and the validity of its pixels.
+"""Define the range of a depth camera, and which of its pixels are valid.
 
 A pixel is invalid if z <= 0, NaN or infinite.
 """
@@ -16,9 +16,9 @@ from mitigate.core import observation
 NEAREST = np.float32(1e-3)  # minimum valid depth after a corruption, in metres
 # normalised value of valid depth at or below z_min; it is not 0, because 0 means no reading
 LEAST = np.float32(1e-6)
-# Heuristic check of the unit: on average, one of MIN_NEAR valid pixels must be nearer than
-# MAX_RANGES * z_max. (The bound is low because outdoors only the ground is so near.) About
-# UNIT_SAMPLES pixels are checked.
+# Heuristic check of the unit: at least a fraction 1 / MIN_NEAR of the valid pixels must be nearer
+# than MAX_RANGES * z_max. (The fraction is small, because outdoors only the ground is so near.)
+# About UNIT_SAMPLES pixels are checked.
 MAX_RANGES = 3.0
 MIN_NEAR = 10
 UNIT_SAMPLES = 8192
@@ -29,7 +29,7 @@ LIGHT_SPEED = 299_792_458.0  # metres per second
 class DepthSensor:
     """The range of a depth camera, and its value for missing depth.
 
-    Agents interpret missing depth differently: R2R-CE agents treat 0 as missing, VLFM as far away,
+    Agents interpret the value 0 differently: R2R-CE agents treat it as missing, VLFM as far away,
     and L3MVN as the maximum of the image column.
 
     Attributes:
@@ -76,15 +76,15 @@ def flat(views: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def _is_near(pixels, limit):
-    """Return whether on average at least one of ``MIN_NEAR`` valid pixels has a depth of at most
-    ``limit``, or no pixel is valid.
+    """Return whether at least a fraction 1 / ``MIN_NEAR`` of the valid pixels has a depth of at
+    most ``limit``, or no pixel is valid.
     """
     near = valid = 0
     step = pixels.size // UNIT_SAMPLES + 1
     for i in range(0, pixels.size, step):
         valid += is_valid(pixels[i])
         near += is_valid(pixels[i]) & (pixels[i] <= limit)
-        # enough pixels are near, even if all remaining ones are valid and far
+        # enough pixels are near, even if all remaining pixels are valid and far
         if MIN_NEAR * near * step >= pixels.size:
             return True
     return MIN_NEAR * near >= valid

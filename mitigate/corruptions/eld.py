@@ -6,8 +6,8 @@ Simplifications: sRGB is approximated by an exponent of 2.2, noise is sampled pe
 Bayer pattern, and the three channels of a row have the same row noise. Negative values are clipped
 to 0, which brightens dark areas, as in real cameras.
 
-Sampling a channel needs two table look-ups. One table holds photon counts by signal level and
-quantile, the other one holds quantiles of read noise. The bits of one hash per pixel are the
+Sampling a channel needs two table look-ups. One table contains photon counts by signal level and
+quantile; the other one contains quantiles of read noise. The bits of one hash per pixel are the
 indices.
 """
 
@@ -23,10 +23,11 @@ from numba import njit
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
 
-WHITE = 15583.0  # sensor units at full scale: 14 bits minus the black level (Sony A7S2)
-DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
+WHITE = 15583.0  # sensor units at full scale, which are 14 bits minus the black level (Sony A7S2)
+DARKEST = 300.0  # exposure ratio at severity 1; ELD trains with ratios of 100 to 300
 GAMMA = 2.2
-# Camera calibration in the paper: range of the gain K, and (a, b) in ln sigma = a ln K + b.
+# Camera calibration from the paper: the range of the gain K, and (a, b) of ln(sigma) = a * ln(K) +
+# b for two noise components.
 GAINS = (0.0939, 6.011)
 READ = (0.4621, 0.5657)
 ROW = (0.5275, -0.5917)
@@ -39,7 +40,9 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda and two sigmas."""
+    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda, and the sigmas of
+    read and row noise.
+    """
 
     ratio: float
     gain: float
@@ -68,8 +71,8 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points]; they are exact for means up to 64, and use the
-    Cornish-Fisher expansion above.
+    """Compute Poisson quantiles [means, points]. They are exact for means up to 64; larger means
+    use the Cornish-Fisher expansion.
     """
     for level in range(means.size):
         mean = means[level]
@@ -161,11 +164,11 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 
 
 def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
+    """Darken views (uint8 [V, H, W, 3]) like ``low_light`` and add sensor noise.
 
-    The darkness mask is the mask of ``low_light``. Up to s = 0.6, the mean brightness equals the
-    brightness under ``low_light`` within 1 %. At higher severities, clipping noise at 0 brightens
-    the frame, so that s = 1 is not darker than s = 0.8.
+    The mask that darkens the frame is that of ``low_light``. Up to severity 0.6, the mean
+    brightness is within 1 % of the brightness under ``low_light``. At higher severities, noise is
+    clipped at 0, which brightens the frame, so that severity 1 is not darker than severity 0.8.
     """
     count, height, width, _ = views.shape
     t = tables(severity)

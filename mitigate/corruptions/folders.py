@@ -43,7 +43,7 @@ FORMATS = ("png", "same")
 
 @dataclass(frozen=True)
 class Settings:
-    """Options for corrupting a folder; raises ValueError for an invalid value."""
+    """Options for corrupting a folder; the constructor raises ValueError for an invalid value."""
 
     corruption: str
     severity: float
@@ -56,7 +56,7 @@ class Settings:
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
     no_reading: int = NO_READING  # pixel value of a 16-bit PNG that, like 0, means "no reading"
-    hfov: float | None = None  # degrees, horizontal field of view for camera faults
+    hfov: float | None = None  # horizontal field of view in degrees, for camera faults
 
     def __post_init__(self) -> None:
         check_gate(Corruption(self.corruption, self.severity))
@@ -142,7 +142,7 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
 
 
 def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dict:
-    """Corrupt the frames of ``plan``; return the summary as :func:`run` does."""
+    """Corrupt the frames of ``plan`` and return the summary."""
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     names = set(outputs)
@@ -262,7 +262,8 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums of an earlier run, or an empty dict if an earlier version wrote none.
+    """Return the checksums of an earlier run; the dict is empty if an old version wrote no
+    checksums.
 
     Raises:
         ValueError: ``out`` was written with different settings or frames.

@@ -26,7 +26,8 @@ from mitigate.core.observation import DEPTH, RGB
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
 # JPEG quality (heuristic), with full colour resolution; used only with format=same
 JPEG_QUALITY = 95
-PNG_LEVEL = 3  # zlib level; half the time of the default level 6, and files a few per cent larger
+# zlib level; it takes half the time of the default level 6, and files are a few per cent larger
+PNG_LEVEL = 3
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
@@ -38,7 +39,7 @@ SCALE_PIXELS = 8192  # number of pixels that are checked per file (heuristic)
 
 
 class LeftOutError(ValueError):
-    """Raised for a file that cannot be corrupted; the message is the reason."""
+    """Raised for a file that cannot be corrupted; the message says why."""
 
 
 def modality(path: Path) -> str:
@@ -245,10 +246,12 @@ class Frame:
 
 @dataclass
 class Plan:
-    """The content of a folder: frames in order, skipped files, and suffixes of other files."""
+    """The content of a folder: its frames in order, skipped files, and counts of other files by
+    suffix.
+    """
 
     frames: list[Frame] = field(default_factory=list)
-    # maps a skipped file or folder/ to the reason
+    # maps a skipped file, or a skipped folder with a final slash, to the reason
     left_out: dict[str, str] = field(default_factory=dict)
     other_modality: int = 0
     other_files: Counter[str] = field(default_factory=Counter)  # suffix -> files
@@ -292,8 +295,8 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
-    """Return counts of files by suffix as text, with the most frequent suffix first: "3 .tif, 1
-    .webp".
+    """Return the number of files per suffix as text, with the most frequent suffix first: "3 .tif,
+    1 .webp".
     """
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)

@@ -65,7 +65,8 @@ class Key:
     """The key of a time step; it determines all random numbers of the step.
 
     Lens dirt, flare position and similar properties depend on seed and episode; pixel noise also
-    depends on the frame. A per-frame schedule uses a new ``episode`` for every frame.
+    depends on the frame. A schedule with the mode ``per_frame`` uses a new ``episode`` for every
+    frame.
 
     Attributes:
         seed: Corruption seed.
@@ -91,7 +92,7 @@ class Key:
 
 
 def as_key(key: Key | int | str) -> Key:
-    """Convert ``key`` to a Key: an int n becomes Key(n, "0"), a str t becomes Key(0, t).
+    """Convert ``key`` to a Key: an int n becomes Key(n, "0"), and a str t becomes Key(0, t).
 
     Raises:
         ValueError: ``key`` is neither a Key, an int nor a str.
@@ -132,8 +133,8 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Return output number ``counter`` of the splitmix64 stream whose seed is ``value``, with
-    Python integers.
+    """Return output number ``counter`` of the splitmix64 stream with the seed ``value``; this
+    version uses Python integers.
     """
     z = (value + (counter + 1) * GOLDEN) & MASK
     z = ((z ^ (z >> 30)) * MIX_A) & MASK
@@ -194,7 +195,7 @@ def _fill_normals(value, table, out):
 
 
 def normals(value: int, count: int) -> np.ndarray:
-    """Return standard normal numbers from the stream ``value``, float32 [count]."""
+    """Return ``count`` standard normal numbers from the stream ``value``, float32 [count]."""
     out = np.empty(count, np.float32)
     _fill_normals(_U(value), normal_table(), out)
     return out
@@ -278,8 +279,8 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
         correlation: Standard deviation of the smoothing kernel as a fraction of the shorter side.
 
     Returns:
-        The field, float32 [height, width] with unit standard deviation, and the cells before
-        resampling, float32 [cells].
+        The field (float32 [height, width]), which has unit standard deviation, and the cells before
+        resampling (float32 [cells]).
     """
     rows, cols = field_grid(height, width)
     noise = normals(value, rows * cols).reshape(rows, cols)
@@ -295,8 +296,8 @@ def top_place(cells: int, share: float) -> int:
 
 
 def top_share(cells: np.ndarray, share: float) -> float:
-    """Return the threshold that a fraction ``share`` of the cells reach, or infinity if the
-    fraction is 0.
+    """Return the threshold that a fraction ``share`` of the cells reaches, or infinity if ``share``
+    is 0.
     """
     place = top_place(cells.size, share)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

@@ -1,7 +1,7 @@
 """Compute the masks of RGB corruptions: darkness, dirt, glare and a black disk.
 
 Darkness, dirt and glare are blended with ``out = x + (colour - x) * alpha``, where ``alpha`` is a
-16-bit opacity mask. Masks are cached by the 64-bit digest of their episode, so they are computed
+16-bit opacity mask. Masks are cached by the 64-bit digest of their episode, so a mask is computed
 only for the first frame of an episode. Formulas and sources are in docs/corruptions.md. Constants
 without a source were chosen by this project.
 """
@@ -19,16 +19,16 @@ from mitigate.corruptions.keying import cached, field, top_share, uniform
 
 # the mean brightness is between that of RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
 DARK_BASE, DARK_RAMP = 0.60, 0.37
-SPATTER_CORRELATION = 0.018  # as a fraction of min(H, W)
-SPATTER_COVER = 0.45  # ImageNet-C covers 0.04-0.57 of the frame
-SPATTER_EDGE = 0.25  # as a multiple of the field's standard deviation
+SPATTER_CORRELATION = 0.018  # correlation length as a fraction of min(H, W)
+SPATTER_COVER = 0.45  # covered fraction at severity 1; ImageNet-C covers 0.04 to 0.57
+SPATTER_EDGE = 0.25  # width of soft edges, as a multiple of the field's standard deviation
 SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
 FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # widths are fractions of the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
 # range and size of the radial table; neighbouring cells differ by less than 0.04 grey levels
 GLOW_REACH, GLOW_CELLS = 1.5, 16384
-DISK_RADIUS = 0.5  # as a fraction of min(H, W)
+DISK_RADIUS = 0.5  # radius at severity 1 as a fraction of min(H, W)
 NEUTRAL = (1.0, 1.0, 1.0)
 
 
@@ -61,7 +61,7 @@ def opacity_mask(
 
 @lru_cache(maxsize=64)
 def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
-    """Return an image row of one colour, int16 [3 W], in the format that ``cover`` needs."""
+    """Return an image row of one colour in the format that ``cover`` needs, int16 [3 W]."""
     return np.tile(np.array(colour, np.int16), width)
 
 

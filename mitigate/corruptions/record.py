@@ -1,6 +1,6 @@
 """Define the record of a corruption, which holds its function and its description.
 
-A package can add a corruption with a record in the entry point group ``mitigate.corruptions``
+A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen`` and ``faults``.
 """
@@ -35,9 +35,9 @@ class Record:
             severity, key, and a DepthSensor. It returns a new array of the same shape as the views.
             The value is None for corruptions of instructions, which ``corrupt_instruction``
             applies, and for faults with ``draw``.
-        severity: What the severity s controls, in a few words.
+        severity: What the severity (called s) controls, in a few words.
         label: Title in tables; by default, it is made from ``name``.
-        source: Sources of the constants, in a word or two.
+        source: Sources of the constants, in one or two words.
         episode: Which random values are sampled once per episode.
         frame: Which random values are sampled for each frame.
         version: Version of a corruption that is not in the standard suite; result rows of another

@@ -65,7 +65,7 @@ def plugin_records() -> dict[str, Record]:
             problem = _problem(
                 record, {"clean", *SUITE, *UNSEEN, *SENSORS, *BROAD, *FAULTS, *records}
             )
-        except Exception as error:  # code of an installed package may raise any error
+        except Exception as error:  # the code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
             warnings.warn(

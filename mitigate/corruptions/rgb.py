@@ -1,9 +1,9 @@
 """The eight RGB corruptions of the standard suite, for uint8 panoramas [V, H, W, 3].
 
 Every public function takes (views, severity in (0, 1], key, heading) and returns a new array of the
-same shape. Lengths are fractions of the frame. Formulas and sources are in docs/corruptions.md.
-Constants without a source were chosen by this project. Masks are defined in ``masks``, and compiled
-blurs in ``blur``.
+same shape. Lengths are defined as fractions of the frame size. Formulas and sources are in
+docs/corruptions.md. Constants without a source were chosen by this project. Masks are defined in
+``masks``, and compiled blurs in ``blur``.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from mitigate.corruptions.eld import low_light_noise
 from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
-BLUR_LENGTH = 0.10  # as a fraction of W at s = 1; ImageNet-C kernels are 3-14 % of W
+BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernels are 3 to 14 % of W
 LONG_BLUR = 12.0  # minimum length in px of lines for which every second column is enough
 # maximum angle to the horizontal in degrees; it is small, because robots mostly turn in yaw
 BLUR_ANGLE = 10.0
-# as a fraction of min(H, W); ImageNet-C disks have radii of 3-10 px at 224
+# sigma at severity 1 as a fraction of min(H, W); ImageNet-C disks have radii of 3 to 10 px at 224
 DEFOCUS_SIGMA = 5.0 / 224.0
 DEFOCUS_SPREAD = 0.2
 DEFOCUS_LEAST = 0.15  # minimum sigma in px; a narrower Gaussian has no effect
@@ -33,7 +33,7 @@ BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 @lru_cache(maxsize=64)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
-    """Return the taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad.
+    """Return the taps (dy, dx, weights) of a line with a length in px and an angle in radians.
 
     The number of taps is a multiple of four. Only every ``step``-th column has taps. The weight of
     a column is the fraction of it that the line covers, divided between the two nearest rows.
@@ -108,7 +108,7 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Add the glow of a light to the views that show it (screen blending); the light has a fixed
+    """Add the glow of a light, by screen blending, to the views that show the light; it has a fixed
     direction in the world.
     """
     count, height, width, _ = views.shape
@@ -128,8 +128,8 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
     """Return the arguments ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px; the
     kernel ends at 3 sigma.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2. The taps add the remaining
-    variance, and their sigma is at least LEAST_TAP_SIGMA times their distance.
+    Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The taps add the
+    remaining variance; their sigma is at least LEAST_TAP_SIGMA times their distance.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
@@ -144,7 +144,7 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
 
 
 def defocus_sigma(severity: float, key: Key, height: int, width: int) -> float:
-    """Return the sigma of ``defocus`` in pixels."""
+    """Return the sigma in pixels with which ``defocus`` blurs."""
     spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
     return DEFOCUS_SIGMA * severity * spread * min(height, width)
 

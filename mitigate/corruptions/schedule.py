@@ -26,15 +26,16 @@ Severity = float | Sequence[float]  # a number, or the lower and upper limit of 
 
 @dataclass
 class Schedule:
-    """Samples the corruption and the key of each frame.
+    """A schedule samples the corruption and the key of each frame.
 
     The modes are:
 
     - ``clean``: nothing is corrupted.
     - ``per_frame``: each frame gets its own corruption and random numbers (transient faults).
     - ``per_episode``: each episode gets its own corruption and random numbers (persistent faults).
-    - ``success_distributed``: each episode gets corruption k with a probability proportional to
-      (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an earlier evaluation.
+    - ``success_distributed``: each episode gets one corruption. The probability of corruption k is
+      proportional to (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an earlier
+      evaluation.
 
     Args:
         mode: One of MODES.
@@ -44,8 +45,8 @@ class Schedule:
         severity_depth: Severity of depth corruptions; None means ``severity``.
         clean_share: Fraction of frames (``per_frame``) or episodes that stay clean, in [0, 1].
         names: Corruptions to choose from.
-        broad_share: Fraction in [0, 1] of corrupted frames or episodes in which a random
-            composition (``broad``) of the same modality replaces the sampled corruption.
+        broad_share: Fraction in [0, 1] of the corrupted frames or episodes. In this fraction, a
+            random composition (``broad``) of the same modality replaces the sampled corruption.
         alpha: Exponent (>= 0) in the weights of ``success_distributed``.
         floor: Term (>= 0) that is added to the weights; if it is above 0, every corruption can be
             sampled.

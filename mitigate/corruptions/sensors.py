@@ -1,10 +1,11 @@
 """Simulate the depth errors of four cameras; the models come from publications and datasheets.
 
-At severity 0.5, a frame has the errors that the source reports; at another severity, they are 2 *
-severity times as large. A profile has up to five errors, which are applied in this order: (1) a
-wrong offset and scale in the whole episode, (2) pixels that take the depth of a neighbour (lateral
-noise), (3) axial noise, (4) rounding of disparity, and (5) a limited range. Functions have the same
-arguments and results as in ``corruptions/depth.py``, and treat invalid pixels in the same way.
+At severity 0.5, a frame has the errors that the source reports. At other severities, the errors are
+multiplied by 2 * severity. A profile has up to five errors, which are applied in this order: (1)
+pixels take the depth of a neighbour (lateral noise), (2) depth has a wrong offset and scale in the
+whole episode, (3) axial noise is added, (4) disparity is rounded, and (5) the range is limited.
+Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
+pixels in the same way.
 """
 
 from __future__ import annotations
@@ -28,7 +29,7 @@ class Profile:
     """The errors of a depth camera.
 
     Attributes:
-        sd: Coefficients (a, b, c) of the standard deviation a + b d + c d^2 in metres.
+        sd: Coefficients (a, b, c) of the standard deviation a + b * d + c * d^2 in metres.
         origin: Depth in metres at which d is 0: d = z - origin.
         lateral: Standard deviation of the lateral error as a fraction of the image width.
         disparity: Constant for rounding. Depth takes only the values ``disparity`` / n metres,
@@ -63,7 +64,7 @@ REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
 # The datasheet gives a standard deviation of up to 17 mm, a systematic error of up to 11 mm + 0.1
-# %, and the range of the narrow mode. Tolgyessy et al. 2021 confirm it.
+# %, and the range of the narrow mode. Tolgyessy et al. 2021 confirm these values.
 AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
 
 _U = np.uint64
@@ -131,22 +132,22 @@ def measured(
 
 
 def kinect_v1(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with structured light as a Kinect for Xbox 360 does."""
+    """Return depth as a Kinect for Xbox 360, which uses structured light, measures it."""
     return measured(views, KINECT_V1, "kinect_v1", severity, key, sensor)
 
 
 def realsense_d435(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with active stereo as a RealSense D435 does."""
+    """Return depth as a RealSense D435, which uses active stereo, measures it."""
     return measured(views, REALSENSE_D435, "realsense_d435", severity, key, sensor)
 
 
 def realsense_l515(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with a scanning laser as a RealSense L515 does."""
+    """Return depth as a RealSense L515, which scans with a laser, measures it."""
     return measured(views, REALSENSE_L515, "realsense_l515", severity, key, sensor)
 
 
 def azure_kinect(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth by time of flight as an Azure Kinect does."""
+    """Return depth as an Azure Kinect, which uses time of flight, measures it."""
     return measured(views, AZURE_KINECT, "azure_kinect", severity, key, sensor)
 
 

@@ -60,7 +60,8 @@ def _draw(part: Corruption, key: Key) -> Any:
 
 
 class FrameStream:
-    """Corrupt the observations of one episode after another, in the order of their frames.
+    """Corrupts the observations of episodes, one episode after another, in the order of their
+    frames.
 
     For temporal faults, the stream keeps the clean frames of the last time steps. It forgets them
     when the episode of the key changes or its frame number does not increase. So the result depends
@@ -173,8 +174,8 @@ class FrameStream:
         return arriving[entry]
 
     def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:
-        """Return the number and the frame of the newest stored time step up to ``number``; if there
-        is none, those of the oldest one.
+        """Return the newest stored pair (step number, frame) whose step is at most ``number``; if
+        there is none, return the oldest pair.
         """
         past = self._past[entry]
         return next((instant for instant in reversed(past) if instant[0] <= number), past[0])

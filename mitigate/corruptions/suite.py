@@ -97,7 +97,7 @@ SENSOR = DepthSensor()
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
-    """Return ``name``, or raise ValueError with the nearest allowed name.
+    """Return ``name`` if it is allowed; otherwise raise ValueError with the nearest allowed name.
 
     By default, all corruptions of frames are allowed, including plugins.
     """
@@ -253,9 +253,7 @@ def check_corruption(corruption: Corruption) -> Corruption:
 
 
 def check_heading(heading: float | None) -> float | None:
-    """Return ``heading`` as a float, or None if it is None; raise ValueError for NaN, infinity and
-    text.
-    """
+    """Return ``heading`` as a float or None; raise ValueError for NaN, infinity and text."""
     if heading is None or (type(heading) is float and math.isfinite(heading)):
         return heading
     try:
@@ -296,8 +294,8 @@ def corrupt(
         heading: Heading of the agent in radians, counter-clockwise, with which a flare keeps its
             direction in the world. If the heading is None (unknown), a flare keeps its position in
             view 0.
-        sensor: Depth range, and the value that marks a missing reading.
-        hfov: Horizontal field of view in degrees, which camera faults need.
+        sensor: Depth range, and the value that marks missing depth.
+        hfov: Horizontal field of view in degrees; camera faults need it.
 
     Returns:
         A new array of the same shape and dtype; the input is not modified.
@@ -392,7 +390,7 @@ def corrupt_observation(
         obs: The observation. The heading is read from ``obs["pose"]``, if this entry exists.
         corruption: The corruption.
         key: Key of the random numbers.
-        sensor: Depth range, and the value that marks a missing reading.
+        sensor: Depth range, and the value that marks missing depth.
         hfov: For each entry, the horizontal field of view in degrees, which camera faults need.
 
     Returns:
@@ -416,7 +414,7 @@ def _corrupt_entry(
     sensor: DepthSensor,
     hfov: Mapping[str, float | None],
 ) -> dict:
-    """Return, by name, the corrupted entries of one corruption."""
+    """Apply one corruption, and return the entries that it changes as a dict."""
     pose = obs.get(observation.POSE)
     entries = changed_entries(obs, part)
     if pose is not None and np.shape(pose) != (3,):

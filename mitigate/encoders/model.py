@@ -334,7 +334,7 @@ class Encoder(nn.Module):
         return self.model(noise.to(like.device, like.dtype))
 
     def _item(self, output: Any) -> Tensor:
-        """Select the target features in the output of the model."""
+        """Select, in the output of the model, the features that ``output`` names."""
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))

@@ -21,9 +21,9 @@ from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
 RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
 FEWEST = 10  # minimum numbers of positive and of negative frames for a label to be used (heuristic)
-# candidates for the ridge, as multiples of the number of frames; training frames decide
+# candidates for the ridge, as multiples of the number of frames; one is chosen on training frames
 RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)
-PROBE_SHARE = 0.25  # fraction of the training scenes on which the ridge is chosen (heuristic)
+PROBE_SHARE = 0.25  # fraction of the training scenes that is used to choose the ridge (heuristic)
 
 
 @dataclass
@@ -149,7 +149,7 @@ class LinearProbe:
         return np.concatenate([x, np.ones((len(x), 1))], 1)
 
     def score(self, features: np.ndarray, labels: np.ndarray, resamples: Resamples) -> Score:
-        """Return the mean average precision over the labels that have enough frames."""
+        """Return the mean average precision over all labels that have enough frames."""
         guess, labels = self._scaled(features) @ self.weights, labels[:, self.used]
         usable = frequent_labels(labels)
         ones = np.ones((1, len(features)), np.float32)
@@ -167,7 +167,7 @@ def frequent_labels(labels: np.ndarray) -> np.ndarray:
 
 def _ridge(x: np.ndarray, y: np.ndarray, ridge: float) -> np.ndarray:
     gram = x.T @ x
-    gram[np.diag_indices(len(gram) - 1)] += ridge * len(x)  # the constant term has no ridge
+    gram[np.diag_indices(len(gram) - 1)] += ridge * len(x)  # the constant term is not regularised
     return np.linalg.solve(gram, x.T @ y)
 
 

@@ -1,4 +1,4 @@
-"""Read frames from a world that renders from any pose, or from a folder of files.
+"""Read frames from a world that can render from arbitrary poses, or from a folder of files.
 
 A source has two disjoint sets of scenes, ``TRAIN`` and ``UNSEEN``, and reads a given number of
 frames from each scene.
@@ -137,8 +137,8 @@ class WorldFrames:
 class FolderFrames:
     """Source of frames from the PNG, JPEG and NPY files of a folder and its subfolders.
 
-    Each folder with frames is a scene. In a recording by ``mitigate run``, the scenes are those
-    that were recorded. If all frames are in one folder, it is split into blocks of consecutive
+    Each folder with frames is a scene. If ``mitigate run`` recorded the folder, the recorded scenes
+    are used instead. If all frames are in one folder, they are split into blocks of consecutive
     frames, which replace scenes. Files that cannot be used are reported. Depth that is not a
     positive number becomes 0.
 
@@ -311,7 +311,8 @@ def _is_between(value: object, below: float) -> bool:
 def _metres(depth: np.ndarray) -> np.ndarray:
     """Set invalid depth to 0, and check that the values can be metres.
 
-    If they cannot be metres, raises a ValueError whose message is a predicate without a subject.
+    If the values cannot be metres, this raises a ValueError; its message is a predicate without a
+    subject.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]
@@ -397,7 +398,7 @@ class Frames:
 def corrupted(
     frames: Frames, index: int, corruption: Corruption, key: Key, sensor: DepthSensor
 ) -> np.ndarray:
-    """Corrupt frame number ``index`` as a single observation."""
+    """Corrupt frame number ``index`` as if it were a single observation."""
     name = "depth" if frames.frames.dtype == np.float32 else "rgb"
     heading = frames.headings[index]
     pose = {} if heading is None else {POSE: np.array([0, 0, heading], np.float32)}

@@ -171,7 +171,8 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite, starting with clean.
+    """Return the config of an evaluation and the conditions of the suite, of which the first is
+    "clean".
 
     If ``agent`` is a path of weights, the config selects the kind of agent that they belong to.
     """
@@ -253,7 +254,8 @@ def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corrup
 def checked_world(
     make_world: Any, met: Sequence[Corruption], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Construct a world and describe how it was constructed (``provenance.first_world``).
+    """Construct a world; return it with a description of how it was constructed
+    (``provenance.first_world``).
 
     Raises:
         ValueError: ``make_world`` does not return a world, or the world lacks a sensor that a
@@ -284,7 +286,7 @@ def _is_own(world: World, config: EvaluateConfig) -> bool:
     """
     node = config.env.world
     target = locate(node["_target_"])
-    # the target may be a function
+    # the target may be a function instead of a class
     kind = target if isinstance(target, type) else type(maker(node)())
     return not isinstance(world, kind)
 

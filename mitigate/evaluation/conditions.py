@@ -87,8 +87,8 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
 
 
 def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
-    """Raise ValueError if ``met`` contains corruptions of sensors that the world (called ``world``)
-    lacks.
+    """Raise ValueError if ``met`` contains corruptions of sensors that the world lacks; ``world``
+    is its name.
 
     A fault that affects both sensors may also be used if only one of them exists.
     """

@@ -1,7 +1,7 @@
 """Define the types of the options in ``conf/evaluate.yaml``, and the names of table columns and
 output folders that depend on them.
 
-Trainings use some of these options, too.
+Training also uses some of these options.
 """
 
 from __future__ import annotations
@@ -179,9 +179,7 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
 
 
 def changed(overrides: Sequence[str]) -> list[str]:
-    """Return the options that change the agent or its input, in the form in which column names
-    contain them.
-    """
+    """Return the options that change the agent or its input, as text for a column name."""
     stripped = [option.lstrip("+") for option in overrides]
     relevant = [option for option in stripped if option.startswith(("agent.", "env.size="))]
     return [_plain(option.removeprefix("agent.")).strip("-") for option in relevant]
@@ -209,7 +207,7 @@ def default_folder(config: EvaluateConfig, name: str) -> str:
 
 
 def _severities(config: EvaluateConfig) -> str:
-    """Return the severities in the form in which folder names contain them."""
+    """Return the severities as text for a folder name."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
     return f"{config.severity:g}{depth}"
 

@@ -1,10 +1,10 @@
-"""Sample the primitives of a composition and their strengths; define random maps that primitives
-use.
+"""Sample the primitives of a composition and their strengths, and compute random maps for
+primitives.
 
-A primitive is a function of views, a strength in (0, 1], and random generators for the episode
-(``rng``) and the frame (``now``). It returns views of the same shape. Constants without a source
-were chosen by this project. They were fixed before any agent that was trained with them was
-evaluated under unseen corruptions.
+A primitive is a function. Its arguments are views, a strength in (0, 1], and two random generators:
+``rng`` for the episode and ``now`` for the frame. It returns views of the same shape. Constants
+without a source were chosen by this project. They were fixed before any agent that was trained with
+them was evaluated under unseen corruptions.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
     """Return the source coordinates x and y of each pixel, float32 [H, W].
 
-    A smooth random map, whose grid spacing is 0.06 to 0.6 times the shorter side, displaces single
-    pixels. In addition, the whole image is rotated, scaled and shifted. The maximum displacement is
+    Pixels are displaced by a smooth random map, whose grid spacing is 0.06 to 0.6 times the shorter
+    side. In addition, the whole image is rotated, scaled and shifted. The maximum displacement is
     about ``reach`` times the shorter side.
     """
     (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)

@@ -25,7 +25,7 @@ def curve(views, strength, rng, now):
 
 
 def uneven(views, strength, rng, now):
-    """Add spatially correlated errors, which are independent of z or grow with z or z^2."""
+    """Add spatially correlated errors, which are independent of depth z or grow with z or z^2."""
     power, amount = rng.choice((0, 1, 2)), strength * rng.uniform(0.02, 0.25)
     error = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.6))
     moving = rng.random() < 0.5
@@ -37,7 +37,7 @@ def uneven(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add noise of random grain size, which is independent of z or grows with z^2."""
+    """Add noise of random grain size; the noise is independent of depth z or grows with z^2."""
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(views.shape[1:]) // 128)
     height, width = views.shape[1:]
     shape = (len(views), -(-height // grain), -(-width // grain))
@@ -74,7 +74,7 @@ def warped(views, strength, rng, now):
 
 
 def swapped(views, strength, rng, now):
-    """Replace some pixels by other pixels nearby."""
+    """Replace random pixels by other pixels nearby."""
     reach = max(1, round(0.15 * rng.uniform(0.2, 1.0) * min(views.shape[1:])))
     out, share = views.copy(), 0.6 * strength * rng.random()
     for view, clean in zip(out, views, strict=True):
@@ -104,7 +104,7 @@ def holes(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Remove or replace depth within random shapes, which are the same in all views or differ."""
+    """Remove or replace depth within random shapes, which may differ between views."""
     area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
     mask, out = shapes(rng, views.shape[1:], area), views.copy()
     for view in out:
@@ -130,7 +130,7 @@ def _fill(rng: np.random.Generator) -> float:
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view. Before, fill holes with the maximum range; restore them
+    """Apply ``change`` to each view. Holes are filled with the maximum range before, and restored
     afterwards.
     """
     holes = np.isnan(views)

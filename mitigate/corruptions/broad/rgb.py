@@ -121,7 +121,9 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add or multiply noise of random grain size, distribution and colour, which may form bands."""
+    """Add or multiply noise of random grain size, distribution and colour; the noise may form
+    bands.
+    """
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -152,8 +154,8 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes with a colour, noise or other parts of the image; the shapes are the same
-    in all views or differ.
+    """Fill random shapes, which may differ between views, with a colour, noise or other parts of
+    the image.
     """
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7

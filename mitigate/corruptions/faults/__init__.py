@@ -1,4 +1,4 @@
-"""Faults: corruptions of time, camera mounting and motion, which one frame alone does not show.
+"""Faults are corruptions of timing, camera mounting and motion, which a single frame does not show.
 
 Each fault is a pure function ``draw(severity, key)``. A temporal fault samples the age of the frame
 that arrives. A camera fault samples the displacement of the camera. A motion fault samples how an

@@ -2,8 +2,8 @@
 
 The function ``draw(severity, key)`` of a record returns the displacement (a ``Mount``), which is
 constant in an episode. Some worlds render the frames of the displaced camera (``World.displaced``).
-For all other frames, a homography is applied, which is exact for rotations and changes of the field
-of view of a pinhole camera with square pixels. Pixels that the original camera did not see are
+All other frames are transformed by a homography. It is exact for a pinhole camera with square
+pixels whose rotation or field of view changes. Pixels that the original camera did not see are
 black, or have no depth reading. A change of height needs rendering.
 
 The cameras of a panorama form a rigid rig: all views move together. For a camera that looks
@@ -29,7 +29,7 @@ from mitigate.corruptions.record import CAMERA, FRAMES, Record
 HEIGHT = 0.6  # metres at severity 1
 PITCH, ROLL, YAW = 30.0, 20.0, 30.0  # degrees at severity 1
 FOV = 30.0  # degrees at severity 1
-NARROWEST, WIDEST = 10.0, 150.0  # degrees: limits of the field of view
+NARROWEST, WIDEST = 10.0, 150.0  # limits of the field of view in degrees
 TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
 _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the last bit of sin()
 
@@ -53,7 +53,7 @@ class Mount:
     fov: float = 0.0
 
     def hfov(self, degrees: float) -> float:
-        """Return the new horizontal field of view of a camera whose original one is ``degrees``."""
+        """Return the new horizontal field of view of a camera that originally had ``degrees``."""
         return min(max(degrees + self.fov, NARROWEST), WIDEST)
 
     def rotation(self) -> np.ndarray:

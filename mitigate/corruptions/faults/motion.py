@@ -31,7 +31,7 @@ class Movement:
         gain: Factor of the length of a forward step, or of a continuous action.
         turn: Factor of the angle of a turn.
         drift: Drift to the left, from -1 to 1, in units of ``DRIFT`` degrees per forward step. For
-            continuous actions it is a bias.
+            continuous actions, the drift is a bias.
         dropped: Whether the robot does not move.
         repeated: Whether the previous action is executed again instead of this one.
     """
@@ -56,7 +56,7 @@ def motion_drift(severity: float, key: Key) -> Movement:
 
 
 def motion_gain(severity: float, key: Key) -> Movement:
-    """Return gains of forward movement and turns with constant errors, which are sampled
+    """Return a movement whose gains for forward steps and turns have constant errors, sampled
     separately.
     """
     value = digest(key, "motion_gain")

@@ -1,10 +1,10 @@
 """Temporal faults: frames that arrive late, repeatedly or not at all.
 
 The function ``draw(severity, key)`` of a record returns the age, in frames, of the frame that
-arrives; the current frame has age 0. The age depends only on the key and severity, so the arriving
-frame is a pure function of these and the sequence of frames. Other corruptions of an old frame use
-the key of the step at which it was taken, so its noise is as old as its image. All views and both
-sensors fail together, except in ``depth_lag``.
+arrives; the current frame has age 0. The age depends only on the severity and the key, so the
+arriving frame is a pure function of severity, key and the sequence of frames. Other corruptions of
+an old frame use the key of the step at which it was taken, so its noise is as old as its image. All
+views and both sensors fail together, except in ``depth_lag``.
 
 All durations are heuristic: no published model fits all robots. Each step of an episode gives one
 frame. In the apartments and in Habitat, a step is 0.25 m or 15 degrees.
@@ -27,7 +27,7 @@ ACTIVE_PERIOD, ACTIVE = 20, 10  # in frames; each period has one interval of ``i
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
 GAMMA = 2.2  # exponent of a power law that approximates sRGB
 OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # maximum age in frames that a fault can sample
-# first name of a pair; the second corruption is then active only in intervals
+# as the first name of a pair, it limits the second corruption to intervals
 GATE = "intermittent"
 
 
@@ -58,13 +58,15 @@ def _burst(severity: float, key: Key) -> int:
 
 
 def frozen_frame(severity: float, key: Key) -> int:
-    """Return the age during a freeze, which repeats the last frame before it."""
+    """Return the age of the frame that arrives; a freeze repeats the last frame before it."""
     length = round(severity * LONGEST_FREEZE)
     return _frames_inside("frozen_frame", FREEZE_PERIOD, LONGEST_FREEZE, length, key)
 
 
 def repeated_frames(severity: float, key: Key) -> int:
-    """Return the age during a burst of lost frames, which repeats the last frame before it."""
+    """Return the age of the frame that arrives; a burst of lost frames repeats the last frame
+    before it.
+    """
     return _burst(severity, key)
 
 

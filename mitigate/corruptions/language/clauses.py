@@ -74,7 +74,7 @@ def clauses(text: str) -> list[Clause]:
 
 
 def _hanging(part: str) -> bool:
-    """Return whether ``part`` is only the condition of the next command."""
+    """Return whether ``part`` contains only a condition for the next command."""
     return bool(_BEGINS_CONDITION.match(part)) and _divided(part) is None
 
 

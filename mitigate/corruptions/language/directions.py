@@ -39,8 +39,8 @@ _AROUND = re.compile(
 
 
 def about_turns(tokens: list[Token]) -> dict[int, int]:
-    """Map the index of the first token to that of the last one, for every phrase that means turning
-    around.
+    """For every phrase that means turning around, map the index of its first token to the index of
+    its last one.
     """
     text, starts = "", {}
     for index, token in enumerate(tokens):

@@ -1,7 +1,7 @@
 """Check that a rewritten instruction keeps the meaning of the original (the fidelity gate).
 
 :func:`facts` extracts the directions, landmarks, numbers, compass words, attributes, relations and
-denials of a text. :func:`check` lists the differences between two texts.
+negations of a text. :func:`check` lists the differences between two texts.
 """
 
 from __future__ import annotations
@@ -114,7 +114,9 @@ def _changes(
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """List names that occur less often in ``new``, and names that occur only in ``new``."""
+    """List names that occur less often in ``new`` than in ``old``, and names that occur only in
+    ``new``.
+    """
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import WORDS, listed
 
-# maps a canonical name to its synonyms; phrases of several words are matched before single nouns
+# maps a canonical name to its synonyms; phrases are matched before single nouns
 SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
 # nouns that are not landmarks, such as parts of a route and words in polite phrases
 PLAIN = listed("no_landmarks")

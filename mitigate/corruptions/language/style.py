@@ -2,8 +2,8 @@
 
 Each clause of an instruction is classified (turn, climb, pass, enter and others) and rewritten with
 a template of the style. A clause of an unknown kind keeps its words and is inserted into a phrase
-of the style ("frame"). The fidelity gate checks each clause and the whole text. If it rejects a
-text, the instruction is rewritten again with fewer changes.
+of the style ("frame"). The fidelity gate checks each clause and the whole text. If the gate rejects
+a text, the instruction is rewritten again with fewer changes.
 """
 
 from __future__ import annotations

@@ -25,7 +25,7 @@ _BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
 
 @dataclass(frozen=True)
 class Token:
-    """A word or punctuation mark with its text, start, lower-case form and tag."""
+    """A word or punctuation mark: its text, start index, lower-case form and tag."""
 
     text: str
     start: int

@@ -374,7 +374,7 @@ def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
 
 
 def _write_info(work: Copy, path: Path) -> None:
-    """Write meta/info.json with the codecs of the new videos."""
+    """Write meta/info.json, in which the codecs of the new videos are set."""
     info = copy.deepcopy(dict(work.dataset.info))
     for name, encoding in work.encodings.items():
         feature = info["features"][name]

@@ -82,7 +82,9 @@ class Dataset:
 
     @cached_property
     def signals(self) -> dict[str, int]:
-        """For each feature that holds numbers, except ``COLUMNS``, the number of values per row."""
+        """The number of values per row, for each feature that contains numbers, except
+        ``COLUMNS``.
+        """
         sizes = {
             name: math.prod(feature["shape"])
             for name, feature in self.features.items()
@@ -172,7 +174,7 @@ class Dataset:
 
 
 def is_dataset(folder: Path | str) -> bool:
-    """Return whether a folder holds a LeRobot dataset, of any version."""
+    """Return whether a folder contains a LeRobot dataset of any version."""
     return (Path(folder) / INFO).is_file()
 
 
@@ -180,7 +182,7 @@ def open_dataset(folder: Path | str) -> Dataset:
     """Open a dataset and check its metadata.
 
     Args:
-        folder: A dataset of version 3.
+        folder: Folder of a dataset of version 3.
 
     Returns:
         The dataset.
@@ -215,7 +217,9 @@ def open_dataset(folder: Path | str) -> Dataset:
 
 
 def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:
-    """Return a column of numbers, or of lists of ``size`` numbers, as float64 [N, size]."""
+    """Convert a column, whose entries are numbers or lists of ``size`` numbers, to float64 [N,
+    size].
+    """
     import pyarrow
 
     array = pyarrow.chunked_array(column).combine_chunks() if column.num_chunks else column

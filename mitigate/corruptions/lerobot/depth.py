@@ -11,7 +11,7 @@ import numpy as np
 
 from mitigate.core.names import short
 
-MAX_CODE = 4095  # DEPTH_QMAX of lerobot: 12 bits
+MAX_CODE = 4095  # maximum of 12 bits (DEPTH_QMAX of lerobot)
 MAX_METRES = 1e4  # limit for parameters in metres (heuristic)
 
 
@@ -40,7 +40,7 @@ class DepthCode:
 
     @classmethod
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
-        """Return the encoding of depth that the ``info`` of a feature describes.
+        """Return the depth encoding that the ``info`` of a feature describes.
 
         Raises:
             ValueError: A parameter is invalid; the message begins with ``place``.

@@ -29,11 +29,12 @@ def read_frames(
         episode: The episode.
         cameras: Cameras to read.
         chosen: Frame numbers, in increasing order.
-        times: Seconds from the start of the episode to each chosen frame.
+        times: For each chosen frame, the seconds since the start of the episode.
         tolerance: Maximum time in seconds between a row and its video frame.
 
     Yields:
-        For each camera, its frame: uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
+        A dict with the frame of each camera: uint8 [H, W, 3], or float32 metres [H, W] with 0 for
+        no reading.
 
     Raises:
         FileNotFoundError: A file is missing.
@@ -111,7 +112,7 @@ def _is_binary(kind: Any) -> bool:
 
 
 def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) -> np.ndarray:
-    """Return an image of a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    """Return an image in a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
     stored, _ = stored_image(path, table, row, camera, number)
     return images.as_frame(stored, camera)
 
@@ -119,7 +120,7 @@ def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) ->
 def stored_image(
     path: Path, table: Any, row: int, camera: Camera, number: int
 ) -> tuple[np.ndarray, str]:
-    """Return an image of a table as it is stored, and the format of its file.
+    """Return an image in a table without conversion, and the format of its file.
 
     Raises:
         ValueError: The image is damaged, or its type or size differs from the camera's.

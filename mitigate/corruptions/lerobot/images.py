@@ -101,5 +101,5 @@ def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
 
 
 def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return a stored image as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    """Convert a stored image to a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
     return stored if camera.kind == RGB else metres(stored, camera)

@@ -135,7 +135,7 @@ def read_codec(path: Path, camera: Camera) -> str:
 def decode(
     path: Path, camera: Camera, times: Sequence[float], tolerance: float
 ) -> Iterator[np.ndarray]:
-    """Yield, for each time in order, the nearest frame.
+    """Yield the nearest frame for each time, in the order of ``times``.
 
     Args:
         path: The video.

@@ -42,7 +42,7 @@ class Rows:
     Attributes:
         severities: Severity of each row, in (0, 1].
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown.
+        headings: Heading of each row in radians, or None for rows without a known heading.
         sensor: Depth range, and the value that marks missing depth.
     """
 
@@ -66,7 +66,7 @@ class Rows:
         return [function(severity, key, *size) for severity, key in pairs]
 
     def scaled(self, factor: float) -> np.ndarray:
-        """Return ``factor`` times the severities, float64 [B]."""
+        """Return the severities multiplied by ``factor``, float64 [B]."""
         return np.array(self.severities) * factor
 
     def digests(self, name: str, *, frame: bool = False) -> list[int]:
@@ -134,8 +134,10 @@ def _normal_table(device: torch.device) -> Tensor:
 
 
 def normals(words: Tensor, count: int) -> Tensor:
-    """Return ``count`` standard normal numbers, four per word, float32 [..., count]."""
-    quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits come first
+    """Convert words, which give four numbers each, to ``count`` standard normal numbers, float32
+    [..., count].
+    """
+    quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits of a word come first
     places = (quarters >> 4) & 0xFFF
     return _normal_table(words.device).index_select(0, places.flatten()).reshape(places.shape)
 

@@ -16,7 +16,7 @@ from mitigate.corruptions.suite import SENSOR, Corruption, changed_entries, chec
 from mitigate.corruptions.tensors.pixels import is_valid
 from mitigate.corruptions.tensors.suite import corrupt_tensors
 
-OF_NO_FRAME = ("instruction", ACTION)  # modalities that are not frames
+OF_NO_FRAME = ("instruction", ACTION)  # modalities of corruptions that do not change frames
 
 
 @torch.no_grad()
@@ -39,7 +39,7 @@ def corrupt_observations(
         corruptions: For each row, a corruption, a pair of corruptions or CLEAN, for example from
             ``Schedule.draw``. Corruptions of instructions are ignored.
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown.
+        headings: Heading of each row in radians, or None for rows without a known heading.
         sensor: Depth range, and the value that marks missing depth.
         normalised: Whether depth is normalised to [0, 1] over the sensor's range; otherwise it is
             in metres.

@@ -32,7 +32,9 @@ ONE_TAP = np.array([0]), np.array([0]), np.array([1])
 
 
 def motion_blur(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with a line blur. float32 is exact here, because all sums are integers below 2^24."""
+    """Blend views with a line blur. float32 is exact here, because all sums are integers below
+    2^24.
+    """
     lines = rows.draw(rgb.blur_line, views.shape[3])
     steps = np.array([rgb.tap_step(length) for length, _ in lines])
     taps = [
@@ -114,7 +116,7 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     decode = on_device([np.pad(t.decode, (0, span - t.decode.size)) for t in tables], views)
     offsets = on_device([256 * table.offset + 128 for table in tables], views).int()[number]
 
-    # integers, because rounding to another signal level may change the grey level by more than one
+    # computed in integers, because another signal level may change the grey level by more than one
     light = UNIT - (darkness(views, rows) * UNIT + 0.5).clamp_(max=UNIT - 1.0).int()
     lines = torch.arange(views.shape[2], device=views.device).unsqueeze(1)
     place = shifted(view_words(rows, "row_noise", views, lines), 52)

@@ -62,7 +62,8 @@ def corrupt_tensors(
         severity: Severity in [0, 1], either one number for all rows or one per row. Rows with
             severity 0 are copied.
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown (see ``corrupt``).
+        headings: Heading of each row in radians, or None for rows without a known heading (see
+            ``corrupt``).
         sensor: Depth range, and the value that marks missing depth.
         backend: "torch" computes on the device of ``frames``, "numpy" on the host. None selects
             "numpy" for tensors on the CPU, where it is faster, and "torch" for others. A corruption
@@ -129,14 +130,14 @@ def _corrupt_on_device(frames: Tensor, name: str, rows: Rows) -> Tensor:
 
 def _apply(name: str, frames: Tensor, rows: Rows) -> Tensor:
     is_depth = registry.modality(name) == "depth"
-    # reduced precision would change random fields and thresholds
+    # autocast would reduce precision, which changes random fields and thresholds
     with torch.autocast(frames.device.type, enabled=False):
         changed = FUNCTIONS[name](frames.squeeze(-1) if is_depth else frames, rows)
     return changed.unsqueeze(-1) if is_depth else changed
 
 
 def check_backend(backend: str | None) -> str | None:
-    """Return ``backend``, or raise ValueError if it is unknown."""
+    """Return ``backend``; raise ValueError if it is unknown."""
     if backend not in (None, *BACKENDS):
         raise ValueError(unknown("backend", str(backend), BACKENDS))
     return backend

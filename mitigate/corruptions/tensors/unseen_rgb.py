@@ -46,7 +46,7 @@ def overexposure(views: Tensor, rows: Rows) -> Tensor:
 
 
 def haze(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with haze."""
+    """Blend each view with haze."""
     count, height, width = views.shape[1:4]
     total = torch.zeros((), device=views.device)
     for octave, (correlation, weight) in enumerate(light.HAZE_OCTAVES):

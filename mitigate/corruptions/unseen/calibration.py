@@ -75,7 +75,9 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 @lru_cache(maxsize=32)
 def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
-    """Return the depth offsets in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS + 1]."""
+    """Return a table of depth errors in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS +
+    1].
+    """
     z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
     turns = z / WIGGLE_PERIOD + phase
     return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)

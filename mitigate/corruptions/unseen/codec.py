@@ -136,8 +136,8 @@ def dead_zones(severity: float, side: int) -> np.ndarray:
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set the DCT coefficients of image blocks that lie in a dead zone of width 0.4 * severity to
-    0.
+    """Set those DCT coefficients of image blocks to 0 that lie in a dead zone of width 0.4 *
+    severity.
     """
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)

@@ -84,8 +84,8 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 
 @njit(cache=True)
 def _shade(views, offset, side, missing, z_max, out):
-    """Remove pixels that no projector ray reaches; in an image row, the ray to a pixel has the
-    position x + offset / z.
+    """Remove pixels that no projector ray reaches; the ray to column x at depth z has the position
+    x + offset / z in its row.
     """
     width = views.shape[2]
     for v in range(views.shape[0]):

@@ -58,7 +58,9 @@ def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 
 def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
-    """Return the three equal tables of ``overexposure``, each uint8 [256]."""
+    """Return the tables of ``overexposure`` for the three colours, which are equal, each uint8
+    [256].
+    """
     spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
     return [_amplified(STOPS * spread * severity)] * 3
 
@@ -109,7 +111,7 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
 
 
 def hue_degrees(severity: float, key: Key) -> float:
-    """Return the angle of ``hue_shift`` in degrees."""
+    """Return the angle in degrees by which ``hue_shift`` rotates hues."""
     sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
     return sign * HUE_DEGREES * severity
 
