@@ -298,7 +298,7 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     assert "Cannot write" in complaint(run(*SPATTER, out="file/under"))
     for source, out in (("in", "in"), ("in", "in/out"), ("in/a", "in"), ("in", "empty/../in/x")):
         text = complaint(run(*SPATTER, source=source, out=out))
-        assert "one inside the other" in text
+        assert "neither may contain the other" in text
     assert "There is no rgb frame" in complaint(run(*SPATTER, source="empty"))
     text = complaint(run("corruption=multipath", "severity=1"))
     assert "There is no depth frame" in text and "13 frames are of the other modality" in text

@@ -65,7 +65,7 @@ def test_non_text_answer_is_reported_and_asked_again(tmp_path, answer):
     cache, model = tmp_path / "cache.jsonl", Model(answer)
     rewriter = Rewriter(model, "m", cache)
     for _ in range(2):
-        with pytest.raises(ValueError, match="The model 'm' answered .* is not kept"):
+        with pytest.raises(ValueError, match="The model 'm' answered .* was not cached"):
             rewriter(TEXT, "friendly")
     assert len(model.asked) == 2 and not cache.exists()
     model.answer = "Hang a left."
