@@ -118,7 +118,9 @@ def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     (walk / "out/corrupt.json").write_text('{"settings": 3}')
     assert "corrupt.json is damaged" in complaint(run(*SPATTER))
     (walk / "out/corrupt.json").unlink()
-    assert "must be empty or contain corrupt.json, which this program writes" in complaint(run(*SPATTER))
+    assert "must be empty or contain corrupt.json, which this program writes" in complaint(
+        run(*SPATTER)
+    )
 
 
 def test_16_bit_depth_is_in_millimetres_unless_said_otherwise(run, tmp_path):
@@ -309,7 +311,10 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     ("options", "part"),
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
-        (("corruption=mask", "severity=0.5"), "Corrupt instructions with mitigate corrupt_episodes"),
+        (
+            ("corruption=mask", "severity=0.5"),
+            "Corrupt instructions with mitigate corrupt_episodes",
+        ),
         ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or a depth in metres, got -7"),
         ((*SPATTER, "missing=nan"), "0 (no reading) or a depth"),
         (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), got 1.2"),

@@ -255,7 +255,7 @@ DEPTH = torch.ones(2, 1, 8, 9, 1)
     ("frames", "name", "options", "part"),
     [
         (RGB, "flur", {}, "flare"),
-        (RGB, "frozen_frame", {}, "is a temporal fault.*FrameStream"),
+        (RGB, "frozen_frame", {}, "got the temporal fault.*FrameStream"),
         (RGB.float(), "spatter", {}, r"must be torch.uint8.*\* 255"),
         (DEPTH.double(), "multipath", {}, "must be torch.float32.*divided by 1000"),
         (RGB[:, 0], "spatter", {}, r"\[rows, views, H, W, 3\].*frames\[:, None\]"),

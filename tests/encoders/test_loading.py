@@ -67,7 +67,7 @@ def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     """Random weights are lost when the process ends, and adapters fit no other weights."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
-        ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights="
+        ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights to"
     ):
         encoder(model=path)
     file = tmp_path / "weights.safetensors"
@@ -174,7 +174,7 @@ class Gives(TinyNet):
         ("nothing", 0, "encoder returns a NoneType"),
         ("deep", None, "encoder returns a dict"),
         ("deep", "a", "encoder returns a dict"),
-        ("missing", None, r"take rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
+        ("missing", None, r"failed for rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
     ],
 )
 def test_encoder_explains_an_invalid_output(kind, output, says):
@@ -241,7 +241,9 @@ def test_load_weights_uses_the_prefix(tmp_path, kind):
     result = tiny()
     load_weights(result, str(path), "net.rgb_encoder.model.")
     assert torch.equal(result.stem.weight, expected.stem.weight)
-    with pytest.raises(ValueError, match=r"names in the file begin with net, and agent.prefix is ''"):
+    with pytest.raises(
+        ValueError, match=r"names in the file begin with net, and agent.prefix is ''"
+    ):
         load_weights(result, str(path))
 
 
@@ -286,10 +288,14 @@ class Runs:
 
 def test_load_weights_unpickles_nothing(tmp_path, capsys):
     (tmp_path / "w.pth").write_bytes(pickle.dumps({"a": Runs()}))
-    with pytest.raises(ValueError, match="cannot be read without running code|must contain named tensors"):
+    with pytest.raises(
+        ValueError, match="cannot be read without running code|must contain named tensors"
+    ):
         load_weights(tiny(), str(tmp_path / "w.pth"))
     torch.save({"a": Runs()}, tmp_path / "w.pth")
-    with pytest.raises(ValueError, match="cannot be read without running code|must contain named tensors"):
+    with pytest.raises(
+        ValueError, match="cannot be read without running code|must contain named tensors"
+    ):
         load_weights(tiny(), str(tmp_path / "w.pth"))
     assert "this ran" not in capsys.readouterr().out
 
