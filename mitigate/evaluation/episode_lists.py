@@ -30,7 +30,9 @@ TASKS = {"vln": "follow a route", "ogn": "find an object"}  # descriptions of in
 
 
 def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
-    """Return ``count`` episodes of a split's shipped list (all if None), chosen by :func:`spread`.
+    """Return ``count`` episodes of a split's shipped list, chosen by :func:`spread`.
+
+    If ``count`` is None, all episodes are returned.
 
     Raises:
         ValueError: The split is unknown, the count is below 1, or the list is empty, contains an id
@@ -49,11 +51,13 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
 
 
 def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
-    """Return a function from a number to a training episode, for guards that measure an agent.
+    """Return a function that maps a number to a training episode.
+
+    Guards that measure the agent before an evaluation use this function.
 
     Args:
         world: the world.
-        training: the config of its training episodes; None: unknown.
+        training: the config of the world's training episodes, or None if it is unknown.
     """
 
     def draw(number: int) -> Episode:
@@ -76,12 +80,14 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
 
 
 def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
-    """Return ``count`` episodes (all if None) that are spread evenly over the list, in list order.
+    """Return ``count`` episodes that are spread evenly over the list, in list order.
+
+    If ``count`` is None, all episodes are returned.
 
     Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
-    layouts. The chosen indices i are those with the smallest fractional parts of i times the golden
-    ratio, which are spread evenly for any count. A smaller choice is always a subset of a
-    larger one, so rows of 40 episodes can be reused for 100.
+    layouts. The chosen indices i are those for which i times the golden ratio has the smallest
+    fractional part. They are spread evenly for any count. A smaller selection is always a subset of
+    a larger one, so an evaluation of 100 episodes can reuse the rows of 40.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
@@ -117,7 +123,7 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
         agent: the agent.
         chosen: the episodes.
         name: name of the agent.
-        split: name of a split with tasks that the agent supports, for the message.
+        split: name of a split with tasks that the agent supports; the warning suggests this split.
     """
     from mitigate.agents.agent import as_agent
 
@@ -137,8 +143,10 @@ def _in_words(tasks: Sequence[str]) -> str:
     return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))
 
 
-LIST_HASH = "episodes-{split}.sha256"  # name of the file with the hash of a split's episode file
-LARGEST = 1 << 16  # number of characters of this file that are read (heuristic; it has one line)
+# name of the file that stores the hash of a split's episode file
+LIST_HASH = "episodes-{split}.sha256"
+# maximum number of characters read from a hash file, which has one line (heuristic)
+LARGEST = 1 << 16
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -146,9 +154,9 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
     """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
 
     Raises:
-        ValueError: The rows belong to a different episode list, or the earlier hash is damaged.
-            Without this check, such rows would be treated as finished, because rows identify
-            episodes only by id.
+        ValueError: The rows belong to a different episode list, or the stored hash is damaged.
+            Without this check, rows of a different list would be treated as finished, because rows
+            identify episodes only by id.
     """
     note = folder / LIST_HASH.format(split=split)
     digest = sha256(find(source))
@@ -172,7 +180,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
     """Return the rows of each episode list, ordered by the first row of each list.
 
-    Agents that have an episode in common belong to the same list, directly or through other agents.
+    Agents that have an episode in common belong to the same list. This relation is transitive.
     """
     rows = list(rows)
     by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)

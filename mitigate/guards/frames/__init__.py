@@ -1,1 +1,1 @@
-"""Guards for frames, which estimate the clean frame before an agent reads it."""
+"""Guards for frames. They replace a corrupted frame by an estimate of the clean frame."""
