@@ -171,8 +171,7 @@ class Section:
         return dict(values)
 
     def mean_sr(self, column: str, names: Sequence[str]) -> Retained | None:
-        """Return a column's mean SR over the corruptions ``names``, or None if none was measured.
-        """
+        """Return a column's mean SR over ``names``, or None if none of them was measured."""
         retention = self.grid.retention([column], names, self.severity, METRICS["SR"])
         return _mean_sr(retention) if retention else None
 
