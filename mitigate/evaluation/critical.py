@@ -383,7 +383,7 @@ def scores(
             results.append(replace(every, columns=columns, corruptions=usable))
     if not results:
         raise ValueError(
-            "A critical severity needs rows of clean successes and of a corruption at severity 1, "
-            "and there are none. Run `mitigate evaluate checkpoint=... critical=[0.1,0.5]` first."
+            "A critical severity needs clean rows with successes and rows of a corruption at "
+            "severity 1. Run `mitigate evaluate checkpoint=... critical=[0.1,0.5]` first."
         )
     return results

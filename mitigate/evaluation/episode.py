@@ -168,8 +168,8 @@ class _Rollout:
         if self.steps >= MOST_STEPS:
             raise ValueError(
                 f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its task end "
-                "it (gymnasium: max_episode_steps=), or give limit=, which cuts episodes and "
-                "counts them."
+                "it (gymnasium: max_episode_steps=), or set limit=, which ends long episodes and "
+                "reports how many it ended."
             )
         self.observation = self.guarded.step(action)
         self.steps += 1

@@ -68,10 +68,10 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
             return seeded_episodes([FIRST_TRAINING_SEED + number])[0]
         if training is None:
             raise ValueError(
-                f"The training episodes of {type(world).__name__} are unknown, on which "
-                "adapt=recentre measures clean features. Measure them on episodes of yours: "
+                f"adapt=recentre measures clean features on training episodes, but those of "
+                f"{type(world).__name__} are unknown. Measure the features on your own episodes: "
                 "guard = Recentre(); guard.calibrate(agent, world, lambda number: episodes[number])"
-                " (mitigate.guards.adaptation.recentre), and give adapt=guard."
+                " (mitigate.guards.adaptation.recentre). Then pass adapt=guard."
             )
         source = build.maker(training)()
         return source.draw(generator(0, "calibration", number), (0, 1))
@@ -111,7 +111,7 @@ def check_episodes(source: str, listed: Sequence[Episode]) -> None:
     if not listed:
         raise ValueError(f"{source} must list at least one episode.")
     if twice:
-        raise ValueError(f"{source} has the episode {twice[0]} twice. Give each a unique id.")
+        raise ValueError(f"{source} has the episode {twice[0]} twice. Each id must be unique.")
     if silent:
         raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
 
@@ -165,7 +165,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
             words = file.read(LARGEST).split()
         if not words or not _SHA256.fullmatch(words[0]):
             raise ValueError(
-                f"{note} must begin with a sha256, and is empty or damaged. Copy it back, or move "
+                f"{note} must begin with a sha256, but is empty or damaged. Copy it back, or move "
                 f"{folder} aside and evaluate again."
             )
         if words[0] != digest:

@@ -66,8 +66,9 @@ class Known:
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
         if version is not None and not (isinstance(version, str) and version):
             raise ValueError(
-                f"version must be a non-empty string, got {version!r:.80}. Name what the agent is, "
-                'such as version="2026-11 weights", and change it whenever its behaviour changes.'
+                f"version must be a non-empty string, got {version!r:.80}. Choose a text for the "
+                'agent\'s version, such as version="2026-11 weights", and change it whenever the '
+                "agent's behaviour changes."
             )
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
@@ -373,9 +374,9 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
             f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
-            "variables and functions that their code names, are not the same in a worker process, "
-            "which imports them again. Set them where they are defined, not later, or give "
-            "workers=1."
+            "variables and functions that their code names, are different in a worker process, "
+            "which imports them again. Set them where they are defined and do not change them "
+            "later, or set workers=1."
         )
 
 

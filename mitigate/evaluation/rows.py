@@ -98,8 +98,9 @@ def scene_of(row: Row) -> str:
     scene = row.get(SCENE) or (match and (match[1] or match[2]))
     if not scene:
         raise ValueError(
-            f"The rows do not name the scene of episode {short(row['episode_id'])}, so scenes "
-            "cannot be drawn. Evaluate again (new rows name it), or draw episodes."
+            f"The rows do not name the scene of episode {short(row['episode_id'])}, so the "
+            "bootstrap cannot resample scenes. Evaluate again (new rows name the scene), or "
+            "resample episodes."
         )
     return str(scene)
 
@@ -175,7 +176,7 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
     before = len(read(path)) if path.exists() and not fewer else 0
     if len(rows) < before:
         raise ValueError(
-            f"{path} holds {counted(before, 'row')}, and only {len(rows)} would replace them. The "
+            f"{path} holds {counted(before, 'row')}, but only {len(rows)} would replace them. The "
             "file was not changed. Find out why rows are missing, or move the file to another "
             "folder and run the same command again."
         )

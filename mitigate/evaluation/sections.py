@@ -268,8 +268,8 @@ def sections(
     rows = list(rows)
     if any(row["rule"] == RETURN for row in rows):
         raise ValueError(
-            "These rows hold the return of a task without a success, so that SR is undefined. Use "
-            "mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
+            "These rows hold the return of a task without a success criterion, so SR is undefined. "
+            "Use mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
         )
     first = references(rows, against)
     rank = {name: place for place, name in enumerate(first)}

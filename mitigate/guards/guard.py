@@ -143,7 +143,7 @@ class Guard:
         if overrides(self, "observe") and not set(self.frames) & {*available}:
             raise ValueError(
                 f"The guard {self.label or type(self).__name__} is for {', '.join(self.frames)}, "
-                f"but {where} shows {', '.join(available) or 'no frames'}: leave restore= out."
+                f"but {where} shows {', '.join(available) or 'no frames'}: omit restore=."
             )
 
 

@@ -197,8 +197,8 @@ def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
         raise ValueError(f"size must be 16 to 1024 pixels, got {config.size}.")
     if not {*config.names} - {"clean"} or config.severity == 0:
         raise ValueError(
-            "Clean frames alone leave nothing to compare. Add a corruption to conditions=, with "
-            "severity above 0."
+            "Without a corruption there is nothing to compare. Add a corruption to conditions=, "
+            "with a severity above 0."
         )
 
 
@@ -233,7 +233,7 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     """Raise ValueError if ``out`` is a file, or contains a report with different settings."""
     fix = "Name another folder (out=...), or delete this one."
     if out.exists() and not out.is_dir():
-        raise ValueError(f"{out} must be a folder, which a replay writes into. {fix}")
+        raise ValueError(f"{out} must be a folder, because a replay writes several files. {fix}")
     if not is_regular(out / SETTINGS):
         other_files = [out / name for name in (DECISIONS, TABLE) if (out / name).exists()]
         if other_files:

@@ -175,7 +175,9 @@ def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answe
 def decision_lines(
     labels: dict[str, Any], recording: Recording, clean: Answers, corrupted: Answers
 ) -> list[dict[str, Any]]:
-    """Return one dict per step, for JSON: ``labels`` and the decision with and without corruption.
+    """Return one JSON object per step.
+
+    It contains ``labels`` and the decision with and without corruption.
     """
     lines = []
     for step, action in enumerate(corrupted.actions):

@@ -43,7 +43,7 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
     file = entry.rows["file"]
     path = find(file)
     if file and path.exists() and not path.is_file():
-        raise ValueError(f"{entry.name} must name one file of rows, got {file}, not a file.")
+        raise ValueError(f"{entry.name} must name one file of rows, but {file} is not a file.")
     if not file or not path.exists():
         raise FileNotFoundError(
             f"The rows of {entry.name} are not available ({file or 'the entry names no file'}): "

@@ -33,7 +33,7 @@ _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 def _is_printable(text: str) -> str:
     if not text.isprintable() or text.isspace():
-        raise ValueError("it must be a line of printable signs")
+        raise ValueError("it must be one line of printable characters")
     return text
 
 

@@ -49,8 +49,8 @@ def entry_of(
         or len(label_columns((r["name"], r["agent"], r["seed"]) for r in chosen)) > 1
     ):
         raise ValueError(
-            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
-            f"{'; '.join(sorted(tables))}. Name a split, or a file of one."
+            f"The rows of {name} belong to several splits, lists, suites, rules or agents: "
+            f"{'; '.join(sorted(tables))}. Name a split, or a file with the rows of only one."
         )
     for part in parts:
         _check_whole(name, chosen, part)

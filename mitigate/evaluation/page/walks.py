@@ -107,7 +107,9 @@ def walk_again(
         ValueError: An agent has no rows, no episode can be chosen, or the world has no poses.
     """
     if POSE not in world.sensors:
-        raise ValueError("The world must have poses to draw walks, and it has none.")
+        raise ValueError(
+            "Trajectories can only be drawn in a world with poses, and this world has none."
+        )
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}
     hashes = {name: fingerprint(agent, world.sensors) for name, agent in agents.items()}
@@ -119,7 +121,7 @@ def walk_again(
     if not chosen:
         raise ValueError(
             f"There are no rows of {' and '.join(agents)} with seed {seed} under a corruption for "
-            "these episodes. The names must be names in the rows."
+            "these episodes. Use the names that the agents have in the rows."
         )
     index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in selected}
     for episode_id, corruption in chosen:
@@ -153,9 +155,9 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
         others = sorted({row["agent"] for row in rows if row["name"] == name})
         if others and agent_hash not in others:
             raise ValueError(
-                f"The rows of {name} belong to the agent {', '.join(others)}, but the named "
-                f"weights are the agent {agent_hash}. Name the weights of the rows, and the "
-                "options of `mitigate evaluate` for the agent and the world (agent=..., "
+                f"The rows of {name} belong to the agent {', '.join(others)}, but the given "
+                f"weights belong to the agent {agent_hash}. Name the weights that gave the rows, "
+                "and the options of `mitigate evaluate` for the agent and the world (agent=..., "
                 "env.views=1)."
             )
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]

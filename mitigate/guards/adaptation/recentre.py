@@ -72,7 +72,7 @@ class Recentre(Adaptation):
         if not self.means:
             raise ValueError(
                 "Recentre does not know the clean means. Call calibrate(agent, world, episode) "
-                "first; mitigate.benchmark and mitigate evaluate do."
+                "first; mitigate.benchmark and mitigate evaluate do this themselves."
             )
 
     def calibrate(self, agent: Any, world: Any, episode: Callable[[int], Episode]) -> None:
@@ -117,8 +117,8 @@ class Recentre(Adaptation):
                 handle.remove()
         if not all(counts):
             raise ValueError(
-                f"{type(agent).__name__} did not call all modules to recentre. Name others: "
-                "Recentre(modules=[...])."
+                f"{type(agent).__name__} did not call all modules that Recentre shifts. Name other "
+                "modules: Recentre(modules=[...])."
             )
         self.means = [s / n for s, n in zip(sums, counts, strict=True)]
 

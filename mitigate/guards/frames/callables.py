@@ -124,8 +124,8 @@ def open_callable(choice: str) -> Guard:
         stem = named.module.removesuffix(".py")
         hint = "" if stem == named.module else f" Write {stem}:{named.name}."
         raise ValueError(
-            f"restore={choice}: {error}. It names module:callable, of a module that is installed, "
-            f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
+            f"restore={choice}: {error}. It must be module:callable or the folder of a restorer. "
+            f"The module must be installed, in the current folder, or on PYTHONPATH.{hint}"
         ) from error
     try:
         target = getattr(module, named.name)  # the user's option contains the attribute name

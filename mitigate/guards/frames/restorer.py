@@ -86,8 +86,8 @@ class Restorer(nn.Module, Guard):
         """
         if sensor not in self.nets:
             raise ValueError(
-                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: leave the "
-                f":{sensor} of restore= out."
+                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: write restore= "
+                f"without :{sensor}."
             )
         self.nets = nn.ModuleDict({sensor: self.nets[sensor]})
         self._settings["sensors"] = [sensor]

@@ -103,11 +103,11 @@ class Safeguard:
         Raises TypeError if ``texts`` is a single string or if an instruction is not a string.
         """
         if isinstance(texts, str):
-            raise TypeError(f"These must be several texts, but this is one: [{texts!r}] is a list.")
+            raise TypeError(f"texts must be a list of strings, got a string. Pass [{texts!r}].")
         texts = list(texts)
         for text in texts:
             if not isinstance(text, str):
-                raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
+                raise TypeError(f"An instruction must be a string, got {text!r}.")
         known = {text: self._known[text] for text in texts if text in self._known}
         fresh = [text for text in dict.fromkeys(texts) if text not in known]
         began = time.monotonic()

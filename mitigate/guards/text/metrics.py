@@ -108,8 +108,7 @@ def table(scores: dict[str, Scores]) -> str:
 
 
 def token_f1(reference: str, text: str) -> float:
-    """Return the F1 score of the words in ``text`` against those in ``reference``, ignoring order.
-    """
+    """Return the F1 score of the words in ``text``, compared as a bag with ``reference``."""
     expected, actual = Counter(words_of(reference)), Counter(words_of(text))
     shared = (expected & actual).total()
     return 2 * shared / max(1, expected.total() + actual.total()) if shared else 0.0

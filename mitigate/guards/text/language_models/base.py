@@ -52,7 +52,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         tokenizer.pad_token = tokenizer.eos_token
     if tokenizer.chat_template is None:
         raise ValueError(
-            f"{base} has no chat template: choose an instruction-tuned model, one named -Instruct."
+            f"{base} has no chat template: choose an instruction-tuned model (named ...-Instruct)."
         )
     return tokenizer, network
 
