@@ -1,10 +1,10 @@
 """Evaluate the shortest-path oracle and a random agent: ``mitigate controls split=val_unseen``.
 
-They are the upper and lower reference for every result. The oracle shows that the episodes of a
-world can be solved with the low-level actions, and the random agent shows how often random actions
-succeed. Both agents run without corruption. As in mitigate evaluate, split=, episodes= and env=
-choose the episodes. out= names the folder for the rows; the default is runs/controls. If the
-command is run again, it runs only missing episodes.
+The two agents are the upper and the lower reference for every result. The oracle shows that the
+episodes of a world can be solved with the low-level actions, and the random agent shows how often
+random actions succeed. Both agents run without corruption. As in mitigate evaluate, split=,
+episodes= and env= choose the episodes. out= names the folder for the rows; the default is
+runs/controls. If the command is run again, it runs only missing episodes.
 """
 
 from __future__ import annotations

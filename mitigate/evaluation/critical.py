@@ -3,8 +3,9 @@
 The critical severity of a corruption is the severity at which an agent has lost a fraction ``loss``
 of its clean success rate. SR is noisy and not strictly monotone in severity, so the value is read
 from a decreasing (isotonic) fit of SR over all measured severities. If an agent has lost less than
-this at severity 1, its critical severity is above 1 (censored). Such a value is ``inf`` here. The
-area is the mean retention over severities from 0 to 1. Definitions: ``docs/reference/metrics.md``.
+the fraction ``loss`` at severity 1, its critical severity is above 1 (censored), and is ``inf``
+here. The area is the mean retention over severities from 0 to 1. Definitions:
+``docs/reference/metrics.md``.
 """
 
 from __future__ import annotations
@@ -110,8 +111,8 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
     ``rates`` maps each measured severity, including 0 and 1, to the success rate.
 
     For each loss, the next severity lies midway between the two measured severities where the fit
-    falls to ``1 - loss`` of the clean rate. No severity is returned for a loss if these two are at
-    most :data:`WIDTH` apart, or if the fit stays above that level.
+    falls to ``1 - loss`` of the clean rate. A loss is skipped if the two measured severities are at
+    most :data:`WIDTH` apart, or if the fit stays above ``1 - loss`` of the clean rate.
     """
     severities = sorted(rates)
     fit = decreasing([rates[at] for at in severities])
@@ -128,7 +129,8 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
 def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corruption]:
     """Return the conditions with which a search starts.
 
-    These are clean, the given ``conditions``, and each of the given corruptions at severity 1.
+    The search starts with the clean condition, the given ``conditions``, and each of their
+    corruptions at severity 1.
 
     Raises:
         ValueError: ``conditions`` contains no corruption or a severity of 0, or the world has no
@@ -192,7 +194,7 @@ def search(
 class Score:
     """A critical severity or an area.
 
-    It may be a mean over corruptions and seeds, or a difference between two columns.
+    The score may be a mean over corruptions and seeds, or a difference between two columns.
 
     Attributes:
         estimate: value and interval; ``inf`` means above 1.
@@ -320,7 +322,7 @@ def _scored(
 ) -> np.ndarray:
     """Return the critical severities or areas of C curves, shape [C, 1 + resamples].
 
-    Column 0 holds the values of the data, and the other columns those of the bootstrap resamples.
+    Column 0 holds the values of the data. The other columns hold the values of the resamples.
     """
     tables = [np.stack([values[common] for values in curve.values()]) for curve in curves]
     table = np.concatenate(tables)

@@ -86,8 +86,8 @@ def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
 
     Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
     layouts. The chosen indices i are those for which i times the golden ratio has the smallest
-    fractional part. They are spread evenly for any count. A smaller selection is always a subset of
-    a larger one, so an evaluation of 100 episodes can reuse the rows of 40.
+    fractional part. These indices are spread evenly for any count. A smaller selection is always a
+    subset of a larger one, so an evaluation of 100 episodes can reuse the rows of 40.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
@@ -180,7 +180,8 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
     """Return the rows of each episode list, ordered by the first row of each list.
 
-    Agents that have an episode in common belong to the same list. This relation is transitive.
+    Agents belong to the same list if they have an episode in common, directly or through a chain of
+    other agents.
     """
     rows = list(rows)
     by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)

@@ -57,8 +57,8 @@ class EpisodeTask:
 
     Each process calls ``make_world``. The label of each job has the key "seed". ``classes`` is the
     hash ``Known.classes``, which worker processes compare with a hash of their own classes. If a
-    guard is continual, ``streams`` holds all jobs of each condition in order. Then finished
-    episodes run again too, and their results are discarded.
+    guard is continual, ``streams`` holds all jobs of each condition in order. For such a guard,
+    finished episodes also run again, and their new results are discarded.
     """
 
     agent: Any
@@ -137,7 +137,7 @@ class EpisodeTask:
 
 def _together(agent: Any, world: Any) -> int:
     """Return how many episodes the agent can run at once in worlds of this kind."""
-    # only a ``beside()`` that the class itself defines certainly returns worlds of that class
+    # an inherited ``beside()`` may return worlds of another class, so it is not used
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
 
@@ -355,8 +355,8 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
 def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     """Sort the rows with these identities in the file ``out``, and return them (``rows.unique``).
 
-    The order of the file then does not depend on the number of processes. Other rows keep their
-    places.
+    As a result, the order of rows in the file does not depend on the number of processes. Other
+    rows keep their places.
 
     Raises:
         FolderLostError: Rows are missing.

@@ -87,8 +87,8 @@ def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]
     """Return the corruptions that a complete PRS over ``block`` needs.
 
     :data:`PROMPT_ONLY` is needed only if it is in ``measured``. The unseen corruptions consist of a
-    validation part and a test part. The PRS needs such a part only if ``measured`` contains at
-    least one of its corruptions.
+    validation part and a test part. The corruptions of one of these parts are needed only if
+    ``measured`` contains at least one of them.
     """
     every = tuple(n for n in BLOCKS.get(block, measured) if n in measured or n != PROMPT_ONLY)
     halves = {UNSEEN[name].half for name in measured if name in UNSEEN}
@@ -98,8 +98,8 @@ def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]
 def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str, ...]]]:
     """Return the validation and test parts of each block of unseen corruptions, by heading.
 
-    ``blocks`` contains the measured corruptions. Blocks in which a part was not measured are left
-    out.
+    ``blocks`` contains the measured corruptions. A block is left out if its validation part or its
+    test part was not measured.
     """
     by_block = {
         block: {
@@ -157,7 +157,7 @@ _Run = dict[tuple[str, float, str], np.ndarray]  # maps (corruption, severity, m
 class Gap:
     """A table cell with missing episodes.
 
-    It contains ``have`` episodes instead of ``want``.
+    The cell contains ``have`` episodes instead of ``want``.
     """
 
     column: str
@@ -262,8 +262,8 @@ class Grid:
     def paired(self, labels: Iterable[str], severity: float) -> Grid:
         """Return a grid for paired comparisons of the columns ``labels``.
 
-        If the columns have common seeds, the grid contains only these. Then all columns met
-        corruptions with the same random keys.
+        If the columns have common seeds, the grid contains only these seeds. With common seeds, all
+        columns met corruptions with the same random keys.
         """
         labels = tuple(labels)
         common = self.common(labels, severity)
@@ -320,8 +320,8 @@ class Grid:
 
         All columns use the same corruptions and episodes. A corruption is used if every column
         measured it on at least a fraction :data:`COVERAGE` of the episodes. An episode is used if
-        no column lacks it under these corruptions. If no corruption or no episode remains, return
-        None.
+        every column has it under all these corruptions. If no corruption or no episode remains,
+        return None.
         """
         known = np.all([self.measured(label, severity, metric) for label in labels], axis=0)
         complete = {
@@ -427,11 +427,11 @@ def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
 def _complete_seeds(
     runs: dict[int, _Run], severity: float
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
-    """Return the complete seeds at ``severity``, and the (actual, expected) rows of other seeds.
+    """Return the complete seeds at ``severity``, and (actual, expected) row counts of the others.
 
     The results of complete seeds are averaged. A seed is complete if it has at least a fraction
-    :data:`COVERAGE` of the rows of the seed with the most rows. This must hold for clean and for
-    corrupted rows. Seeds without rows at ``severity`` are in neither result.
+    :data:`COVERAGE` of the rows of the seed with the most rows. Clean rows and corrupted rows must
+    each reach this fraction. Seeds without rows at ``severity`` are in neither result.
     """
 
     def rows(run: _Run, at: float) -> int:

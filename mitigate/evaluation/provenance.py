@@ -1,7 +1,7 @@
 """Record to which agent, world and episodes the rows in a folder belong.
 
 A row contains the world's success rule, the agent's hash (which includes the sensors) and the
-episode id. It does not describe the world or the episode further. Therefore, rows of a different
+episode id. A row does not describe the world or the episode further. Therefore, rows of a different
 world with the same rule and ids would be treated as finished. The notes that this module writes
 next to the rows prevent this.
 """
@@ -42,11 +42,11 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# For agents without settings(). Maps the id() of an agent to a function that returns the agent, and
-# to the hashed parts of the agent after its last run and before its first run.
+# For agents without settings(): maps the id() of an agent to a function that returns the agent, and
+# to two versions of its hashed parts: after its last run, and before its first run.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 # Maps (classes of the world and its environments, user's version) to two hashes of the values that
-# the code of these classes names: before the first episode and after the last one.
+# the code of these classes refers to: before the first episode, and after the last one.
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
@@ -54,13 +54,14 @@ class Known:
     """Hashes of an agent and of classes, computed before episodes can change them.
 
     ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``. ``classes`` is
-    a hash of the values that the code of the agent's and the world's classes names. The object is
-    used as a context manager around all episodes.
+    a hash of the attributes of the agent's and the world's classes, and of the global variables and
+    functions that their code refers to. The object is used as a context manager around all
+    episodes.
 
-    If an agent has no ``settings()``, its attributes are part of the hash. Episodes may change
-    these attributes. If nothing else changed the agent since the last evaluation, the hash from
-    before that evaluation is used. The attributes of the world's classes are treated in the same
-    way.
+    If an agent has no ``settings()``, its attributes are part of the hash. Episodes may change the
+    attributes of such an agent. If nothing else changed the agent since the last evaluation, the
+    hash from before that evaluation is used. The attributes of the world's classes are treated in
+    the same way.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
@@ -152,7 +153,7 @@ def keep(
 ) -> list[Path]:
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
-    If the folder already has such a note, the new description must match it. Worlds with different
+    If the folder already has a description, the new one must match it. Worlds with different
     sensors or success rules can use the same folder, because their rows differ.
 
     Args:
@@ -205,7 +206,7 @@ def _report_unreadable(
     """Print a message that rows of an agent or a world cannot be reused.
 
     Raises:
-        ValueError: ``place`` already holds such rows.
+        ValueError: ``place`` already holds rows of this agent or world.
     """
     if earlier:
         raise ValueError(
@@ -345,10 +346,10 @@ def first_world(
     """Construct a world, and describe how it was constructed.
 
     If ``make`` comes from a config, the description contains the config's entries. For a function,
-    it contains the arguments, the defaults and the values that the code names. For another callable
-    object, it contains the class and the attributes. It also contains a hash of the values that the
-    code of the world's classes names. A value that changes while the world is constructed, such as
-    a cache, is described as ``CHANGES``.
+    the description contains the arguments, the defaults and the values that the code refers to. For
+    another callable object, it contains the class and the attributes. The description also contains
+    a hash of the values that the code of the world's classes refers to. A value that changes while
+    the world is constructed, such as a cache, is described as ``CHANGES``.
 
     ``version`` is a string that the user sets if the state of a class cannot be read.
     """

@@ -88,8 +88,8 @@ def stem_of(scene: str) -> str:
 def scene_of(row: Row) -> str:
     """Return the scene of a row's episode.
 
-    The scene is read from its entry. Rows of older versions and of the bridge have no such entry,
-    so the scene is read from the episode id.
+    The scene is read from the entry :data:`SCENE`. Rows of older versions and of the bridge have no
+    such entry, so the scene is read from the episode id.
 
     Raises:
         ValueError: The row names no scene.

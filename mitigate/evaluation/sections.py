@@ -40,8 +40,8 @@ label = title  # returns the name of a corruption in the paper's table
 class Retained:
     """A PRS, a mean SR, or a difference of two of these.
 
-    ``corruptions`` and ``episodes`` state over what it is computed. ``near_floor`` states whether a
-    clean value is too low for a meaningful PRS.
+    ``corruptions`` and ``episodes`` state over which corruptions and how many episodes the value is
+    computed. ``near_floor`` states whether a clean value is too low for a meaningful PRS.
     """
 
     estimate: Estimate

@@ -216,9 +216,9 @@ def run_agents(
 ) -> Iterator[Walk]:
     """Run ``episode`` with each agent, and yield the trajectories.
 
-    The first one is the clean trajectory of the first agent. The others are the trajectories of all
-    agents under ``corruption``. Random keys and measures are the same as in an evaluation with
-    ``seed``. ``guards`` maps the names of agents to their guards.
+    The first trajectory is that of the first agent without corruption. The other trajectories are
+    those of all agents under ``corruption``. Random keys and measures are the same as in an
+    evaluation with ``seed``. ``guards`` maps the names of agents to their guards.
     """
     first = next(iter(agents))
     plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]

@@ -47,16 +47,16 @@ class Guard:
     """Base class of guards; its methods change nothing unless a subclass overrides them.
 
     An episode's result must not depend on other episodes or on their order. So ``observe`` must not
-    keep state between calls. An exception are guards that override ``attach``; their episodes run
-    one after the other.
+    keep state between calls, unless the guard overrides ``attach``. With a guard that overrides
+    ``attach``, episodes run one after the other.
 
     Attributes:
         label: part of a table's column name.
         frames: names of the sensors whose frames ``observe`` reads or changes.
         version: text that identifies state which :meth:`fingerprint` cannot read, such as weights
             in a file.
-        continual: whether ``attach`` uses state from earlier episodes. If so, the episodes of a
-            condition run in order in one process.
+        continual: whether ``attach`` uses state from earlier episodes. With a continual guard, the
+            episodes of a condition run in order in one process.
     """
 
     label: str = ""
@@ -232,7 +232,7 @@ class Guards(Guard):
         """Return the fingerprints of all guards, joined by "+".
 
         If no guard changes the instruction, the text starts with "none". If there are no guards at
-        all, it is only "none".
+        all, the text is only "none".
         """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])

@@ -1,8 +1,8 @@
 """Write an oracle's episodes as a LeRobot dataset, version 3.
 
 RGB frames are written as a lossless video. Depth frames are encoded in lerobot's 12-bit format and
-written as a lossless video. The state is the pose (x, y, heading). The action is the integer of the
-oracle's action.
+written as a lossless video. The state is the pose (x, y, heading). The action is an integer that
+identifies the oracle's action.
 """
 
 from __future__ import annotations

@@ -63,7 +63,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 
     Raises:
         ValueError: The form or split is unknown, the world has no expert or several cameras, or a
-            drive already exists. This is checked before any episode runs.
+            drive already exists. The check precedes all episodes.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
@@ -93,7 +93,8 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
                     write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    # the instruction is written first, so that a complete bag always has one
+                    # the instruction is written before the bag, so that a complete bag always has
+                    # one
                     write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
             root.expected.append(path)

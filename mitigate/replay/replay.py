@@ -3,7 +3,7 @@
 DRIVE is a folder of frames, a ROS 1 bag, a ROS 2 bag (also MCAP), or a LeRobot dataset. Several
 drives are allowed. An agent is a folder of weights, or module:callable for your own code. Each
 agent receives the frames of the drive without corruption and under each corruption. At each step,
-it decides what it would do. The output consists of all decisions (``decisions.jsonl``), the
+the agent decides what it would do. The output consists of all decisions (``decisions.jsonl``), the
 fraction of decisions that each corruption changes (``table.md``, ``changes.png``), and pictures of
 some changed decisions.
 """
@@ -91,7 +91,7 @@ class ReplayConfig:
         return suite_conditions(self.suite) if self.conditions is None else self.conditions
 
 
-# rejected, because without a corruption there is nothing to compare
+# suite=clean is rejected, because without a corruption there is nothing to compare
 conf.register("replay", ReplayConfig, rejected={"suite": ["clean"]})
 
 
@@ -104,7 +104,8 @@ def replay_recordings(
 ) -> Path:
     """Run agents on recorded drives, print the table, and write the report.
 
-    This does the same as the command ``mitigate replay``, but also accepts agents as objects.
+    The function does the same as the command ``mitigate replay``, but also accepts agents as
+    objects.
 
     Args:
         agents: An agent (an object with ``reset`` and ``act``), a folder of weights, or the
@@ -369,7 +370,7 @@ def _draw(
 ) -> list[Path]:
     """Draw some decisions that a corruption changed.
 
-    They come from the drive with the most changed decisions.
+    All these decisions come from the drive with the most changed decisions.
     """
     from mitigate.replay import report
     from mitigate.replay.walk import changed_steps

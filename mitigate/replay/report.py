@@ -136,7 +136,7 @@ def summaries(recordings: Sequence[Recording]) -> str:
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
     """Draw the fraction of changed decisions as a heatmap.
 
-    It has one row per condition and one column per agent.
+    The heatmap has one row per condition and one column per agent.
     """
     agents = list(changes)
     names = [name for name in _conditions(changes) if name != "clean"]

@@ -27,7 +27,7 @@ ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 # Heuristic limits.
 # a target position counts as changed if it moved by more than this (metres; two steps)
 MIN_AIM_SHIFT = 0.5
-# a continuous action counts as changed if a number moves by this fraction of its range
+# a continuous action counts as changed if one of its numbers moves by this fraction of the range
 MIN_ACTION_SHIFT = 0.1
 ROUNDING = 1e-6  # continuous actions whose numbers differ by less are equal
 OFTEN = 0.2  # the driver takes an action often if it takes it at this fraction of the steps
@@ -44,8 +44,8 @@ class Answers:
 
     Attributes:
         actions: int [T], or float [T, A] for continuous actions.
-        aims: the position to which the agent wants to move, on the floor plan in metres, float [T,
-            2]. It is NaN if the agent has no such target.
+        aims: array of the positions to which the agent wants to move, on the floor plan in metres,
+            float [T, 2]. A position is NaN if the agent has no target.
         seen: The frames that the agent received at some steps, by step and sensor.
     """
 
@@ -65,8 +65,8 @@ def walk(
 ) -> Answers:
     """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
-    After each step, the agent is told how the driver moved (``Agent.taken``). If this motion is
-    unknown, it is told its own decision on clean frames instead. So runs under different
+    After each step, the agent is told how the driver moved (``Agent.taken``). If the motion is
+    unknown, the agent is told its own decision on clean frames instead. So runs under different
     corruptions differ only in frames and instructions.
 
     Args:

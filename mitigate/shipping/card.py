@@ -35,7 +35,7 @@ TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
 # this project's own name for the episodes, which are not a data set on the hub
 DATASET = "mitigate-episodes"
 LICENCE = "Apache-2.0"  # licence of the agents that this project defines
-UNKNOWN = "other"  # what Hugging Face calls a licence that it does not know
+UNKNOWN = "other"  # Hugging Face's name for an unknown licence
 
 
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
@@ -213,7 +213,7 @@ def _origin(card: dict[str, Any]) -> str:
 def _hashes(card: dict[str, Any]) -> str:
     """Return a text with the hashes of the exported and the original weights.
 
-    It also names the agent fingerprints in the result rows.
+    The text also names the agent fingerprints in the result rows.
     """
     exported, before = card["agent"], card.get("run_agent", card["agent"])
     rounded = f" (`{before}` before rounding)" if before != exported else ""
@@ -341,9 +341,9 @@ def _version(package: str) -> str | None:
 def front_matter(card: dict[str, Any]) -> str:
     """Return the front matter of a README for Hugging Face.
 
-    It is YAML between two lines of ``---``. After ``hf upload``, the hub shows a model page with
-    the library, the licence, tags and metrics (docs/deployment.md). If there are no metrics, there
-    is no ``model-index``. The format is described in
+    The front matter is YAML between two lines of ``---``. After ``hf upload``, the hub shows a
+    model page with the library, the licence, tags and metrics (docs/deployment.md). If there are no
+    metrics, there is no ``model-index``. The format is described in
     https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"

@@ -1,10 +1,10 @@
 """Export the agent of a run as a folder for deployment (``export_command.py`` has the command).
 
 The folder ``checkpoints/hardened/<name>`` contains ``config.yaml``, ``program.pt2``, a card, a
-README, and the weights. If only adapters were trained, it contains the adapters and a reference to
-their base instead of the weights. The folder is first written to a temporary place and loaded in a
-new process. It is moved to its final place only if the loaded agent gives the same outputs on fixed
-inputs.
+README, and the weights. If only adapters were trained, the folder contains the adapters and a
+reference to their base instead of the weights. The folder is first written to a temporary place and
+loaded in a new process. The folder is moved to its final place only if the loaded agent gives the
+same outputs on fixed inputs.
 """
 
 from __future__ import annotations
@@ -48,9 +48,10 @@ from mitigate.worlds.world import World
 HARDENED = Path("checkpoints/hardened")
 # Maximum absolute differences of outputs on the fixed probe inputs (heuristic; logits are about 1
 # to 10).
-RELOADED = 1e-5  # between the agent loaded in a new process and the agent in this process
-EXPORTED = 1e-3  # between the agent and program.pt2 or the ONNX files
-ROUNDED = 0.1  # between the float16 weights and the float32 weights of the run
+# limit for the agent loaded in a new process, compared with the agent in this process
+RELOADED = 1e-5
+EXPORTED = 1e-3  # limit for program.pt2 and the ONNX files, compared with the agent
+ROUNDED = 0.1  # limit for the float16 weights, compared with the float32 weights of the run
 # if a check fails, the message quotes at most this many characters of its last line of output
 # (heuristic)
 REASON_WIDTH = 400
@@ -101,7 +102,8 @@ def export(
             folder.
         overwrite: whether to replace ``out/name`` if it is a hardened folder.
         onnx: whether to also write the two networks as ONNX files.
-        walks: settings of the check for agents of other classes. Their folders contain no programs.
+        walks: settings of the check for agents of other classes. The folders of these agents
+            contain no programs.
 
     Raises:
         FileNotFoundError: ``run`` contains no finished run.
@@ -273,7 +275,7 @@ def _write(
     config = config.replace(f"{Path.cwd()}/", "")
     write_text(draft / loading.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
-    # comes before the slow part, so that missing files are reported at once
+    # called before the slow part, so that missing files are reported at once
     known = facts(cfg, agent)
     shipped = agent
     if adapters_only:
@@ -294,7 +296,7 @@ def _write(
         "format": loading.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),  # like run_agent, this is a hash of the weights
+        "agent": checkpoint.weights_sha(shipped),  # this entry and run_agent are hashes of weights
         "run_agent": checkpoint.weights_sha(agent),
         "rows_agent": rows_agent(result_rows_of_agent, weights),
         "adapters_only": adapters_only,
@@ -425,8 +427,8 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 def _run_apart(check: str, what: str, *paths: Path) -> None:
     """Call the function ``check`` of this module in a new process.
 
-    If it fails, raise ValueError. The message states that the loaded folder does not give the same
-    ``what``, and quotes the last line of the output.
+    If the check fails, raise ValueError. The message states that the loaded folder does not give
+    the same ``what``, and quotes the last line of the output.
     """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:

@@ -1,10 +1,10 @@
 """Export the agent of a run as a folder for deployment: ``mitigate export runs/a my_agent``.
 
 The folder ``checkpoints/hardened/<name>`` contains ``config.yaml``, ``program.pt2``, a card, a
-README, and the weights. If only adapters were trained, it contains the adapters and a reference to
-their base instead of the weights. The folder is first written to a temporary place and loaded in a
-new process. It is moved to its final place only if the loaded agent gives the same outputs on fixed
-inputs.
+README, and the weights. If only adapters were trained, the folder contains the adapters and a
+reference to their base instead of the weights. The folder is first written to a temporary place and
+loaded in a new process. The folder is moved to its final place only if the loaded agent gives the
+same outputs on fixed inputs.
 
 ``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` into
 such a folder.

@@ -1,8 +1,8 @@
 """``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
-A copy of the policy is trained. Its teacher is the original policy (``recipes/self_distil.py``), or
-it learns from the reward of the world (``recipes/ppo.py``). Then the policies before and after
-training are compared, on episodes that are not used for training.
+A copy of the policy is trained. The original policy is its teacher (``recipes/self_distil.py``), or
+the copy learns from the reward of the world (``recipes/ppo.py``). Then the policies before and
+after training are compared, on episodes that are not used for training.
 """
 
 from __future__ import annotations
@@ -78,7 +78,7 @@ class Hardened:
         report: success rate, return and retention before and after training. ``str(report)`` is a
             Markdown table.
         rows: the result rows of both policies, with the names "before" and "after".
-        folder: folder of the run. Its subfolder ``agent`` holds the weights, which
+        folder: folder of the run. The subfolder ``agent`` holds the weights, which
             ``mitigate.load_policy`` loads.
         chosen: name of the weights that validation chose: "trained", "averaged" or "given".
     """
@@ -295,7 +295,7 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
 class _Training:
     """Source of training episodes.
 
-    They are taken from a list, or generated from seeds that the comparison does not use.
+    The episodes are taken from a list, or generated from seeds that the comparison does not use.
     """
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:

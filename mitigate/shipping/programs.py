@@ -124,7 +124,7 @@ class Stored(nn.Module):
 def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
     """Return the two eager networks of ``agent`` by name.
 
-    They share the weights of the agent.
+    The networks share the weights of the agent.
     """
     return {PERCEIVE: Perceive(agent), DECIDE: Decide(agent)}
 
@@ -178,7 +178,8 @@ def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
 def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
     """Return fixed inputs of both networks, one tensor per entry of :data:`INPUTS`.
 
-    They consist of three panoramas with random pixels and two decisions, of which one has padding.
+    The inputs consist of three panoramas with random pixels and of two decisions, one of which has
+    padding.
     """
     draw = torch_generator(seed, "export probe", size)
 
@@ -240,7 +241,7 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    Calls of the different kinds of networks alternate.
+    The calls of the different kinds of networks, such as eager and exported, alternate.
 
     A call processes one panorama and then one decision among three nodes and four ghosts.
 
@@ -313,7 +314,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 def _drop_type_checks(program: ExportedProgram) -> None:
     """Remove the type checks of stored tensors.
 
-    These are over a hundred calls, which cannot fail.
+    Over a hundred calls are removed. These checks cannot fail.
     """
     graph = program.graph_module.graph
     for node in list(graph.nodes):
@@ -330,7 +331,7 @@ def _smallest(tensor: Tensor) -> Tensor:
 def _free(shape: str) -> dict[int, Any]:
     """Return the dynamic dimensions of a shape in :data:`INPUTS`.
 
-    They are named by single letters or by sums that contain letters.
+    Dynamic dimensions are named by single letters or by sums that contain letters.
     """
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):

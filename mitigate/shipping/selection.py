@@ -2,8 +2,8 @@
 
 When a policy is trained on corruptions, it can lose abilities that it had before. The average of
 the weights before and after training often keeps old and new abilities (WiSE-FT: Wortsman et al.,
-"Robust fine-tuning of zero-shot models", CVPR 2022). It depends on the policy which of the three is
-best, so validation episodes decide.
+"Robust fine-tuning of zero-shot models", CVPR 2022). Which of the three weights are best depends on
+the policy, so they are compared on validation episodes.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., l
         policy: the trained policy, changed in place.
         start: the weights of ``policy`` before training.
         measure: function that evaluates a policy on the validation episodes, clean and corrupted,
-            and returns the rows. It is called with the policy, ``name`` and ``version``.
+            and returns the rows. The function is called with the policy, ``name`` and ``version``.
     """
     end = {name: value.clone() for name, value in policy.network.state_dict().items()}
     scores: dict[str, float] = {}
@@ -58,8 +58,8 @@ def average(
 ) -> dict[str, Tensor]:
     """Return ``(1 - mix) * start + mix * end``.
 
-    Integer tensors, such as counters, are not averaged. They are copied from ``end`` if ``mix`` is
-    at least 0.5, and from ``start`` otherwise.
+    Integer tensors, such as counters, are not averaged. Such tensors are copied from ``end`` if
+    ``mix`` is at least 0.5, and from ``start`` otherwise.
     """
     nearer = end if mix >= 0.5 else start
     return {

@@ -27,8 +27,8 @@ class Batches:
 
     If pieces do not depend on the weights (``objective.ahead``), they are requested ``AHEAD`` steps
     in advance. Other pieces are requested ``lag`` steps in advance, and are computed with the
-    weights at that time. Such requests never reach beyond the next multiple of ``save_every``, so a
-    resumed run computes the same pieces.
+    weights at that time. A request with such a lag never reaches beyond the next multiple of
+    ``save_every``, so a resumed run computes the same pieces.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Batches:
         self._taken = False
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return the batch of ``step``. It must be called for each step in order."""
+        """Return the batch of ``step``. The method must be called for each step in order."""
         objective = self.objective
         early = not objective.here and (
             self.workers is not None or (self.lag and not objective.ahead)
@@ -99,7 +99,7 @@ class Batches:
         return self.objective.collate(step, [do(self.objective, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
-        """Request the pieces of ``step``. They are computed with the current weights."""
+        """Request the pieces of ``step``. The pieces are computed with the current weights."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
                 pieces = [do(self.objective, job) for job in jobs]

@@ -1,6 +1,6 @@
 """Define the options of a table and its cells.
 
-A cell is one column with one seed. It consists of a training run and evaluations.
+A cell is one column with one seed. A cell consists of a training run and evaluations.
 """
 
 from __future__ import annotations
@@ -88,7 +88,10 @@ class Cell:
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained. If not, the options name existing weights."""
+        """Whether the agent is trained.
+
+        If the agent is not trained, the options name existing weights.
+        """
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
@@ -147,7 +150,7 @@ class Cell:
         """
         return [
             f"name={self.column}",
-            *self.agent,  # these options may set another name
+            *self.agent,  # the agent's options may set another name
             f"seed={self.seed}",
             f"split={config.split}",
             f"episodes={'null' if config.episodes is None else config.episodes}",

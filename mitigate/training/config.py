@@ -101,11 +101,11 @@ class StageConfig:
     """One stage of a recipe.
 
     Attributes:
-        recipe: config node whose ``_target_`` is the objective. Its other entries are arguments of
-            the objective and of its source.
+        recipe: config node whose ``_target_`` is the objective. The other entries of the node are
+            arguments of the objective and of its source.
         trainer: settings of this stage's trainer.
-        cost: seconds per step on the machine of ``precision.REFERENCE``, or None if unknown. It is
-            used to estimate the duration of the run.
+        cost: seconds per step on the machine of ``precision.REFERENCE``, or None if unknown. The
+            cost is used to estimate the duration of the run.
     """
 
     recipe: Any = None
@@ -157,7 +157,10 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the run starts from complete weights. If so, these are also evaluated."""
+        """Whether the run starts from complete weights.
+
+        Complete initial weights are also evaluated.
+        """
         return bool(self.init and not self.init_parts)
 
 

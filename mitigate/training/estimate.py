@@ -33,9 +33,9 @@ def describe(config: TrainConfig, folder: Path) -> str:
 def estimate(config: TrainConfig, folder: Path) -> float:
     """Return the remaining seconds of a run on this machine, or NaN if a cost is unknown.
 
-    Costs are in seconds on the machine of ``precision.REFERENCE``. They were measured in training
-    runs. The cost of a stage is the time per step with the topological agent. For other kinds of
-    agent, the config contains a factor (``cost``) by which it is multiplied.
+    Costs are in seconds on the machine of ``precision.REFERENCE``. The costs were measured in
+    training runs. The cost of a stage is the time per step with the topological agent. For other
+    kinds of agent, the config contains a factor (``cost``) by which the stage's cost is multiplied.
     """
     # pairs (number of steps or episodes, seconds for each)
     costs: list[tuple[float, float | None]] = []
@@ -46,7 +46,7 @@ def estimate(config: TrainConfig, folder: Path) -> float:
     episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
     costs.append((_episodes(config), episode))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
-    # The factor is at least 1, because a machine with faster matrix products does not render
+    # The speed factor is at least 1, because a machine with faster matrix products does not render
     # faster. Without this limit, a bf16 run of 13 minutes was estimated at 6 minutes.
     return seconds * max(1.0, precision.probe() / precision.REFERENCE)
 
@@ -60,7 +60,7 @@ def _steps(config: TrainConfig) -> dict[str, int]:
 def _episodes(config: TrainConfig) -> int:
     """Return how many episodes are run after training.
 
-    For other kinds of report, this is 0.
+    For other kinds of report, the number is 0.
     """
     if not config.evaluation.enabled or config.report != REPORT:
         return 0

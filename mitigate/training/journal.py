@@ -22,9 +22,9 @@ class Journal:
 
     While the journal is open, every write below its folder checks that the folder still exists.
 
-    The journal shows a :class:`~mitigate.core.progress.Progress`. This is a bar in a terminal, and
-    plain lines elsewhere. :meth:`scalars` with ``line=True`` prints an additional line with all its
-    values.
+    The journal shows a :class:`~mitigate.core.progress.Progress`. The progress is shown as a bar in
+    a terminal, and as plain lines elsewhere. :meth:`scalars` with ``line=True`` prints an
+    additional line with all its values.
     """
 
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
@@ -79,7 +79,7 @@ class Journal:
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
         """Log ``values`` after ``step`` updates; with ``line``, also print them.
 
-        Raises FolderLostError if the folder was removed. TensorBoard would not notice this.
+        Raises FolderLostError if the folder was removed. TensorBoard would not notice the loss.
         """
         output.check(self._folder / "events")
         for name, value in values.items():

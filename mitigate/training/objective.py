@@ -33,8 +33,8 @@ class Objective(nn.Module):
 
     An objective contains the module that it trains and, if needed, a teacher or a buffer.
     State other than tensors, such as counters, is saved and restored with the weights if
-    ``get_extra_state`` returns it and ``set_extra_state`` sets it. It must be a JSON-compatible
-    dict. The optimizer never receives parameters whose ``requires_grad`` is False.
+    ``get_extra_state`` returns it and ``set_extra_state`` sets it. This extra state must be a
+    JSON-compatible dict. The optimizer never receives parameters whose ``requires_grad`` is False.
 
     Attributes:
         sources: maps the constructor parameter that receives the source of batches to the function
@@ -57,7 +57,7 @@ class Objective(nn.Module):
     def misfit(cls, agent: Any) -> str:
         """Return why this objective cannot train ``agent`` and what to do, or "" if it can.
 
-        This is called before the first stage, when a run is planned.
+        The method is called before the first stage, when a run is planned.
         """
         absent = missing_members(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
@@ -85,7 +85,8 @@ class Objective(nn.Module):
         the error message for a loss that is not finite contains these ids.
 
         State that grows over steps, such as a buffer, must be rebuilt from the seed and the
-        weights, or saved as extra state. Otherwise a resumed run gives different results.
+        weights, or saved as extra state. If the state is not restored, a resumed run gives
+        different results.
 
         An objective must define either this method or the three methods :meth:`jobs`, :meth:`work`
         and :meth:`collate`. By default, this method calls those three, without worker processes.
@@ -109,7 +110,7 @@ class Objective(nn.Module):
         """Return the number of jobs per step. The jobs are divided among the ranks.
 
         This is called before the first stage. If the number is 1, training must run in a single
-        process. If it is known only at the first step, the result is None.
+        process. If the number is known only at the first step, the result is None.
         """
         return None
 
@@ -128,16 +129,17 @@ class Objective(nn.Module):
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """Split ``batch`` into parts that are processed one after the other.
 
-        Then the forward and backward passes of a step need memory for only one part. The gradients
-        and values of the parts are summed. By default, the whole batch is one part.
+        With several parts, the forward and backward passes of a step need memory for only one part
+        at a time. The gradients and values of the parts are summed. By default, the whole batch is
+        one part.
         """
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
         """Return the weight of a rank's batch in means over ranks.
 
-        The losses of a batch are weighted means, and this is their total weight. The default is the
-        total weight of the decisions, or 1 if there are no decisions.
+        The losses of a batch are weighted means, and the result is their total weight. The default
+        is the total weight of the decisions, or 1 if there are no decisions.
         """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
@@ -348,7 +350,7 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 def is_objective(kind: Any) -> bool:
     """Return whether ``kind`` is a subclass of Objective.
 
-    A function that builds an objective is not.
+    For a function that builds an objective, the result is False.
     """
     return isinstance(kind, type) and issubclass(kind, Objective)
 

@@ -112,8 +112,8 @@ class LeaderboardEntry:
         training_data: training data of the agent, in the words of the submitter.
         episodes: number of episodes per condition.
         listed: hash of the episode ids; a table compares only entries with the same episodes.
-        scores: the clean, mean and PRS values by title. Each is [value, low, high] with the bounds
-            of its 95 % interval, or None.
+        scores: the clean, mean and PRS values by title. Each entry is [value, low, high] with the
+            bounds of the 95 % interval, or None.
         SR, SPL: the success rate and SPL of each condition, in the same format.
         rows: the rows from which the figures are computed: "file" (a relative path, or empty),
             "sha256" and "count".

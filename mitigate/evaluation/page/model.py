@@ -36,7 +36,7 @@ def section_data(section: Section) -> dict[str, Any]:
     ``*``. ``corruptions`` lists the rows of the heatmap, starting with clean. ``cells[c][k]``
     describes corruption k: [SR, SPL, number of episodes, fraction of the agent's clean SR, fraction
     of its clean SPL]. ``pairs["i-j"]`` holds the differences of agent i from agent j, where i > j
-    and j < ``baselines``. It is None if the two agents have no common seed.
+    and j < ``baselines``. The entry is None if the two agents have no common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -288,7 +288,7 @@ class Packed:
         count: number of packed episodes.
         grids: for each grid, the ids of its episodes, and the offset of each cell in the packed
             data. The key of a cell is "column|corruption|severity|seed".
-        left_out: cells that are not packed, because their episodes would exceed ``most``.
+        left_out: cells that are not packed, because the number of episodes would exceed ``most``.
     """
 
     def __init__(self, most: int = MOST_EPISODES) -> None:

@@ -46,9 +46,9 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     """Choose at most ``most`` pairs (episode id, corruption) that the first and last agent both
     ran.
 
-    The function takes one pair per outcome in :data:`KINDS` in turn, and changes the corruption
-    each time. It follows the order of ``rows``, which must all have the same seed. No episode is
-    repeated. The result is for display and is not a random sample; the tables show the frequencies.
+    Pairs are taken from the outcomes in :data:`KINDS` in turn, each time with another corruption.
+    It follows the order of ``rows``, which must all have the same seed. No episode is repeated. The
+    result is for display and is not a random sample; the tables show the frequencies.
     """
     first, last = (
         {

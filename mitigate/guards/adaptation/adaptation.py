@@ -26,8 +26,8 @@ class Adaptation(Guard):
 
     Args:
         reset: with "episode", each episode starts from the agent's original weights. With "never",
-            it starts from the adapted tensors of the previous episode; only the first episode of
-            each condition starts from the original weights.
+            an episode starts from the adapted tensors of the previous episode; only the first
+            episode of each condition starts from the original weights.
 
     Attributes:
         kind: name of the method in fingerprints and columns.

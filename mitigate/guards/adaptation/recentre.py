@@ -1,8 +1,8 @@
 """``adapt=recentre``: shift features back to the mean that they have on clean frames.
 
 A corruption shifts the mean of features. Before the evaluation, this guard measures the mean on
-clean frames. During an episode, it estimates the current mean and subtracts the difference between
-the two from the features. It needs no normalisation layers and no gradients.
+clean frames. During an episode, it estimates the current mean, and subtracts the difference between
+the two means from the features. It needs no normalisation layers and no gradients.
 """
 
 from __future__ import annotations
@@ -33,15 +33,16 @@ class Recentre(Adaptation):
     """Shift the features of some modules to their clean mean.
 
     Args:
-        modules: names of the modules whose outputs are shifted. They belong to the agent, or to the
-            network of a policy. The default is the agent's image encoders, or the last convolution
-            of a policy.
+        modules: names of the modules whose outputs are shifted. The modules belong to the agent, or
+            to the network of a policy. The default is the agent's image encoders, or the last
+            convolution of a policy.
         prior: weight of the clean mean in the mean of the episode, as a number of observations. A
             larger value shifts the first frames less.
         reset: see :class:`Adaptation`.
 
     Attributes:
-        means: the clean mean [C] of each module's output, in order. :meth:`calibrate` sets it.
+        means: the clean mean [C] of each module's output, in order. :meth:`calibrate` sets these
+            means.
 
     Raises:
         ValueError: ``prior`` or ``reset`` is invalid.
@@ -140,7 +141,8 @@ class Recentre(Adaptation):
     def _shift(self, place: int) -> Callable:
         def hook(module: nn.Module, inputs: Any, output: Any) -> Any:
             mean, count = self._now[2 * place : 2 * place + 2]
-            if not torch.is_grad_enabled():  # with gradients, a guard repeats a decision
+            # if gradients are enabled, another guard only repeats the decision
+            if not torch.is_grad_enabled():
                 mean.lerp_(_means(output).cpu(), 1.0 / (self.prior + float(count) + 1.0))
                 count.add_(1.0)
             features = output[0] if isinstance(output, (tuple, list)) else output

@@ -1,1 +1,1 @@
-"""Guards for frames. They replace a corrupted frame by an estimate of the clean frame."""
+"""Guards for frames. Such a guard replaces a corrupted frame by an estimate of the clean frame."""

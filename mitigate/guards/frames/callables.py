@@ -47,8 +47,8 @@ class FramesCallable(Guard):
     Args:
         choice: ``module:callable`` or ``module:callable@VERSION``. A pickled guard contains only
             this text, so each process imports the module again.
-        call: the callable. It may have an attribute ``frames``, which names its sensors (by default
-            both), and an attribute ``version``.
+        call: the callable. The callable may have an attribute ``frames``, which names its sensors
+            (by default both), and an attribute ``version``.
         module: the module of the callable. The module's source file is part of the fingerprint.
     """
 

@@ -13,7 +13,7 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 SLOPE = 0.1  # slope of the activations for negative inputs (heuristic)
-# a pixel counts as flat if its second difference is below such a value (heuristic)
+# thresholds of the second difference below which a pixel counts as flat (heuristic)
 FLAT = (1e-4, 1e-3, 1e-2)
 TEXTURES = 6 + 4 * (3 + len(FLAT))  # number of statistics that :func:`texture` returns per frame
 FACTOR = 8  # height and width of the input must be multiples of this many pixels
@@ -34,8 +34,8 @@ class Encoded(NamedTuple):
 def active(x: Tensor) -> Tensor:
     """Apply a leaky ReLU.
 
-    Because normalisation is missing, many channels of a plain ReLU die: 83 % of the channels of the
-    coarsest level did so within 700 training steps.
+    A plain ReLU is not used, because channels die without normalisation. In 700 training steps, 83
+    % of the channels of the coarsest level died.
     """
     return F.leaky_relu(x, SLOPE)
 
@@ -56,14 +56,14 @@ class UNet(nn.Module):
     """Map float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``; before training, the output is 0.
 
     A pixel unshuffle merges blocks of 2 x 2 pixels, so the finest maps have half the height and
-    width of the input. A linear projection of the means of the coarsest maps, over the view and
-    over all views of the time step, is added to these maps.
+    width of the input. The mean of the coarsest maps is computed over each view and over all views
+    of the time step. A linear projection of both means is added to these maps.
 
     Args:
         inputs: number of input channels.
         outputs: number of output channels.
-        width: number of channels of the finest maps. The next two levels have 2 and 4 times as
-            many.
+        width: number of channels of the finest maps. The next two levels have 2 and 4 times as many
+            channels.
     """
 
     def __init__(self, inputs: int, outputs: int, width: int) -> None:
@@ -116,11 +116,11 @@ class UNet(nn.Module):
 
 
 class Gate(nn.Module):
-    """Predict one logit per time step; a high logit means that its frames are corrupted.
+    """Predict one logit per time step; a high logit means that the frames are corrupted.
 
     The gate reads statistics of the feature maps of all views, and the statistics of
-    :func:`texture`. Its gradients do not reach the feature maps, which are trained only to restore
-    frames.
+    :func:`texture`. The gate's gradients do not reach the feature maps, which are trained only to
+    restore frames.
     """
 
     def __init__(self, width: int, hidden: int = 64) -> None:

@@ -28,11 +28,11 @@ from mitigate.guards.guard import RESTORER, Guard
 class Restorer(nn.Module, Guard):
     """Restores corrupted frames with one network per sensor.
 
-    Args: sensors: "rgb", "depth" or both. width: number of channels of the finest feature maps of
-        the RGB network.
-    depth_width: the
-            same for the depth network. XX_size: shorter side in pixels of the frames that the
-            networks process.
+    Args:
+        sensors: "rgb", "depth" or both.
+        width: number of channels of the finest feature maps of the RGB network.
+        depth_width: number of channels of the finest feature maps of the depth network.
+        size: shorter side in pixels of the frames that the networks process.
         far: maximum depth in metres.
 
     Raises:
@@ -129,8 +129,8 @@ class Restorer(nn.Module, Guard):
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return the restored frame as a new array of the same shape and dtype.
 
-        If the gate classifies the frame as clean, the frame itself is returned. The same holds for
-        depth outside the range of the training data (:meth:`SensorRestorer.knows`).
+        If the gate classifies the frame as clean, the frame itself is returned. Depth outside the
+        range of the training data is also returned unchanged (:meth:`SensorRestorer.knows`).
 
         Args:
             sensor: "rgb" or "depth".
@@ -149,9 +149,9 @@ class Restorer(nn.Module, Guard):
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
         """Return the gate's logit for a frame minus the gate's threshold.
 
-        If the value is above 0, :meth:`restore` restores the frame. An exception is depth of which
-        restoring would change most pixels by too much. The value is -inf for depth that has no
-        valid pixels or too many pixels beyond ``far``.
+        If the value is above 0, :meth:`restore` restores the frame, except if this would change
+        most pixels of depth by too much. The value is -inf for depth that has no valid pixels or
+        too many pixels beyond ``far``.
         """
         return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 

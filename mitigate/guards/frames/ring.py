@@ -1,6 +1,6 @@
 """Compare the overlapping views of a panorama, and fill pixels of a view from other views.
 
-All views have the same optical centre. Up to four other views show the same point as a pixel.
+All views have the same optical centre. Each point is visible in up to four other views.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from torch import Tensor
 from mitigate.agents.adapter_layers import neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
-# steps to the neighbours that overlap a 90-degree view; they are 30 and 60 degrees away
+# a 90-degree view overlaps with the views that are 1 and 2 steps (30 and 60 degrees) away
 STEPS = (1, 2)
 # if the squared trust of the neighbours has this value, their colour or depth gets the weight 1/2
 # (heuristic)
@@ -26,7 +26,7 @@ FAINT = 0.02
 
 
 @lru_cache(maxsize=8)
-@torch.inference_mode(False)  # normal tensors, because training also uses the cached result
+@torch.inference_mode(False)  # inference mode is off, because training also uses the cached tensors
 def neighbours(size: int) -> tuple[Tensor, Tensor]:
     """Return the geometry of the neighbouring views at -1, +1, -2 and +2 steps.
 
@@ -48,15 +48,18 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
 
 
 def is_ring(views: int, height: int, width: int) -> bool:
-    """Return whether frames form a panorama of 12 square views; only its geometry is known."""
+    """Return whether frames form a panorama of 12 square views.
+
+    Views can be compared only in such a panorama, because its geometry is known.
+    """
     return views == VIEWS and height == width
 
 
 def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor, Tensor]:
     """Return the smallest and the largest value that other views show at every pixel.
 
-    At least three views show each direction. A value outside this range contradicts the other
-    views.
+    At least three views show each direction. A value outside the range from smallest to largest
+    contradicts the other views.
 
     Args:
         values: float [P * 12, c, s, s] in [0, 1]. Depth is measured along the axis of each view.
@@ -103,8 +106,8 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
     """Return the weighted mean of the values that other views show at every pixel.
 
     Args:
-        values: float [P * 12, c, s, s]. They are colours, or depth along the axis of each view in
-            any unit.
+        values: float [P * 12, c, s, s]. The values are colours, or depth along the axis of each
+            view in any unit.
         trust: the weights in [0, 1], with shape [P * 12, 1 or c, s, s].
         depth: whether ``values`` is depth.
 

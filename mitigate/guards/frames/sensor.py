@@ -30,14 +30,14 @@ TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of th
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
 # initial amount by which the trust logit decreases per margin outside [low, high] (heuristic)
 ALONE = 2.0
-LOST = -3.0  # initial logit of "lost", a probability of 5 % (heuristic)
+LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
 SUREST = 6.0
-# Heuristic limits for depth. Frames of the apartments stay far below both limits. In 600 panoramas,
-# at most 1.3 % of a view was farther away than 10 m, the maximum depth of the apartments. Restoring
-# changed the depth of half of the pixels of a corrupted time step by at most 0.4 m (400 single
-# views and 200 panoramas, all depth corruptions). The only exceptions were single views in which
-# all pixels have exactly 10 m.
+# Heuristic limits for depth. Depth frames of the apartments stay far below both limits. In 600
+# panoramas, at most 1.3 % of a view was farther away than 10 m, the maximum depth of the
+# apartments. Restoring changed the depth of half of the pixels of a corrupted time step by at most
+# 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only exceptions were single
+# views in which all pixels have exactly 10 m.
 BEYOND = 0.1  # maximum fraction of pixels beyond ``far``; training contained no such pixels
 # a frame is not changed if over half of its pixels would move more than this fraction of the range
 MOVED = 0.1
@@ -197,8 +197,9 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames always are. Depth frames must have valid pixels, of which at most a fraction
-        :data:`BEYOND` may be beyond ``far``. Warns if this fraction is larger.
+        RGB frames always are within the range. Depth frames must have valid pixels, of which at
+        most a fraction :data:`BEYOND` may be beyond ``far``. If a larger fraction is beyond
+        ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB

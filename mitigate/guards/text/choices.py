@@ -20,7 +20,7 @@ CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
 CLASSIFIER, ADAPTER = SHIPPED, "checkpoints/safeguard"
 # file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
-# Names of safeguards in earlier versions. All of them now select the classifier.
+# Names of safeguards in earlier versions. All these names now select the classifier.
 REPLACED = {"rules": "classifier", "tagger": "classifier", "reader": "classifier"}
 FOLDER = (
     "A safeguard's folder holds classifier.json and classifier.safetensors (`python -m "
@@ -57,11 +57,11 @@ def _warn(name: str, choice: str, instead: str) -> None:
 def check(choice: object) -> None:
     """Check that ``choice`` names a safeguard.
 
-    Raises ValueError if it does not, and FileNotFoundError if it is a folder without a safeguard.
-    No weights are read and no requests are sent.
+    Raises ValueError if there is no such safeguard, and FileNotFoundError if ``choice`` is a folder
+    without a safeguard. No weights are read and no requests are sent.
     """
     text = choice if isinstance(choice, str) else ""
-    # this check comes first, because the value may contain a password and must not be printed
+    # rejects a value that may contain a password, before a message can show the value
     check_choice(text)
     first, plus, second = text.partition("+")
     name = second if plus and first in REPLACED else text

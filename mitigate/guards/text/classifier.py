@@ -29,7 +29,7 @@ from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_p
 from mitigate.guards.text.segmenter import NAMES, Segmenter, features
 
 BITS = 18
-SIZE = 1 << BITS  # number of hashed terms, and so the length of the weight arrays
+SIZE = 1 << BITS  # length of the weight arrays; terms are hashed to indices below this number
 SHIPPED = "checkpoints/safeguard_classifier"
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
 EMPTY = 1e-3  # if the sum of squared TF-IDF values is smaller, the text contains no known term
@@ -110,7 +110,8 @@ class Classifier:
     Args:
         config: The list of common words, and the biases of the two regressions.
         arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each of shape
-            [SIZE]. Except during training, also the weights of the networks (:class:`Segmenter`).
+            [SIZE]. The weights of the networks (:class:`Segmenter`) are also included, except while
+            a classifier is trained.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

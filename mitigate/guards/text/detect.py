@@ -1,9 +1,9 @@
 """Find attacks in an instruction, and remove each attack that the gate allows to be removed.
 
-The networks in :mod:`segmenter` read all clauses of the text together. They decide whether the text
-contains an attack, and where the attack begins and ends. The search is repeated, because a text can
-contain several attacks. The constants were chosen on one part of the test texts, called "choose"
-(``tools/safeguard``).
+The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
+the text contains an attack, and where the attack begins and ends. The search is repeated, because a
+text can contain several attacks. The constants were chosen on one part of the test texts, called
+"choose" (``tools/safeguard``).
 """
 
 from __future__ import annotations
@@ -20,15 +20,17 @@ from mitigate.guards.text.pieces import Piece, without
 FOREIGN = 0.3
 ROUTE = -1.0  # English text whose log odds of an attack are below this is certainly a route
 ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
-# If the regression gives a span lower log odds than this, the difference is subtracted from the
-# networks' score. Without this second opinion, three times as many R2R-CE routes were harmed.
+# If the regression gives the detected span lower log odds than this, the difference is subtracted
+# from the networks' score. Without this second opinion, three times as many R2R-CE routes were
+# harmed.
 SURE = 1.0
 LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remained in the text
 # a clause next to an attack that says nothing about the route is also removed if its log odds are
 # above this
 BESIDE = -2.0
 GOAL = 17  # a text of one sentence with fewer words is often only the name of a goal object
-BARE = 1.9  # increase of ``ATTACK`` for such a text
+# ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words
+BARE = 1.9
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 # an English attack in a text in another script is removed only if it has at least this many words

@@ -1,12 +1,12 @@
 """Train the classifier: ``python -m mitigate.guards.text.fit --out FOLDER``.
 
 The command needs a checkout of the repository, because it reads the texts in
-``tools/safeguard/data``. It trains two logistic regressions. They predict whether a sentence or
-clause belongs to an attack, and whether it is in an unusual style. Then it trains ``NETWORKS``
-networks with different seeds to find where an attack begins and ends. Their training texts are
-honest texts to which attacks were added. The scores of such a text come from regressions that were
-trained without the text's fold. Otherwise, these scores would be more accurate than the scores of
-new texts, and the networks would rely on them too much.
+``tools/safeguard/data``. First, two logistic regressions are trained: one predicts whether a
+sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then
+``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. The
+training texts of the networks are honest texts to which attacks were added. The regression scores
+of a training text come from regressions that were trained without the text's fold. Otherwise, the
+scores would be more accurate than those of new texts, and the networks would rely on them too much.
 """
 
 from __future__ import annotations

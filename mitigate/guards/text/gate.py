@@ -21,7 +21,7 @@ LONG = 3000  # longer texts are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
 TIMES = 4  # a longer rewrite may have up to this many times the length of the original (heuristic)
-LONGER = 3  # maximum number of words that a rewrite may have more than the original
+LONGER = 3  # a rewrite may have at most this many words more than the original
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
@@ -84,7 +84,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
 def _is_aside(problem: str, heard: str) -> bool:
     """Return whether ``problem`` reports a lost word that is probably not a landmark.
 
-    This is the case if the word is unknown and no article precedes it.
+    A lost word is probably not a landmark if it is unknown and no article precedes it.
     """
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:

@@ -1,6 +1,6 @@
 """The safeguard, which repairs each instruction once before the agent receives it.
 
-It has three parts. In :mod:`detect`, a classifier finds text that does not belong to the
+The safeguard has three parts. In :mod:`detect`, a classifier finds text that does not belong to the
 instruction. In :mod:`language_models`, a language model, if the user chose one, rewrites the rest
 in plain words. In :mod:`gate`, rules accept a change only if it preserves the meaning of the
 instruction.
@@ -70,7 +70,7 @@ class Safeguard:
     Args:
         rewriter: a language model, or None.
         classifier: the classifier that finds attacks. The default is the shipped one.
-        seconds: time limit for the model per instruction. Later answers are not used.
+        seconds: time limit for the model per instruction. Answers after this time are not used.
         log: file to which each new decision is appended as a line of JSON.
     """
 

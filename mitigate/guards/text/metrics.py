@@ -35,15 +35,18 @@ class Repair:
 
 @dataclass(frozen=True)
 class Scores:
-    """Means over ``count`` repairs. Each is in [0, 1], or None if the measure is undefined.
+    """Means over ``count`` repairs.
+
+    Each mean is in [0, 1], or None if the measure is undefined.
 
     ``exact`` is the fraction of repaired instructions that have the same words as the original.
     ``token_f1`` is the F1 score of the bags of words. ``chrf`` is the corpus chrF2 (Popovic 2015)
-    from sacrebleu. ``directions`` is the fraction with the same directions (left, right, up, down,
-    stop ...) in the same order. ``landmarks`` is the fraction of the original landmarks that are
-    kept. ``faithful`` is the fraction in which ``fidelity.check`` finds no change of meaning.
-    ``removed`` is the fraction of injected sentences that were removed. ``changed`` is the fraction
-    of clean instructions whose meaning was changed.
+    from sacrebleu. ``directions`` is the fraction of repaired instructions that have the same
+    directions (left, right, up, down, stop ...) in the same order as the original. ``landmarks`` is
+    the fraction of the original landmarks that are kept. ``faithful`` is the fraction of
+    instructions for which ``fidelity.check`` finds no change of meaning. ``removed`` is the
+    fraction of injected sentences that were removed. ``changed`` is the fraction of clean
+    instructions whose meaning was changed.
     """
 
     count: int
@@ -124,7 +127,7 @@ def _same_directions(repair: Repair) -> bool:
 
 
 def _landmarks_kept(repair: Repair) -> tuple[int, int]:
-    """Return how many landmarks of the original are kept, and how many it has."""
+    """Return how many landmarks of the original are kept, and how many the original has."""
     landmarks = set(facts(repair.clean).landmarks)
     lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
     return len(landmarks) - lost, len(landmarks)

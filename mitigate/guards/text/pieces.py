@@ -29,7 +29,7 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# Words that begin a sentence. If such a word has a capital letter but no full stop precedes it, an
+# Words that begin a sentence. If one of them has a capital letter but no full stop precedes it, an
 # attack may begin or end there. "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
@@ -142,8 +142,8 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 def _seams(part: str) -> list[tuple[int, int]]:
     """Return the positions in a sentence where an attack and a route may meet without a full stop.
 
-    These are words with a capital letter, interjections such as "um", and the start and end of
-    several words in capitals.
+    An attack may begin at a word with a capital letter, at an interjection such as "um", or at the
+    start or end of several words in capitals.
     """
     cuts = []
     words = list(re.finditer(r"\S+", part))

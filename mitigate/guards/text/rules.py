@@ -14,8 +14,9 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Words in capitals are converted to lower case only if at least this number, and this fraction of
-# all words, are known words in capitals. Fewer words in capitals may be the text of a sign.
+# Words in capitals are converted to lower case only if the text has at least SHOUTS known words in
+# capitals, and if these are at least a fraction SHOUTED of all words. Fewer words in capitals may
+# be the text of a sign.
 SHOUTS, SHOUTED = 2, 0.15
 # number of generated routes whose words are counted; this takes about one second per process
 ROUTES = 4000
@@ -27,7 +28,7 @@ _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 _VERBS = MOTION | STOPS | TURN_VERBS
 _NOUNS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 _ROOMS = bag("dining living sitting waiting landing ceiling building opening railing painting")
-# Words that may follow a noun. If one of them follows a mask, the mask may hide a noun.
+# Words that may follow a noun. If such a word follows a mask, the mask may hide a noun.
 _BEHIND = SMALL | bag(
     "beside behind under between before past down up through across opposite towards toward "
     "but without not again until facing leading closest nearest along around near above below out "

@@ -1,12 +1,12 @@
 """Find the span of clauses that is an attack, with small recurrent networks.
 
 A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
-it predicts a score for being part of an attack. For each boundary between clauses, it predicts a
-score for being the start or end of an attack. The score of a span is the sum of the scores of its
-clauses and its two boundaries, relative to the score of "no attack". Because the network reads each
-clause in its context, it does not take an unusual style for an attack. The scores of several
-networks are averaged. Inference needs only numpy; :mod:`mitigate.guards.text.learning.segmentation`
-trains a network.
+the network predicts a score for being part of an attack. For each boundary between clauses, it
+predicts a score for being the start or end of an attack. The score of a span is the sum of the
+scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
+network reads each clause in its context, it does not take an unusual style for an attack. The
+scores of several networks are averaged. Inference needs only numpy;
+:mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 FEATURES = 22  # number of features of a clause
 EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
-# number of characters that are searched backwards for the last visible one before a clause
+# maximum distance at which the last character before a clause is searched
 GAP = 80
 # added to the score of each boundary inside the text, because few training texts have an attack
 # inside a route
@@ -41,11 +41,11 @@ NAMES = (
 def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
     """Return the features of clauses, shape [clauses, FEATURES].
 
-    The first ten features are numbers. Seven are the log odds of an attack in the clause, in its
-    sentence, in the text up to and including the clause, in the text before it, in the text from
-    the clause on, in the text after it, and in the whole text. One is the style score of the
-    clause. Two are the log word counts of the clause and the text. The other twelve features are 0
-    or 1.
+    The first ten features are numbers. Seven features are the log odds of an attack in the clause,
+    in its sentence, in the text up to and including the clause, in the text before it, in the text
+    from the clause on, in the text after it, and in the whole text. One feature is the style score
+    of the clause. Two features are the log word counts of the clause and of the text. The other
+    twelve features are 0 or 1.
     """
     count = len(clauses)
     products = np.array([clause.product for clause in clauses])
@@ -121,7 +121,7 @@ class Segmenter:
         Args:
             values: the features of the n clauses, shape [n, FEATURES].
             bonus: number that is added to the score of a span for each of its clauses, before the
-                span with the highest score is chosen. It does not change the log odds.
+                span with the highest score is chosen. The bonus does not change the log odds.
 
         Returns:
             The log odds, and the first and the last clause of the span.

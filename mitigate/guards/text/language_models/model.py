@@ -163,7 +163,7 @@ class LanguageModel(nn.Module):
             input_ids=inputs,
             attention_mask=mask,
             past_key_values=cache,
-            # assumes that an answer is about as long as its text
+            # enough tokens if an answer is about as long as its text
             max_new_tokens=16 + int(1.3 * text_length),
             max_time=seconds,
             do_sample=False,
@@ -233,11 +233,12 @@ class LanguageModel(nn.Module):
 def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -> LanguageModel:
     """Build the language model that an adapter folder describes in its card and config.
 
-    In "fp32", the adapter is merged into the base weights. This is faster and changes no answer. In
-    "int8", the adapter is never merged.
+    In "fp32", the adapter is merged into the base weights. Merging makes the model faster and
+    changes no answer. In "int8", the adapter is never merged.
     """
     card, config = read_adapter(folder)
-    adapter_tensors(folder, config)  # checks the files before the base is loaded
+    # damaged files raise an error before the base is loaded, which is slow
+    adapter_tensors(folder, config)
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
         card["base"],

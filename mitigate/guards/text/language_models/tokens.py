@@ -33,7 +33,7 @@ def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str,
 
     Returns ``input_ids``, ``attention_mask`` and ``position_ids``, int64 [B, T], and
     ``completion``, bool [B, C]. ``completion`` marks which of the last C tokens belong to the
-    completion. It is computed from positions, because the pad token may equal the end token.
+    completion. The mask is computed from positions, because the pad token may equal the end token.
     """
     rows = [[*prompt, *answer] for prompt, answer in pairs]
     width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)

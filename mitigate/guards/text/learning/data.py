@@ -1,8 +1,8 @@
 """Generate training pairs of a corrupted text and its plain version, and read chat files.
 
-Pairs are not stored. The pair with a given seed and index is the same in every process. Texts come
-from :mod:`mitigate.guards.text.learning.routes` and, if given, from a user's R2R or RxR episode
-files.
+Pairs are generated when they are needed. The pair with a given seed and index is the same in every
+process. Texts come from :mod:`mitigate.guards.text.learning.routes` and, if given, from a user's
+R2R or RxR episode files.
 """
 
 from __future__ import annotations
@@ -173,7 +173,7 @@ _MAKE = {
 def attacks(rng: np.random.Generator) -> list[str]:
     """Return one to three attack sentences.
 
-    They are sentences of the train split, or new sentences that resemble its families.
+    Each is a sentence of the train split, or a new sentence that resembles one of its families.
     """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [

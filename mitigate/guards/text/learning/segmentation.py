@@ -1,7 +1,8 @@
 """Train the network that finds the span of an attack (:mod:`mitigate.guards.text.segmenter`).
 
-The loss has two terms. The first is the negative log likelihood of the correct answer, which is one
-of all spans or "no attack". The second is a small binary cross-entropy for each clause.
+The first term of the loss is the negative log likelihood of the correct answer, which is one of all
+spans or "no attack". The second term is a binary cross-entropy for each clause, with a small
+weight.
 """
 
 from __future__ import annotations

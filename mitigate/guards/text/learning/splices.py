@@ -70,7 +70,8 @@ def splices(
 class _Source:
     """The lines of one fold.
 
-    Usually a group is drawn first and then a line of it, so that large groups do not dominate.
+    Usually a group is drawn first and then a line of this group, so that large groups do not
+    dominate.
     """
 
     def __init__(self, lines: Sequence[Line]) -> None:
@@ -100,8 +101,8 @@ class _Source:
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
         """Draw an attack.
 
-        To imitate longer attacks, some are joined from two attacks or get sentences that introduce
-        or close them.
+        To imitate longer attacks, some attacks are joined from two, or have sentences that
+        introduce or close them.
         """
         line = self._line(self.attacks, rng)
         attack = line.text
