@@ -275,11 +275,24 @@ class Rig:
             changed += [camera.name for camera in group.cameras]
         return changed
 
-    def guard(self, memory: Any, offsets: Mapping[str, int], guards: Guards) -> list[str]:
+    def guard(
+        self,
+        memory: Any,
+        offsets: Mapping[str, int],
+        guards: Guards,
+        started: dict[tuple[str, ...], Guards],
+    ) -> list[str]:
         """Apply ``guards`` to the frames in ``memory``; return the names of the changed cameras.
 
         A panorama of 12 cameras is one frame; each camera outside a panorama is a separate frame.
         One RGB and one depth frame of the same position, direction and size form one observation.
+
+        Args:
+            memory: frames of the current call.
+            offsets: position of each camera's frame in ``memory``.
+            guards: guards of the condition.
+            started: guards of the current episode by the names of the cameras of an observation.
+                New observations are added.
         """
         frames = [
             frame
@@ -289,8 +302,11 @@ class Rig:
         ]
         changed: list[str] = []
         for pair in _pair(frames):
+            names = tuple(camera.name for frame in pair for camera in frame.cameras)
+            if names not in started:
+                started[names] = guards.for_episode()
             before = {frame.kind: frame.read() for frame in pair}
-            after = guards.observe(before)
+            after = started[names].observe(before)
             for frame in (f for f in pair if after[f.kind] is not before[f.kind]):
                 frame.write(after[frame.kind])
                 changed += [camera.name for camera in frame.cameras]

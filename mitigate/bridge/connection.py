@@ -25,6 +25,7 @@ from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, MAX_TEXT, receive, send
 from mitigate.core.names import short, unknown
 from mitigate.corruptions import FrameStream, registry
+from mitigate.guards.guard import Guards
 
 
 def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, Any]:
@@ -123,7 +124,9 @@ class Connection:
             "stopped": self.on_stopped,
         }
         self.rig: Rig | None = None
-        self.streams: dict[Group, FrameStream] = {}  # kept when the cameras are described again
+        # both are kept when the cameras are described again
+        self.streams: dict[Group, FrameStream] = {}
+        self.guards: dict[tuple[str, ...], Guards] = {}  # of the episode
         self.offsets: dict[str, int] = {}
         self.scene = ""
         self.episode = ""
@@ -232,6 +235,7 @@ class Connection:
         self.scene, self.episode = read_start(message)
         self.open = True
         self.streams.clear()
+        self.guards.clear()
         self.loop = message.get("loop") is True
         self.seconds = 0.0
         self.calls = 0
@@ -282,7 +286,7 @@ class Connection:
             self.condition.key(self.scene, self.episode, int(message["call"])),
             None if heading is None else float(heading),
         )
-        changed += self.rig.guard(self.shared.map, self.offsets, self.condition.guards)
+        changed += self.rig.guard(self.shared.map, self.offsets, self.condition.guards, self.guards)
         self.seconds += time.perf_counter() - began
         self.calls += 1
         return {"changed": list(dict.fromkeys(changed))}

@@ -110,9 +110,9 @@ def _check_guards(guards: Guards) -> None:
     """
     if guards.adapts:
         raise ValueError(
-            f"The guard {guards.label} adapts the agent or remembers earlier frames, which the "
-            "bridge cannot do for another program. Leave restore= out, or choose a guard without "
-            "memory that changes only frames or instructions."
+            f"The guard {guards.label} adapts the agent, which the bridge cannot do for another "
+            "program. Leave restore= out, or choose a guard that changes only frames or "
+            "instructions."
         )
 
 

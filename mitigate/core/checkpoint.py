@@ -20,7 +20,7 @@ from safetensors.torch import load_file, save_file
 from torch import nn
 
 from mitigate.core import checksums, folders
-from mitigate.core.files import lfs_problem, write_text
+from mitigate.core.files import lfs_problem, weights_below, write_text
 from mitigate.core.names import short
 
 WEIGHTS = "model.safetensors"
@@ -44,6 +44,11 @@ def weights_file(path: str | Path) -> Path:
             'safetensors.torch.save_file(policy.state_dict(), "mine.safetensors").'
         )
     if not file.is_file():
+        if below := weights_below(path):
+            raise FileNotFoundError(
+                f"There are no weights at {path}, but in its folders {', '.join(below):.500}. Name "
+                f"one of these: {path / below[0]}."
+            )
         raise FileNotFoundError(
             f"There are no weights at {path}: expected a .safetensors file or a folder that holds "
             f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`; "

@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TextIO
 
 from mitigate.core import output
+from mitigate.core.names import unknown
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 # first line of a pointer file (Git LFS specification)
@@ -55,6 +56,9 @@ def find(path: str | Path) -> Path:
     candidates = places(path)
     place = next((candidate for candidate in candidates if candidate.exists()), candidates[0])
     if candidates[0].parts[:1] == (WEIGHTS,) and not place.exists():
+        if shipped := {f"{WEIGHTS}/{n}" for root in places(WEIGHTS) for n in weights_below(root)}:
+            namesakes = {name for name in shipped if Path(name).name == candidates[0].name}
+            raise FileNotFoundError(unknown("weights folder", str(path), namesakes or shipped))
         package = find_spec(WEIGHTS_PACKAGE)
         raise FileNotFoundError(
             f"There are no weights at {path}: not in this folder, not in the package "
@@ -64,6 +68,12 @@ def find(path: str | Path) -> Path:
             f"a checkout, set {WEIGHTS_VARIABLE}, or name other weights, such as runs/.../agent."
         )
     return place
+
+
+def weights_below(folder: Path) -> list[str]:
+    """Return the relative paths of folders with weights, up to two levels below ``folder``."""
+    files = [*folder.glob("*/*.safetensors"), *folder.glob("*/*/*.safetensors")]
+    return sorted({file.parent.relative_to(folder).as_posix() for file in files})
 
 
 def places(path: str | Path) -> list[Path]:

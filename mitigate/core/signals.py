@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing import resource_tracker
 from multiprocessing.process import BaseProcess
+from multiprocessing.util import Finalize
 from types import FrameType
 
 ENDING = (signal.SIGINT, signal.SIGTERM)
@@ -106,7 +107,8 @@ def start_worker(process: BaseProcess) -> None:
     """Start the ``process`` of a worker with SIGINT and SIGTERM blocked.
 
     The signals stay blocked until the worker calls :func:`leave_to_parent`, so they cannot
-    interrupt its imports.
+    interrupt its imports. A worker that still runs when this interpreter ends is killed, because
+    multiprocessing would send it SIGTERM, which it ignores, and then wait for it.
     """
     resource_tracker.ensure_running()  # starting it would unblock the signals
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
@@ -114,6 +116,7 @@ def start_worker(process: BaseProcess) -> None:
         process.start()
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+    Finalize(None, process.kill, exitpriority=0)
 
 
 def leave_to_parent() -> None:

@@ -2,9 +2,9 @@
 
 A guard may change the instruction of an episode (``begin``), the frames of an observation
 (``observe``), or the agent itself while an episode runs (``attach``). The default implementation of
-each method changes nothing. Guards are the safeguard (for text), the restorer (for frames), users'
-callables, and the methods of test-time adaptation. ``opening.py`` builds them from the options
-``safeguard=``, ``restore=`` and ``adapt=``.
+each method changes nothing. Examples of guards are the safeguard (for text), the restorer (for
+frames), users' callables, and the methods of test-time adaptation. ``opening.py`` builds them from
+the options ``safeguard=``, ``restore=`` and ``adapt=``.
 
 This module needs no torch.
 """
@@ -46,9 +46,9 @@ class EpisodeStart:
 class Guard:
     """Base class of guards; its methods change nothing unless a subclass overrides them.
 
-    An episode's result must not depend on other episodes or on their order. So ``observe`` must not
-    keep state between calls, unless the guard overrides ``attach``. With a guard that overrides
-    ``attach``, episodes run one after the other.
+    An episode's result must not depend on other episodes or on their order. So a guard that
+    remembers earlier frames must override ``for_episode``. A guard that overrides ``attach`` may
+    keep state in the agent; with such a guard, episodes run one after the other.
 
     Attributes:
         label: part of a table's column name.
@@ -80,12 +80,14 @@ class Guard:
         """
         return observation
 
-    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        """Apply :meth:`observe` to each observation.
+    def for_episode(self) -> Guard:
+        """Return the guard for one episode.
 
-        The observations belong to different episodes.
+        A guard that remembers earlier frames returns a new guard without memories. The method
+        ``observe`` of such a guard is called at every step, also if the agent does not read the
+        frames.
         """
-        return [self.observe(observation) for observation in observations]
+        return self
 
     def attach(self, agent: Any) -> AbstractContextManager:
         """Return a context manager that adapts ``agent`` for one episode.
@@ -192,10 +194,15 @@ class Guards(Guard):
             observation = guard.observe(observation)
         return observation
 
-    def observe_all(self, observations: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-        for guard in self.guards:
-            observations = guard.observe_all(observations)
-        return [*observations]
+    @property
+    def remembers(self) -> bool:
+        """Whether a guard remembers earlier frames of the episode."""
+        return bool(self._overriding("for_episode"))
+
+    def for_episode(self) -> Guards:
+        if not self.remembers:
+            return self
+        return Guards(guard.for_episode() for guard in self.guards)
 
     @property
     def continual(self) -> bool:  # type: ignore[override]
@@ -264,19 +271,27 @@ NO_GUARDS = Guards()
 class Guarded(WorldWrapper):
     """Wrapper around a world in which a guard changes the frames.
 
-    The guard runs only when the agent reads a frame, so frames that are not read cost nothing.
-    ``observation.clean`` does not change.
+    The guard runs only when the agent reads a frame, so frames that are not read cost nothing. A
+    guard that remembers frames receives all of them. ``observation.clean`` does not change.
     """
 
-    def __init__(self, world: World, guard: Guard) -> None:
+    def __init__(self, world: World, guards: Guards) -> None:
         super().__init__(world)
-        self.guard = guard
+        self.guards = guards
+        self.started = guards  # for the current episode
+
+    def reset(self, episode: Episode) -> Observation:
+        self.started = self.guards.for_episode()
+        return super().reset(episode)
 
     def _observe(self, met: Observation) -> Observation:
         def observed() -> dict[str, Any]:
-            guarded_frames = self.guard.observe(dict(met))
+            guarded_frames = self.started.observe(dict(met))
             return {name: guarded_frames[name] for name in met.frames}
 
+        if self.guards.remembers:
+            frames = observed()
+            return Observation(met.ready, lambda: frames, met.frames, clean=met.clean)
         return Observation(met.ready, observed, met.frames, clean=met.clean)
 
 

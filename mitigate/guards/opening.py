@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 from mitigate.guards.adaptation import choices as adaptations
 from mitigate.guards.frames import choices as restorers
-from mitigate.guards.frames.choices import SENSORS, callable_of, parted
+from mitigate.guards.frames.choices import HOLD, SENSORS, callable_of, parted
 from mitigate.guards.guard import EpisodeStart, Guard, Guards
 
 if TYPE_CHECKING:
@@ -106,7 +106,11 @@ def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard
     """
     if choice in NONE:
         return None
-    if callable_of(str(choice)) is not None:
+    if choice == HOLD:
+        from mitigate.guards.frames.hold import HoldLast
+
+        guard: Guard = HoldLast()
+    elif callable_of(str(choice)) is not None:
         from mitigate.guards.frames.callables import open_callable
 
         guard = open_callable(str(choice))

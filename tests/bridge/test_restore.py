@@ -56,7 +56,7 @@ def test_guard_restores_frames_in_place(restorer):
     far = {"min_depth": 0.0, "max_depth": 10.0, "normalize_depth": True}
     rig = Rig([*ring, camera("front", yaw=7.0), camera("depth", DEPTH, **far)])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 0.04})
-    changed = rig.guard(memory, offsets, Guards([restorer]))
+    changed = rig.guard(memory, offsets, Guards([restorer]), {})
     assert sorted(changed) == sorted(observed.name for observed in rig.cameras)
     for observed in rig.cameras:
         frame = observed.read(memory, offsets)
@@ -69,7 +69,7 @@ def test_guard_leaves_clean_frames_unchanged(restorer):
     rig = Rig([camera("rgb"), camera("depth", DEPTH)])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 2.0})
     before = bytes(memory)
-    assert rig.guard(memory, offsets, Guards([restorer])) == [] and bytes(memory) == before
+    assert rig.guard(memory, offsets, Guards([restorer]), {}) == [] and bytes(memory) == before
 
 
 def test_hook_restores_frames_of_the_clean_condition(command, restorer):
@@ -117,7 +117,7 @@ def test_guard_gets_rgb_and_depth_of_one_view_together():
 
     rig = Rig([*pair, *apart])
     memory, offsets = filled(rig, {RGB: 60, DEPTH: 0.25})
-    assert sorted(rig.guard(memory, offsets, Notes())) == ["depth", "other"]
+    assert sorted(rig.guard(memory, offsets, Notes(), {})) == ["depth", "other"]
     both, colour, depth = {RGB: (16, 16, 3), DEPTH: (16, 16, 1)}, (16, 16, 3), (16, 16, 1)
     assert sorted(seen, key=len) == [{RGB: colour}, {DEPTH: depth}, both]
     depths = [
@@ -127,7 +127,7 @@ def test_guard_gets_rgb_and_depth_of_one_view_together():
     not_level = [camera("rgb", orientation=[0.3, 0.0, 0.0]), camera("depth", DEPTH)]
     seen.clear()
     rig = Rig(not_level)
-    rig.guard(*filled(rig, {RGB: 60, DEPTH: 0.25}), Notes())
+    rig.guard(*filled(rig, {RGB: 60, DEPTH: 0.25}), Notes(), {})
     assert [len(observed) for observed in seen] == [1, 1]
 
 
@@ -166,7 +166,7 @@ def test_run_names_a_failing_callable(run, tmp_path):
 
 def test_run_rejects_a_guard_that_adapts_the_agent(run, tmp_path):
     ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:Politely")
-    assert "filters.Politely adapts the agent or remembers earlier frames" in ended.stderr
+    assert "filters.Politely adapts the agent, which the bridge cannot do" in ended.stderr
 
 
 def test_describe_names_restored_frames(restorer):

@@ -188,6 +188,28 @@ def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
     assert "(5, 25)" in ended.stdout and f"ended by {int(signal.SIGTERM)}" in ended.stdout
 
 
+HELD = """
+import sys
+from pathlib import Path
+from tests.core.test_workers import Lines, Squares, groups, results
+held = results(Squares(Path({folder!r})), groups("", ""), 2, Lines())  # never closed
+next(item for item in held if item)
+sys.exit("an error")
+"""
+
+
+def test_error_ends_a_program_that_still_holds_its_workers(tmp_path):
+    """An error keeps its frames, and so the workers, until the interpreter ends."""
+    ended = subprocess.run(
+        [sys.executable, "-c", HELD.format(folder=str(tmp_path))],
+        cwd=Path(__file__).parents[2],
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
+    assert ended.returncode == 1 and ended.stderr == "an error\n"
+
+
 def alive(pids):
     return [pid for pid in pids if Path(f"/proc/{pid}").exists()]
 

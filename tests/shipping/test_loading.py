@@ -35,6 +35,13 @@ def test_own_agent_loads_from_its_folder_only(folder, tmp_path, monkeypatch):
     agent.reset("walk past the red sofa")
 
 
+def test_load_suggests_the_nearest_shipped_weights():
+    with pytest.raises(FileNotFoundError, match="Did you mean checkpoints/hardened/harden?"):
+        mitigate.load("checkpoints/harden")
+    with pytest.raises(FileNotFoundError, match="but in its folders conv_adapter, harden,"):
+        mitigate.load("checkpoints/hardened")
+
+
 def test_load_rejects_unnamed_or_different_agent(tmp_path):
     with pytest.raises(FileNotFoundError, match="There are no weights at"):
         mitigate.load(tmp_path)

@@ -122,7 +122,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
         ('+columns.mine=["restore=nope"]', "Column mine: There is no restorer at nope"),
         (
             '+columns.mine=["restore=checkpoints/restorer:pose"]',
-            "Column mine: There are no weights at",
+            "Column mine: There is no weights folder .*Did you mean checkpoints/restorer?",
         ),
         ('+columns.mine=["safeguard=clasifier"]', "Column mine: .*Did you mean classifier?"),
         ('+columns.mine=["agent=recurent"]', "Column mine: .*Did you mean recurrent?"),

@@ -7,8 +7,7 @@ from mitigate.core.observation import VIEWS
 from mitigate.corruptions import SUITE_VERSION
 from tools.bench.evaluation import Pace
 from tools.bench.renderers import OURS
-from tools.bench.suite import PANORAMA_BAR, SEED, SEVERITY, TINY, Cost
-from tools.bench.targets import REASONS
+from tools.bench.suite import SEED, SEVERITY, Cost
 from tools.bench.tensors import Batch
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
@@ -22,8 +21,6 @@ COLUMNS = (
     "best peer",
     "peer / steady",
     "peer / per frame",
-    "target",
-    "steady / target",
     "steady / copy",
 )
 
@@ -53,7 +50,6 @@ def page(
         head,
         _corruptions(costs),
         _panorama(pair),
-        _over(costs),
         tensor_lines(batches),
         _training(stages),
         _evaluation(paces, by_workers),
@@ -77,7 +73,6 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
         "- **best peer**: the fastest other library, or plain NumPy, OpenCV or torch code for "
         "depth. The other libraries draw random numbers at each call and cache nothing. For these "
         "libraries the table shows the fastest of many calls.",
-        "- **target**: the time that this project aims at (no target at 12x64x64).",
         "- **steady / copy**: this time divided by the time to copy the frame.",
     ]
     for label, rows in costs.items():
@@ -96,9 +91,8 @@ def _row(name: str, cost: Cost) -> list[str]:
     if peer is not None:
         times = (f"{peer[1] / ms:.1f}" for ms in (cost.steady, cost.per_frame))
         peer_cells = [f"{peer[0]}: {peer[1]:.3f}", *times]
-    bar = ["", ""] if cost.bar is None else [f"{cost.bar:g}", f"{cost.steady / cost.bar:.2f}"]
     times_of_ours = [f"{ms:.4f}" for ms in (cost.steady, cost.per_frame, cost.first)]
-    return [f"`{name}`", *times_of_ours, *peer_cells, *bar, f"{cost.steady / cost.copy:.1f}"]
+    return [f"`{name}`", *times_of_ours, *peer_cells, f"{cost.steady / cost.copy:.1f}"]
 
 
 def _panorama(pair: float) -> list[str]:
@@ -106,35 +100,7 @@ def _panorama(pair: float) -> list[str]:
         "### The slowest pair on a panorama",
         "",
         f"`low_light_noise` and `multipath` on one panorama of 12 x 224 x 224, in one run: "
-        f"{pair:.2f} ms (target {PANORAMA_BAR} ms).",
-        "",
-    ]
-
-
-def _over(costs: dict[str, dict[str, Cost]]) -> list[str]:
-    missed = [
-        (name, label, cost)
-        for label, rows in costs.items()
-        for name, cost in rows.items()
-        if cost.over
-    ]
-    if not missed:
-        return ["Every target is met.", ""]
-    rows = [
-        [f"`{name}`", label, f"{cost.steady - cost.bar:.4f}", f"{cost.call:.4f}"]
-        + [f"{cost.steady - cost.call:.4f}", f"{cost.copy:.4f}", REASONS.get(name, "")]
-        for name, label, cost in missed
-        if cost.bar is not None
-    ]
-    head = ("corruption", "size", "above by", "call", "kernel", "frame copy", "where the time goes")
-    return [
-        "### Above the target",
-        "",
-        f"**call**: milliseconds of the same call on a frame of {TINY} x {TINY} pixels, which "
-        "measures the fixed overhead: checks, keys, look-ups and the call of compiled code. "
-        "**kernel**: the rest.",
-        "",
-        markdown_table(head, rows, words=2),
+        f"{pair:.2f} ms.",
         "",
     ]
 

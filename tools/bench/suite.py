@@ -14,16 +14,14 @@ import numpy as np
 from mitigate.corruptions import NAMES, Key, corrupt
 from mitigate.corruptions.registry import record, unseen_names
 from tools.bench.peers import peers
-from tools.bench.targets import BARS
 from tools.bench.timing import fresh, steady
 from tools.pages.gallery import rendered_frame
 
 SEVERITY = 0.6  # severity for R2R in the paper
 SEED = 7  # seed of the rendered apartment and of the keys
 SIZES = {"480x640": (1, 480, 640), "224x224": (1, 224, 224), "12x64x64": (12, 64, 64)}
-PANORAMA, PANORAMA_BAR = (12, 224, 224), 4.2  # the slowest pair, low_light_noise and then multipath
+PANORAMA = (12, 224, 224)  # of the slowest pair, low_light_noise and then multipath
 EPISODES = 4  # the steady state is a mean over this many episodes
-TINY = 4  # side in pixels of a frame so small that the time of a call does not depend on it
 
 
 @dataclass(frozen=True)
@@ -34,29 +32,20 @@ class Cost:
         steady: Time for consecutive frames of an episode.
         per_frame: Time if each frame starts a new episode, as in the schedule ``per_frame``.
         first: Time if each frame also has a new severity, so that tables must be built.
-        call: Steady-state time for a frame of 4 x 4 pixels.
         copy: Time for a plain copy of the frame.
         peers: Times of other libraries, by name.
-        bar: The target (``targets.py``), or None.
     """
 
     steady: float
     per_frame: float
     first: float
-    call: float
     copy: float
     peers: dict[str, float]
-    bar: float | None
 
     @property
     def best_peer(self) -> tuple[str, float] | None:
         """Return the fastest other library and its milliseconds."""
         return min(self.peers.items(), key=lambda item: item[1]) if self.peers else None
-
-    @property
-    def over(self) -> bool:
-        """Return whether the steady-state time exceeds the target."""
-        return self.bar is not None and self.steady > self.bar
 
 
 def frames(views: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
@@ -87,7 +76,6 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
                 rgb if record(name).modality == "rgb" else depth,
                 seconds,
                 others[name],
-                BARS[name][column] if column < 2 else None,
             )
             for name in names
         }
@@ -98,9 +86,7 @@ def _ignore_number(call: Callable[[], object], _: int) -> object:
     return call()
 
 
-def cost(
-    name: str, frame: np.ndarray, seconds: float, others: dict[str, float], bar: float | None
-) -> Cost:
+def cost(name: str, frame: np.ndarray, seconds: float, others: dict[str, float]) -> Cost:
     """Time one corruption.
 
     Args:
@@ -108,14 +94,12 @@ def cost(
         frame: uint8 [V, H, W, 3] or float32 metres [V, H, W].
         seconds: Duration of each measurement.
         others: Times of other libraries.
-        bar: The target in milliseconds; None without a target.
     """
-    tiny = np.ascontiguousarray(frame[:, :TINY, :TINY])
     heading = 0.3 if len(frame) > 1 else None  # without heading: the flare is in one view
 
-    def episode(i, image=frame, number=0):
+    def episode(i, number):
         key = Key(SEED, f"bench {number}", i)
-        return corrupt(image, name, SEVERITY, key=key, heading=heading)
+        return corrupt(frame, name, SEVERITY, key=key, heading=heading)
 
     episodes = [
         steady(partial(episode, number=number), seconds / EPISODES) for number in range(EPISODES)
@@ -132,10 +116,8 @@ def cost(
         fmean(episodes),
         fresh(new_episode, seconds),
         fresh(new_severity, seconds),
-        steady(lambda i: episode(i, tiny), seconds),
         steady(lambda _: frame.copy(), seconds),
         others,
-        bar,
     )
 
 

@@ -24,7 +24,6 @@ from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
 from mitigate.evaluation.page.command import written
-from mitigate.evaluation.page.document import report
 from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"
@@ -106,7 +105,7 @@ def render(entries: Sequence[LeaderboardEntry]) -> str:
             f"{entry.name} ({', '.join(one['agent'] for one in entry.agents)}): trained on "
             f"{entry.training_data or 'not stated'}; sensors {sensors}; {entry.link}"
         )
-    return report(rows, title="Leaderboard", notes=notes)
+    return document.report(rows, title="Leaderboard", notes=notes)
 
 
 def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:

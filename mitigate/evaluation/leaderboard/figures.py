@@ -44,10 +44,8 @@ def entry_of(
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
     tables = {", ".join((part.grid.heading, part.grid.suite, part.grid.rule)) for part in parts}
-    if (
-        len(tables) > 1
-        or len(label_columns((r["name"], r["agent"], r["seed"]) for r in chosen)) > 1
-    ):
+    columns = label_columns((row["name"], row["agent"], row["seed"]) for row in chosen)
+    if len(tables) > 1 or len(columns) > 1:
         raise ValueError(
             f"The rows of {name} belong to several splits, lists, suites, rules or agents: "
             f"{'; '.join(sorted(tables))}. Name a split, or a file with the rows of only one."

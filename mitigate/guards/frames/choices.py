@@ -1,7 +1,8 @@
 """Parse the values of ``restore=``.
 
-A value is the folder of a restorer or a user's ``module:callable`` (``callables.py``). The suffixes
-in ``FOLDER:rgb`` and ``FOLDER:depth`` restrict the restorer to one sensor. Needs no torch.
+A value is the folder of a restorer, ``hold`` (``hold.py``), or a user's ``module:callable``
+(``callables.py``). The suffixes in ``FOLDER:rgb`` and ``FOLDER:depth`` restrict the restorer to one
+sensor. Needs no torch.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ from mitigate.core.names import name_of
 from mitigate.core.observation import DEPTH, RGB
 
 SENSORS = (RGB, DEPTH)
+HOLD = "hold"
 _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 
