@@ -245,7 +245,7 @@ class Scores:
 
     @property
     def comparisons(self) -> list[tuple[str, ...]]:
-        """Each column, then one pair (column, reference) for each column except the reference."""
+        """The single columns, and the pairs (column, reference) of each other column."""
         first, *others = self.columns
         return [(first,), *((c,) for c in others), *((c, first) for c in others)]
 
@@ -261,8 +261,9 @@ class Scores:
     def curve(self, column: str, name: str, seed: int) -> Curve:
         """Return the curve of a seed.
 
-        The curve is empty if there are no clean successes or if severity 1 was not measured. It
-        omits severities with results for less than a fraction :data:`COVERAGE` of the episodes.
+        The curve is empty if there are no clean successes or if severity 1 was not measured. The
+        curve omits severities with results for less than a fraction :data:`COVERAGE` of the
+        episodes.
         """
         curve = {
             at: values

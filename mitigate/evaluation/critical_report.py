@@ -82,7 +82,7 @@ def markdown(part: Scores) -> str:
 
 
 def _table(part: Scores, comparisons: Sequence[tuple[str, ...]], loss: float | None) -> str:
-    """Return the table of one measure. Its columns are agents or pairs of agents."""
+    """Return the table of one measure. The table's columns are agents or pairs of agents."""
     lines = []
     for names in part.groups:
         label = title(names[0]) if len(names) == 1 else f"**Mean of {len(names)} corruptions**"

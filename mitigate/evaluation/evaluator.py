@@ -355,8 +355,8 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
 def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     """Sort the rows with these identities in the file ``out``, and return them (``rows.unique``).
 
-    As a result, the order of rows in the file does not depend on the number of processes. Other
-    rows keep their places.
+    As a result, the order of rows in the file does not depend on the number of processes. Rows with
+    other identities keep their places.
 
     Raises:
         FolderLostError: Rows are missing.

@@ -299,7 +299,7 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
 def _sum(episode: Episode) -> str:
     """Return the hash of those parts of an episode that an agent and a world use.
 
-    The other parts may differ between processes.
+    Other parts of an episode may differ between processes.
     """
     content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],

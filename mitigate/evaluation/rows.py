@@ -2,7 +2,7 @@
 
 A row contains its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). An evaluation
 appends to a ``.jsonl`` file; shipped files end in ``.jsonl.gz``. If a process was killed while it
-wrote, a ``.jsonl`` file may end in an incomplete line. This line is ignored, and the next append
+wrote, a ``.jsonl`` file may end in an incomplete line. Such a line is ignored, and the next append
 removes it.
 """
 
@@ -169,7 +169,7 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
             row is lost.
 
     Raises:
-        ValueError: The existing file has more rows than ``rows``, or it is damaged. It is not
+        ValueError: The existing file has more rows than ``rows``, or it is damaged. The file is not
             changed.
     """
     path, rows = Path(path), list(rows)

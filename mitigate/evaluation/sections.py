@@ -238,7 +238,7 @@ class Section:
 def references(rows: Iterable[Row], against: str | None) -> Sequence[str]:
     """Return the names of the reference columns.
 
-    These are ``against``, or :data:`REFERENCES` if ``against`` is None.
+    The result is ``against``, or :data:`REFERENCES` if ``against`` is None.
 
     Raises:
         ValueError: No row belongs to the column ``against``.

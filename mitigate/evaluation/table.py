@@ -4,9 +4,9 @@ With ``--draw scene``, the intervals describe the variation between scenes, and 
 episodes of the same scenes. With ``--critical 0.1,0.5``, the table compares the severities at which
 10 % and 50 % of the clean success are lost.
 
-The command accepts row files, and folders of runs or sweeps, which may be incomplete. It prints the
-table and writes ``table.md``, ``heatmap.png`` and ``severity.png``. With ``--critical``, it writes
-``critical.md``, ``critical.json`` and ``critical.png`` instead.
+The command accepts row files, and folders of runs or sweeps, which may be incomplete. The command
+prints the table and writes ``table.md``, ``heatmap.png`` and ``severity.png``. With ``--critical``,
+it writes ``critical.md``, ``critical.json`` and ``critical.png`` instead.
 """
 
 from __future__ import annotations

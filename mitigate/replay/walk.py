@@ -177,7 +177,7 @@ def decision_lines(
 ) -> list[dict[str, Any]]:
     """Return one JSON object per step.
 
-    It contains ``labels`` and the decision with and without corruption.
+    Each object contains ``labels`` and the decision with and without corruption.
     """
     lines = []
     for step, action in enumerate(corrupted.actions):
@@ -210,8 +210,8 @@ class Changes:
         aim: Fraction of steps at which the target position moved by more than ``MIN_AIM_SHIFT``, or
             None if the agent has no target position.
         agreement: Fraction of steps at which the agent chooses the driver's action. Steps at which
-            the driver's motion is not an action are left out. None if the driver's actions are
-            unknown, or if the agent's actions are continuous.
+            the driver's motion is not an action are left out. The value is None if the driver's
+            actions are unknown, or if the agent's actions are continuous.
         steps: Number of steps.
         distance: Mean Euclidean distance of continuous actions from the actions on clean frames, or
             None if actions are discrete.

@@ -143,15 +143,15 @@ def harden(
         steps: number of training steps.
         lr: learning rate. The default is 3e-4 for all weights and 2e-3 for adapters.
         broad_share: fraction of corrupted frames that have random compositions instead of
-            corruptions of the suite. These prepare the policy for corruptions that the suite does
-            not contain.
+            corruptions of the suite. Random compositions prepare the policy for corruptions that
+            the suite does not contain.
         schedule: how often the corruption changes in training, "per_episode" or "per_frame".
         validation: number of training episodes on which the trained weights, the given weights and
             an average of both are compared under each corruption, to choose the best
             (``shipping/selection.py``). With 0, the trained weights are used.
         seed: seed of training and corruptions.
-        workers: number of processes for the comparison. None means one per core if there is enough
-            work.
+        workers: number of processes for the comparison. With None, one process per core is used if
+            there is enough work.
         out: folder of the run. The default is a folder in runs/harden.
         **settings: other arguments of the method's class, such as ``episodes=16``. The classes are
             :class:`~mitigate.recipes.self_distil.SelfDistil` and

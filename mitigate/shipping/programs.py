@@ -314,7 +314,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 def _drop_type_checks(program: ExportedProgram) -> None:
     """Remove the type checks of stored tensors.
 
-    Over a hundred calls are removed. These checks cannot fail.
+    Over a hundred calls are removed. The removed checks cannot fail.
     """
     graph = program.graph_module.graph
     for node in list(graph.nodes):

@@ -43,7 +43,7 @@ class Objective(nn.Module):
         ahead: whether workers may run jobs in advance, because jobs read no weights.
         needs: names of the agent's attributes that the objective uses.
         otherwise: advice for the error message if the agent lacks one of these attributes.
-        workers: number of worker processes for jobs. None means one per core.
+        workers: number of worker processes for jobs. With None, there is one worker per core.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {}

@@ -1,9 +1,9 @@
 """Write result rows as one HTML file: ``mitigate report ROWS... --out report.html``.
 
 ROWS are row files, or folders of runs or sweeps, which may be incomplete. The page is one file and
-needs no network. It has sortable tables, heatmaps whose cells list their episodes, and curves. With
-``--walk base=checkpoints/base``, agents run some episodes again, and the page draws their
-trajectories.
+needs no network. The page has sortable tables, heatmaps whose cells list their episodes, and
+curves. With ``--walk base=checkpoints/base``, agents run some episodes again, and the page draws
+their trajectories.
 """
 
 from __future__ import annotations

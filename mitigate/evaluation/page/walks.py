@@ -47,8 +47,8 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     ran.
 
     Pairs are taken from the outcomes in :data:`KINDS` in turn, each time with another corruption.
-    It follows the order of ``rows``, which must all have the same seed. No episode is repeated. The
-    result is for display and is not a random sample; the tables show the frequencies.
+    The choice follows the order of ``rows``, which must all have the same seed. No episode is
+    repeated. The result is for display and is not a random sample; the tables show the frequencies.
     """
     first, last = (
         {

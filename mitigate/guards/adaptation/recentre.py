@@ -2,7 +2,7 @@
 
 A corruption shifts the mean of features. Before the evaluation, this guard measures the mean on
 clean frames. During an episode, it estimates the current mean, and subtracts the difference between
-the two means from the features. It needs no normalisation layers and no gradients.
+the two means from the features. The method needs no normalisation layers and no gradients.
 """
 
 from __future__ import annotations

@@ -42,7 +42,7 @@ class LanguageModel(nn.Module):
         precision: precision of the frozen weights: "fp32", "bf16" or "int8" (bitsandbytes
             LLM.int8).
         lora: dict with the settings ``r``, ``alpha``, ``targets`` (module names) and ``dropout``.
-            None adds no adapter.
+            With None, no adapter is added.
         prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
         batch: number of texts that are rewritten at once.
 
