@@ -154,9 +154,9 @@ def test_rows_of_rejects_a_folder(rows, tmp_path, monkeypatch, capsys):
     assert entry.rows["file"] == "mine/rows.jsonl"
     os.mkfifo("pipe.jsonl")
     for file, words in (
-        ("mine", "one file of rows, got mine, not a file"),
-        (".", "one file of rows, got ., not a file"),
-        ("pipe.jsonl", "one file of rows, got pipe.jsonl, not a file"),
+        ("mine", "one file of rows, but mine is not a file"),
+        (".", "one file of rows, but . is not a file"),
+        ("pipe.jsonl", "one file of rows, but pipe.jsonl is not a file"),
     ):
         replace(entry, rows=entry.rows | {"file": file}).save("entries/base.json")
         assert command.main(["check", "entries"]) == 1
