@@ -1,7 +1,8 @@
 """Write an oracle's episodes as a LeRobot dataset, version 3.
 
-RGB becomes a lossless video, depth a lossless video of lerobot's 12-bit codes. The state is the
-pose (x, y, heading), the action is the number of the oracle's action.
+RGB frames are written as a lossless video. Depth frames are encoded in lerobot's 12-bit format and
+written as a lossless video. The state is the pose (x, y, heading). The action is an integer that
+identifies the oracle's action.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ def check_empty(out: Path) -> None:
 def write_dataset(out: Path, episodes: Sequence[Recorded]) -> None:
     """Write all files of a dataset to the folder ``out``.
 
-    ``meta/info.json`` is last, so that an incomplete dataset cannot be opened.
+    ``meta/info.json`` is written last, so that an incomplete dataset cannot be opened.
     """
     height, width = episodes[0][0][0][RGB].shape[:2]
     tasks = list(dict.fromkeys(task for _, _, task in episodes))
