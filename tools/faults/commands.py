@@ -144,8 +144,8 @@ def dead_port() -> Iterator[int]:
 
 
 def die_first_address(commands: Commands) -> str:
-    """Evaluate with an endpoint whose host name has two addresses: first one that never answers,
-    then the real one.
+    """Evaluate with an endpoint whose host name has two addresses: the first never answers, and
+    the second is the real address.
     """
     rows = []
     with answering() as (port, requests), dead_port() as dead:
