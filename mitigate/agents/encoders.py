@@ -10,6 +10,7 @@ view, because an agent with one camera steers by the horizontal position of an o
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -82,10 +83,8 @@ class Encoder(nn.Module):
     def __init__(self, size: int) -> None:
         super().__init__()
         if size < self.stride or size % self.stride:
-            raise ValueError(
-                f"size must be a multiple of {self.stride} pixels, such as {self.usual}, got "
-                f"{size}."
-            )
+            example = f"{self.stride} pixels, such as {self.usual}"
+            raise ValueError(f"size must be a multiple of {example}, got {size}.")
         self.size = size
         self.stem, self.stages = self.backbone()
 
@@ -127,11 +126,12 @@ class RGBEncoder(Encoder):
 
     channels, resize = 3, "area"
     widths: tuple[int, ...] = (32, 48, 96, 160)
+    kernel = (GRID, GRID)  # size of the convolution that gathers the last map
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)
         last = self.widths[-1]
-        self.gather = nn.Conv2d(last, 2 * last, GRID, groups=last)
+        self.gather = nn.Conv2d(last, 2 * last, self.kernel, groups=last)
         self.embed = nn.Linear(2 * last, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
@@ -153,16 +153,20 @@ class DepthEncoder(Encoder):
     """
 
     channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+    joined = GRID  # number of columns that are embedded together
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)
         last = self.widths[-1]
         self.rows = nn.Conv2d(last, last, (GRID, 1))
-        self.embed = nn.Linear(GRID * last, width)
+        self.embed = nn.Linear(self.joined * last, width)
 
-    def forward(self, depth: Tensor) -> Tensor:
-        x = self.maps(depth_channels(self.sized(depth)))
-        return F.gelu(self.embed(F.relu(self.rows(x)).flatten(1)))
+    def columns(self, depth: Tensor) -> Tensor:
+        """Return the last map without its rows, ``[n, widths[-1], 1, 4]``."""
+        return F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
+
+    def forward(self, depth: Tensor) -> Any:
+        return F.gelu(self.embed(self.columns(depth).flatten(1)))
 
 
 def presence_loss(logits: Tensor, truth: Tensor) -> Tensor:
@@ -210,47 +214,36 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
     return out
 
 
-class CameraRGB(Encoder):
+class CameraRGB(RGBEncoder):
     """Encode RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits of four columns.
 
     Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
     """
 
-    channels, widths, resize = 3, (32, 48, 96, 160), "area"
-
-    def __init__(self, width: int, size: int = SIZE) -> None:
-        super().__init__(size)
-        last = self.widths[-1]
-        self.gather = nn.Conv2d(last, 2 * last, (GRID, 1), groups=last)
-        self.embed = nn.Linear(2 * last, width)
-        self.concepts = nn.Linear(width, len(CONCEPTS))
+    kernel = (GRID, 1)
 
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = F.gelu(self.gather(self.maps(self.sized(rgb) / 127.5 - 1)))
+        x = F.gelu(self.gather(self.maps(self.normalised(rgb))))
         features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
         return features, self.concepts(features)
 
 
-class CameraDepth(Encoder):
+class CameraDepth(DepthEncoder):
     """Encode depth (metres ``[n, H, W, 1]``) as features of four columns and free-space logits.
 
     Features have the shape ``[n, 4, width]``. The logits ``[n, 30, 12]`` predict free space for
     each angle (from 45 degrees left to 45 degrees right) and distance (0.25 to 3 m).
     """
 
-    channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+    joined = 1
 
     def __init__(self, width: int, size: int = SIZE) -> None:
-        super().__init__(size)
-        last = self.widths[-1]
-        self.rows = nn.Conv2d(last, last, (GRID, 1))
-        self.embed = nn.Linear(last, width)
+        super().__init__(width, size)
         hidden = nn.Linear(GRID * width, 160)
         self.free = nn.Sequential(hidden, nn.GELU(), nn.Linear(160, DIRECTIONS * DISTANCES))
 
     def forward(self, depth: Tensor) -> tuple[Tensor, Tensor]:
-        x = F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
-        features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
+        features = F.gelu(self.embed(self.columns(depth).squeeze(2).transpose(1, 2)))
         return features, self.free(features.flatten(1)).unflatten(1, (DIRECTIONS, DISTANCES))
 
 

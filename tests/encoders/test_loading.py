@@ -226,7 +226,7 @@ def test_exported_program_gets_inner_adapters(tmp_path):
 def loading_adapted(result: Encoder) -> list[str]:
     from mitigate.agents.adapters import adapted
 
-    return adapted(result.model)
+    return [*adapted(result.model)]
 
 
 @pytest.mark.parametrize("kind", ["plain", "nested", "safetensors"])
