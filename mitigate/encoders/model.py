@@ -268,11 +268,8 @@ class Encoder(nn.Module):
             return self._item(self.model(inputs))
         outputs: list[Any] = []
         module = modules[self.output]
-        handle = module.register_forward_hook(lambda *call: outputs.append(call[2]))
-        try:
+        with module.register_forward_hook(lambda *call: outputs.append(call[2])):
             self.model(inputs)
-        finally:
-            handle.remove()
         if not outputs:
             raise ValueError(
                 f"The encoder does not call its module {self.output}. Choose another agent.output."

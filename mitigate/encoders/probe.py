@@ -18,6 +18,7 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import Frames, corrupted
 from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
+BATCH = 32  # frames that are encoded at once
 RESAMPLES = 1000  # bootstrap resamples of the scenes (heuristic)
 FEWEST = 10  # a label is used if it has this many positive and negative frames (heuristic)
 # candidates for the ridge, times the number of frames; chosen on training frames
@@ -55,17 +56,15 @@ def features(
     corruption: Corruption,
     seed: int,
     progress: Progress,
-    batch: int = 32,
 ) -> np.ndarray:
     """Return pooled features float32 [N, C] of every frame under ``corruption``."""
     device = next(encoder.model.parameters(), torch.zeros(())).device
     batches = []
-    for start in range(0, len(frames), batch):
-        part = range(start, min(start + batch, len(frames)))
-        keys = [Key(seed, f"report-{index}") for index in part]
+    for start in range(0, len(frames), BATCH):
+        part = range(start, min(start + BATCH, len(frames)))
         views = [
-            corrupted(frames, index, corruption, key, encoder.far())
-            for index, key in zip(part, keys, strict=True)
+            corrupted(frames, index, corruption, Key(seed, f"report-{index}"), encoder.far())
+            for index in part
         ]
         inputs = torch.from_numpy(np.stack(views)).to(device)
         batches.append(encoder.pooled(encoder(inputs)).cpu().numpy())
@@ -80,12 +79,12 @@ class Resamples:
     scene, R is 0, because the differences between scenes are unknown.
     """
 
-    def __init__(self, scene: np.ndarray, seed: int = 0, count: int = RESAMPLES) -> None:
+    def __init__(self, scene: np.ndarray, seed: int = 0) -> None:
         _, scene_index = np.unique(scene, return_inverse=True)
         scenes = int(scene_index.max()) + 1
-        draws = np.random.Generator(np.random.PCG64(seed)).multinomial(
-            scenes, np.full(scenes, 1 / scenes), size=count if scenes > 1 else 0
-        )
+        count = RESAMPLES if scenes > 1 else 0
+        rng = np.random.Generator(np.random.PCG64(seed))
+        draws = rng.multinomial(scenes, np.full(scenes, 1 / scenes), size=count)
         self.weights = draws[:, scene_index].astype(np.float32)
 
     def mean(self, values: np.ndarray) -> Score:
@@ -222,7 +221,5 @@ def measure(
 
 def average(scores: Iterable[Score]) -> Score:
     """Return the mean over conditions, which are resampled together."""
-    listed = list(scores)
-    return Score(
-        float(np.mean([s.value for s in listed])), np.mean([s.samples for s in listed], axis=0)
-    )
+    values, samples = zip(*((score.value, score.samples) for score in scores), strict=True)
+    return Score(float(np.mean(values)), np.mean(samples, axis=0))

@@ -34,6 +34,7 @@ TRAIN, UNSEEN = "train", "unseen"
 FEWEST_UNSEEN = 5
 NEAR = 0.05  # minimum fraction of depth that must be closer than ``FARTHEST`` metres (heuristic)
 NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth is farther (heuristic)
+EVERY = 2  # every n-th view of a panorama is used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
@@ -75,7 +76,6 @@ class WorldFrames:
         sensor: "rgb" or "depth".
         unseen: an episode list whose scenes are the unseen ones.
         label: the entry of the truth, [views, L] or [L] in {0, 1}, or None for no labels.
-        every: use every n-th view of a panorama.
 
     Raises:
         ValueError: The world cannot render from any pose, it lacks the sensor, or a scene is in
@@ -85,7 +85,7 @@ class WorldFrames:
     files = False
 
     def __init__(
-        self, world: Any, sensor: str, unseen: str, label: str | None = "concepts", every: int = 2
+        self, world: Any, sensor: str, unseen: str, label: str | None = "concepts"
     ) -> None:
         if not isinstance(world, Placeable):
             raise ValueError(
@@ -98,7 +98,7 @@ class WorldFrames:
                 f"{type(world).__name__} has no {sensor}, only {', '.join(world.sensors)}. Set "
                 "agent.sensor, or choose another world (env=...)."
             )
-        self.world, self.sensor, self.label, self.every = world, sensor, label, every
+        self.world, self.sensor, self.label = world, sensor, label
         train = list(world.scenes)
         unseen_scenes = sorted({episode.scene_id for episode in read_episodes(find(unseen))})
         both = sorted(set(train) & set(unseen_scenes))
@@ -117,7 +117,7 @@ class WorldFrames:
         self.world.enter(scene)
         shape = self.world.sensors[self.sensor].shape
         views = shape[0] if len(shape) == 4 else 1
-        step = min(self.every, views)
+        step = min(EVERY, views)
         while count > 0:
             heading = float(rng.uniform(-np.pi, np.pi))
             chosen = list(range(int(rng.integers(step)), views, step))[:count]

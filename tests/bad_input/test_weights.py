@@ -10,6 +10,7 @@ import shutil
 import struct
 import time
 import zipfile
+from types import SimpleNamespace
 from pathlib import Path
 
 import pytest
@@ -304,7 +305,6 @@ ENCODER_BAD = {
     "nothing": b"",
     "a list": [],
     "another format": ENCODER | {"format": 2, "tune": "all"},
-    "format of truth": ENCODER | {"format": True, "tune": "all"},
     "no tune": ENCODER,
     "a sensor of a list": ENCODER | {"sensor": ["rgb"], "tune": "all"},
     "a transform of text": ENCODER | {"transform": "none", "tune": "all"},
@@ -316,7 +316,9 @@ ENCODER_BAD = {
 def test_encoder_rejects_invalid_folder(tmp_path, output):
     raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / encoder_folder.CARD).write_bytes(raw)
-    refused(lambda: encoder_folder.card(tmp_path), encoder_folder.CARD)
+    encoder = SimpleNamespace(**ENCODER, tune="all")
+    encoder.transform = SimpleNamespace(settings=dict)
+    refused(lambda: encoder_folder.fill(encoder, tmp_path), encoder_folder.CARD)
 
 
 @FAST

@@ -43,10 +43,10 @@ def test_load_model_calls_an_import_path():
     [
         ("no.such.package:make", None, "cannot be imported"),
         ("tests.encoders.shapes:tinyy", None, "Did you mean tiny"),
-        (TINY, {"depth": 3}, "cannot be called with"),
+        (TINY, {"depth": 3}, "failed when it was called with .*unexpected keyword"),
         ("os.path:join", {"a": "b"}, "must return a torch nn.Module"),
-        ("weights.pth", None, "Name it as agent.weights"),
-        ("model.onnx", None, "neither an import path"),
+        ("weights.pth", None, "name it as agent.weights"),
+        ("model.onnx", None, "must be an exported program"),
         ("efficientnet_lite_pytorch:EfficientNet.from_name", None, "extra 'encoders'"),
     ],
 )

@@ -103,7 +103,11 @@ class ActorCritic(nn.Module):
             self.critic: nn.Module = (
                 _StableBaselinesCritic(network)
                 if isinstance(policy, StableBaselinesPolicy)
-                else _new_critic(self._features(frames).shape[1])
+                else nn.Sequential(
+                    nn.Linear(self._features(frames).shape[1], HIDDEN),
+                    nn.Tanh(),
+                    nn.Linear(HIDDEN, 1),
+                )
             )
         self.critic.to(policy.device)
 
@@ -113,9 +117,8 @@ class ActorCritic(nn.Module):
         if isinstance(answer, Tensor):
             raise ValueError(
                 f"{self.policy.name} returns actions or their values, but method='ppo' needs a "
-                "distribution of actions. Give forward= a function that returns one, such as "
-                "lambda net, observation: torch.distributions.Normal(net(observation), 0.1), or "
-                "use method='self_distil'."
+                "distribution of actions, such as a torch.distributions.Normal. Give forward= a "
+                "function that returns one, or use method='self_distil'."
             )
         return Joint(answer)
 
@@ -153,10 +156,6 @@ class _StableBaselinesCritic(nn.Module):
 
     def forward(self, features: Tensor) -> Tensor:
         return self.head(self.layers.forward_critic(features))
-
-
-def _new_critic(size: int) -> nn.Module:
-    return nn.Sequential(nn.Linear(size, HIDDEN), nn.Tanh(), nn.Linear(HIDDEN, 1))
 
 
 def _per_action(values: Tensor) -> Tensor:
