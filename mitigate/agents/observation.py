@@ -96,15 +96,11 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
     channels, first = CHANNELS[name], () if views == 1 else (views,)
     size = array.shape[-2] if array.ndim > 1 else 0
     if not size or array.shape != (*first, size, size, channels):
+        expected = f"{views} square views, one per 30 degrees: [{views}, H, H, {channels}]"
+        if views == 1:
+            expected = f"one square forward view (env.views=1): [H, H, {channels}]"
         raise ValueError(
-            f"{name} has the shape {list(array.shape)}, but the agent needs "
-            + (
-                f"one square forward view: [H, H, {channels}], H > 0. Set env.views=1 for a world "
-                "of this project."
-                if views == 1
-                else f"{views} square views: [{views}, H, H, {channels}], H > 0, view k at 30 k "
-                "degrees to the right."
-            )
+            f"{name} has the shape {list(array.shape)}, but the agent needs {expected}, H > 0."
         )
     if name == DEPTH:
         _check_unit(array, views)

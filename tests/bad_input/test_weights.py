@@ -10,8 +10,8 @@ import shutil
 import struct
 import time
 import zipfile
-from types import SimpleNamespace
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import torch

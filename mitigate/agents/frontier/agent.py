@@ -217,11 +217,17 @@ class FrontierAgent(SideBySide, nn.Module):
     def _update_map(
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
-        """Add an observation to the map."""
+        """Add an observation to the map; mark the cells ahead as blocked if the last forward step
+        was too short.
+        """
         if self.actions == 0:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
-            self._check_progress(pose, float(np.hypot(*(pose[:2] - self._before))))
+            moved = float(np.hypot(*(pose[:2] - self._before)))
+            self._bumps += moved < SLID
+            if moved < STUCK:
+                self.grid.block(pose)
+                self._planned = 0
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
@@ -229,15 +235,6 @@ class FrontierAgent(SideBySide, nn.Module):
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
-
-    def _check_progress(self, pose: np.ndarray, moved: float) -> None:
-        """Mark the cells ahead as blocked if the last forward step, of ``moved`` metres, was too
-        short.
-        """
-        self._bumps += moved < SLID
-        if moved < STUCK:
-            self.grid.block(pose)
-            self._planned = 0
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
@@ -323,15 +320,13 @@ class FrontierAgent(SideBySide, nn.Module):
 
         The best frontier has the highest difference between its value and its path cost.
         """
-        best = -np.inf
-        target = None
+        best, target = -np.inf, None
         for group in frontiers(self.grid):
             cost = ways.at(group)
-            nearest = int(cost.argmin())
             value = float(self.grid.value[group[:, 0], group[:, 1]].max())
-            if np.isfinite(cost[nearest]) and WORTH * value - cost[nearest] > best:
-                best = WORTH * value - cost[nearest]
-                target = group[nearest]
+            gain = WORTH * value - cost.min()  # -inf for a frontier that cannot be reached
+            if gain > best:
+                best, target = gain, group[int(cost.argmin())]
         return target
 
 

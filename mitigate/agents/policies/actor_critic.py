@@ -103,11 +103,7 @@ class ActorCritic(nn.Module):
             self.critic: nn.Module = (
                 _StableBaselinesCritic(network)
                 if isinstance(policy, StableBaselinesPolicy)
-                else nn.Sequential(
-                    nn.Linear(self._features(frames).shape[1], HIDDEN),
-                    nn.Tanh(),
-                    nn.Linear(HIDDEN, 1),
-                )
+                else _new_critic(self._features(frames).shape[1])
             )
         self.critic.to(policy.device)
 
@@ -156,6 +152,10 @@ class _StableBaselinesCritic(nn.Module):
 
     def forward(self, features: Tensor) -> Tensor:
         return self.head(self.layers.forward_critic(features))
+
+
+def _new_critic(size: int) -> nn.Module:
+    return nn.Sequential(nn.Linear(size, HIDDEN), nn.Tanh(), nn.Linear(HIDDEN, 1))
 
 
 def _per_action(values: Tensor) -> Tensor:

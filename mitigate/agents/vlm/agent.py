@@ -341,15 +341,12 @@ class VLMAgent(AnsweringAgent, nn.Module):
                     f"with another sha256 than that of {self.model}. Set agent.model to the model "
                     "of the adapter."
                 )
-        tensors, expected = load_tensors(file), self._adapter()
-        wrong = sorted(
-            name
-            for name in {*tensors, *expected}
-            if name not in tensors
-            or name not in expected
-            or tensors[name].shape != expected[name].shape
+        tensors = load_tensors(file)
+        shapes, expected = (
+            {(name, value.shape) for name, value in each.items()}
+            for each in (tensors, self._adapter())
         )
-        if wrong:
+        if wrong := sorted({name for name, _ in shapes ^ expected}):
             raise ValueError(
                 f"{file} does not fit agent.lora: {len(wrong)} tensors are missing, unknown or of "
                 f"another shape ({', '.join(wrong[:3])} ...). Use r and target modules of its "
