@@ -201,8 +201,7 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
     if any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items()):
         warnings.warn(
             "The backbone's running statistics (BatchNorm) have changed since the adapters were "
-            "inserted, so these adapters fit only this backbone: save it, too. To keep the "
-            "statistics unchanged, train with the backbone in eval mode, model.eval().",
+            "inserted: save the backbone, too, or train with it in eval mode, model.eval().",
             stacklevel=3,
         )
     modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
@@ -245,8 +244,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. First load the weights that "
-            "the adapters were trained on. To run in another dtype, convert the model afterwards."
+            f"{escaped(str(expected))}, but this one has {sha}. Load its weights and dtype first."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -332,16 +330,14 @@ def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
     judges = {name for name, adapter in adapters.items() if isinstance(adapter, FrameGate)}
     if idle := sorted(judges - {*gates.values()}):
         raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps follows it "
-            "in the same encoder, and a gate cannot control adapters for tokens. Leave it out of "
-            "gates, or choose other target modules."
+            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps is in the "
+            "same encoder. Leave it out of gates, or choose other target modules."
         )
     # an existing attribute with this name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]
     if conflicts:
         raise ValueError(
-            f"{', '.join(conflicts)} already has an attribute {NAME!r}, the name under which an "
-            "adapter is added. Choose other target modules."
+            f"{', '.join(conflicts)} already has an attribute {NAME!r}. Choose other modules."
         )
     model.requires_grad_(False)
     usual = next(model.parameters(), torch.zeros(()))

@@ -247,11 +247,6 @@ class CameraDepth(DepthEncoder):
         return features, self.free(features.flatten(1)).unflatten(1, (DIRECTIONS, DISTANCES))
 
 
-def free_metres(logits: Tensor) -> Tensor:
-    """Return the expected free distance ``[n, 30]`` in metres for logits ``[n, 30, 12]``."""
-    return STEP * logits.sigmoid().cumprod(-1).sum(-1)
-
-
 def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
     """Return features [n, F] and logits for frames [n, H, W, c] of one camera.
 
@@ -259,7 +254,8 @@ def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tens
     these are probabilities of concepts; for depth, these are free distances in metres.
     """
     features, logits = encoder(frames)
-    predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
+    chances = logits.sigmoid()
+    predicted = STEP * chances.cumprod(-1).sum(-1) if sensor == DEPTH else chances.flatten(-2)
     return torch.cat([features.flatten(-2), predicted], -1), logits
 
 

@@ -131,8 +131,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     if sha != card["agent"]:
         raise ValueError(
             f"The weights in {folder} make an agent with the hash {sha}, but {CARD} names "
-            f"{short(card['agent'])}. {_AGAIN} An agent of your class must have the dtype that it "
-            "was exported in, usually float32: convert it afterwards."
+            f"{short(card['agent'])}. {_AGAIN} Convert an agent to another dtype afterwards."
         )
     give_settings(filled, folder / CONFIG, _AGAIN)
     return filled.eval()

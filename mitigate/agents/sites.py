@@ -123,9 +123,8 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
             return [name for i, name in enumerate(names) if i in at]
     usable = [name for name, site in sites.items() if isinstance(site, Site)]
     raise ValueError(
-        "The encoder has no list of at least four blocks, so the modules to adapt must be named: "
-        "agent.adapters.targets=[...], regular expressions for names of modules that return maps "
-        f"or tokens. Such modules are {', '.join(usable[:24]) or 'missing'}."
+        "The encoder has no list of at least four blocks. Name the modules to adapt: "
+        f"agent.adapters.targets=[...]. Possible are {', '.join(usable[:24]) or 'none'}."
     )
 
 
@@ -160,8 +159,7 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
         if not hits:
             raise ValueError(
                 f"target module {target!r} matches none of the model's {len(names)} modules, such "
-                f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
-                "expression for it."
+                f"as {', '.join(names[:12])}. Give a regular expression for the end of a name."
             )
         matches |= hits
     return matches

@@ -26,7 +26,7 @@ from torch.fx import GraphModule
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
-from mitigate.core.names import escaped, short, unknown
+from mitigate.core.names import escaped, unknown
 
 # how to write an exported program, for messages
 EXPORT = "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)"
@@ -54,8 +54,7 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
     if path.suffix.lower() != ".pt2":
         raise ValueError(
             f"agent.model={model} must be an exported program (.pt2, {EXPORT}), or an import path "
-            "(package.module:callable, such as torchvision.models:resnet50). If the file holds "
-            "weights, name it as agent.weights."
+            "(package.module:callable). If the file holds weights, name it as agent.weights."
         )
     if not path.is_file():
         raise FileNotFoundError(f"There is no exported program at agent.model={model}.")
@@ -177,35 +176,35 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
     expected = model.state_dict()
     wrong = [
-        *(f"{n} is missing" for n in expected if n not in loaded),
-        *(f"{short(n)} is unknown" for n in loaded if n not in expected),
-        *(
-            f"{n} is {_form(loaded[n])}, not {_form(expected[n])}"
-            for n in expected
-            if n in loaded and not _fits(loaded[n], expected[n])
-        ),
+        f"{escaped(name)} is {_form(loaded.get(name))}, not {_form(expected.get(name))}"
+        for name in expected | loaded
+        if not _fits(loaded.get(name), expected.get(name))
     ]
     if wrong:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
         raise ValueError(
             f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
-            f"differences). Their names begin with {escaped(', '.join(begins[:8]))}; "
-            f"agent.prefix is {prefix!r}. Set it to the prefix of the encoder's names, such as "
-            "net.rgb_encoder.model. (with the dot)."
+            f"differences). Their names begin with {escaped(', '.join(begins[:8]))}; agent.prefix "
+            f"is {prefix!r}. Set it to the encoder's prefix, such as net.rgb_encoder.model. (with "
+            "the dot)."
         )
     model.load_state_dict(loaded)
     checkpoint.check_finite(model, f"The weights {weights}")
 
 
-def _fits(loaded: Tensor, expected: Tensor) -> bool:
+def _fits(loaded: Tensor | None, expected: Tensor | None) -> bool:
     """Return whether a weight may replace another: float types may differ, but not integers and
     floats.
     """
+    if loaded is None or expected is None:
+        return False
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
 
 
-def _form(value: Tensor) -> str:
+def _form(value: Tensor | None) -> str:
+    if value is None:
+        return "absent"
     layout = "" if value.layout == torch.strided else f" {str(value.layout).removeprefix('torch.')}"
     return f"{str(value.dtype).removeprefix('torch.')} {tuple(value.shape)}{layout}"
 

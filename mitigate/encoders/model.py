@@ -219,8 +219,7 @@ class Encoder(nn.Module):
         if means not in (1, channels):
             raise ValueError(
                 f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
-                "channels. For depth without normalisation set agent.transform.mean=[0] "
-                "agent.transform.std=[1]."
+                "channels. Without normalisation, set agent.transform.mean=[0] and std=[1]."
             )
         self.model = loading.load_model(model, kwargs)
         if weights is not None:
@@ -289,21 +288,11 @@ class Encoder(nn.Module):
         self,
         targets: str | Sequence[str] = AUTO,
         sites: int = SITES,
-        reduction: int = 8,
-        kernel: int = 3,
-        middle: int | None = None,
-        gate: bool = False,
+        **options: Any,
     ) -> None:
         """Freeze the encoder and insert adapters; its output does not change yet."""
-        names = inserted.insert_adapters(
-            self.model,
-            self.targets(targets, sites),
-            reduction=reduction,
-            kernel=kernel,
-            run=self._probe,
-            gate=gate,
-            middle=middle,
-        )
+        modules = self.targets(targets, sites)
+        names = inserted.insert_adapters(self.model, modules, run=self._probe, **options)
         share = inserted.trainable_share(self.model)
         say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
 
@@ -355,10 +344,8 @@ class Encoder(nn.Module):
         except Exception as error:  # the user's code may raise any error
             raise ValueError(
                 f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
-                f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set "
-                "agent.transform.size to the size of its input and agent.sensor to rgb or depth. A "
-                "program traced or exported for one frame does not accept two: export it with a "
-                "dynamic number of frames."
+                f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set agent.sensor "
+                "and agent.transform.size, and export programs with a dynamic number of frames."
             ) from error
         if isinstance(output, Tensor) and self.output is not None:
             self.output = str(self.output)  # a tensor has no items, so 3 is the name of a module
@@ -401,6 +388,5 @@ def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) ->
     random = [n for n, v in state.items() if n in other and not v.equal(other[n])]
     raise ValueError(
         f"agent.model={model} initialises {len(random)} of its weights at random "
-        f"({', '.join(random[:3])}), so the adapters would fit no later encoder. Save its "
-        "state_dict() once, or use trained weights, and name the file: agent.weights=FILE."
+        f"({', '.join(random[:3])}). Save its state_dict() once, and set agent.weights=FILE."
     )

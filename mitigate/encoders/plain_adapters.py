@@ -13,13 +13,12 @@ this file; nothing in the folder is run.
 import hashlib
 import json
 import os
-import re
 
 import numpy as np
 import torch
 import torch.nn.functional as F
 
-WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
+WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
 LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; adapters have 1e5 to 1e7)
@@ -51,8 +50,7 @@ def attach(model, folder, check=True):
     hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
     if any(isinstance(hook, _Adapter) for hook in hooks):
         raise ValueError(
-            f"This model has adapters already, and those in {folder} would be added to them. Build "
-            "the model and load its weights again first."
+            f"This model has adapters already. Build it again before you add those in {folder}."
         )
     settings, tensors = read(folder)
     shapes = settings["adapters"]
@@ -64,18 +62,14 @@ def attach(model, folder, check=True):
     missing = sorted(set(shapes) - set(modules))
     if missing:
         raise ValueError(
-            "This model has no module called {}: the adapters in {} were trained for another "
-            "model. It has, for example, {}.".format(
-                ", ".join(missing[:4]), folder, ", ".join(list(modules)[1:9])
-            )
+            f"The adapters in {folder} are for another model: this one has no module called "
+            f"{', '.join(missing[:4])}, but, for example, {', '.join(list(modules)[1:9])}."
         )
     if check and backbone_sha(model) != settings["backbone_sha256"]:
         raise ValueError(
-            "The adapters in {} were trained with weights of sha256 {}, but this model has {}. "
-            "Load those weights first. For a converted model with the same weights, call "
-            "attach(model, folder, check=False).".format(
-                folder, settings["backbone_sha256"], backbone_sha(model)
-            )
+            f"The adapters in {folder} were trained with weights of sha256 "
+            f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load those "
+            "weights first, or call attach(model, folder, check=False) for a converted model."
         )
     adapters = {name: _Adapter(folder, name, shape, tensors) for name, shape in shapes.items()}
     for name, adapter in adapters.items():
@@ -148,11 +142,8 @@ def _shapes(shape):
 
 
 def _sums(folder):
-    """Return the allowed sha256 values of a file, from the manifest or a file of older versions."""
+    """Return the allowed sha256 values of the weights, from the manifest."""
     manifest = os.path.join(folder, MANIFEST)
-    if not os.path.isfile(manifest):
-        with open(os.path.join(folder, WEIGHTS + SUM), encoding="utf-8") as file:
-            return re.findall(r"^([0-9a-f]{64})  ", file.read(LONGEST), re.MULTILINE)
     with open(manifest, encoding="utf-8") as file:
         text = file.read(LONGEST)
     try:

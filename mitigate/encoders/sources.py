@@ -89,9 +89,8 @@ class WorldFrames:
     ) -> None:
         if not isinstance(world, Placeable):
             raise ValueError(
-                f"{type(world).__name__} cannot render from any pose: it needs scenes, enter, "
-                "point and put. Save its frames as PNG and use env=frames env.path=FOLDER, or add "
-                "these to the world (docs/bring-your-own.md)."
+                f"{type(world).__name__} needs scenes, enter, point and put, to render from any "
+                "pose. Add them, or save its frames as PNG and use env=frames env.path=FOLDER."
             )
         if sensor not in world.sensors:
             raise ValueError(
@@ -192,8 +191,7 @@ class FolderFrames:
             raise ValueError(
                 f"{self.path} has {len(files)} scenes (frames: {sum(map(len, files.values()))}, "
                 f"{self.left_out}), but training and unseen frames must come from different "
-                "scenes. Make one subfolder per scene (names that begin with val or test are "
-                "unseen), or add more frames."
+                "scenes. Make one subfolder per scene, or add more frames."
             )
         return train if split == TRAIN else unseen
 
@@ -218,8 +216,7 @@ class FolderFrames:
             other = count_suffixes(plan.other_files) or "none"
             raise FileNotFoundError(
                 f"{self.path} holds no {self.sensor} frames: {plan.other_modality} of the other "
-                f"sensor, {self.left_out}, other files {other}. RGB must be 8-bit RGB in PNG or "
-                "JPEG; depth 16-bit grey PNG or NPY metres (agent.sensor=depth)."
+                f"sensor, {self.left_out}, other files {other} (docs/encoder.md)."
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")
@@ -313,8 +310,7 @@ def _metres(depth: np.ndarray) -> np.ndarray:
             side = f"farther than {FARTHEST:g}" if low > FARTHEST else f"nearer than {NEAREST:g}"
             raise ValueError(
                 f"must hold depth in metres, but most of it is {side} (median "
-                f"{np.median(known):g}). For PNG set env.unit to the metres per count (0.001 for "
-                "millimetres), convert NPY to metres"
+                f"{np.median(known):g}). Set env.unit for PNG (0.001: mm), convert NPY to metres"
             )
     return metres
 

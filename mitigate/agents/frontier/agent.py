@@ -153,8 +153,7 @@ class FrontierAgent(SideBySide, nn.Module):
         self.thing = None if "instruction" in self.blind else named(instruction)
         if self.thing is None and "instruction" not in self.blind:
             warnings.warn(
-                f"The instruction {instruction[:60]!r} names no object that the agent knows, so it "
-                "explores until there is nothing left to explore.",
+                f"The instruction {instruction[:60]!r} names no object that the agent knows.",
                 stacklevel=2,
             )
         self._started = True
@@ -262,18 +261,18 @@ class FrontierAgent(SideBySide, nn.Module):
         if target is not None and (self._at(target, pose) or self._bumps >= BUMPS):
             self._bumps = 0
             return STOP if late else self._check(thing, pose)
-        if target is None and not late:
+        if target is None:
+            if late:
+                return STOP
             self._bumps = 0
             target = self._frontier(ways)
-            if target is not None and self._at(target, pose):
+            if target is None:
+                self.actions = LAST
+                return None
+            if self._at(target, pose):
                 # the unknown cells around this frontier cannot be observed
                 self.grid.settle(target)
                 return None
-        if target is None and not late:
-            self.actions = LAST
-            return None
-        if target is None:
-            return STOP
         step = clear_ahead(self.grid, ways.to(target), LEG)
         self.controller.follow([self.grid.place(step[None])[0]])
         self._planned = AGAIN

@@ -94,9 +94,8 @@ class ActorCritic(nn.Module):
         network: Any = policy.network
         if isinstance(policy, StableBaselinesPolicy) and not hasattr(network, "predict_values"):
             raise ValueError(
-                f"{policy.name} has no critic that estimates the value of a state, but "
-                "method='ppo' needs one. In stable-baselines3, PPO and A2C have such a critic. Use "
-                "method='self_distil'."
+                f"{policy.name} has no critic of states, which method='ppo' needs and PPO and A2C "
+                "have. Use method='self_distil'."
             )
         with torch.no_grad():
             self.actions(frames)

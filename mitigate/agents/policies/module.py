@@ -52,8 +52,7 @@ class ModulePolicy(Policy):
         except KeyError as error:
             raise ValueError(
                 f"{self.name} reads the entry {error}, but the world passes only "
-                f"{', '.join(flat(inputs))}. Name every entry that the policy reads: "
-                "GymWorld(entries={...})."
+                f"{', '.join(flat(inputs))}. Name all entries: GymWorld(entries={{...}})."
             ) from error
         if self.recurrent:
             output, memory = output

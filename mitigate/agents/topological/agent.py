@@ -322,11 +322,8 @@ class TopologicalAgent(Agent, nn.Module):
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
-            if seen.clean_rgb is None or seen.clean_depth is None:
-                raise ValueError(
-                    "The batch holds no clean frames. Call rollouts.keep_clean() in the "
-                    "constructor of the objective."
-                )
+            kept = seen.clean_rgb is not None and seen.clean_depth is not None
+            assert kept, "rollouts.keep_clean() in the constructor of the objective keeps them"
             return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
         if seen.views is not None:
             return seen.views, {}, {}
