@@ -71,20 +71,17 @@ class Encoder(nn.Module):
         widths: channels of the stem and of each stage.
         resize: mode of ``F.interpolate`` with which frames are resized. stride: ``size`` must be a
         multiple of this number of pixels.
-        usual: an example value of ``size`` for error messages.
     """
 
     channels: int
     widths: tuple[int, ...]
     resize: str
     stride = 16
-    usual = SIZE
 
     def __init__(self, size: int) -> None:
         super().__init__()
         if size < self.stride or size % self.stride:
-            example = f"{self.stride} pixels, such as {self.usual}"
-            raise ValueError(f"size must be a multiple of {example}, got {size}.")
+            raise ValueError(f"size must be a multiple of {self.stride} pixels, got {size}.")
         self.size = size
         self.stem, self.stages = self.backbone()
 

@@ -242,12 +242,10 @@ class Encoder(nn.Module):
 
     def choose_trained(self) -> None:
         """Make only the adapters trainable, or with ``tune="all"`` all weights."""
-        self.model.requires_grad_(False)
-        trained = inserted.adapter_parameters(self.model)
-        if self.tune == "all":
-            trained = [p for p in self.model.parameters() if p.is_floating_point()]
-        for parameter in trained:
-            parameter.requires_grad_(True)
+        trained = {*inserted.adapter_parameters(self.model)}
+        for parameter in self.model.parameters():
+            chosen = self.tune == "all" or parameter in trained
+            parameter.requires_grad_(chosen and parameter.is_floating_point())
 
     def train(self, mode: bool = True) -> Encoder:
         """Keep the encoder in eval mode: no dropout, fixed BatchNorm statistics."""
@@ -291,17 +289,13 @@ class Encoder(nn.Module):
         **options: Any,
     ) -> None:
         """Freeze the encoder and insert adapters; its output does not change yet."""
-        modules = self.targets(targets, sites)
-        names = inserted.insert_adapters(self.model, modules, run=self._probe, **options)
+        if targets == AUTO:
+            chosen = choose(find_sites(self.model, self._probe), self.model, sites)
+            targets = [re.escape(name) for name in chosen]
+        targets = [targets] if isinstance(targets, str) else targets
+        names = inserted.insert_adapters(self.model, targets, run=self._probe, **options)
         share = inserted.trainable_share(self.model)
         say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
-
-    def targets(self, targets: str | Sequence[str], count: int) -> list[str]:
-        """Return regular expressions for the modules that get adapters."""
-        if targets != AUTO:
-            return [targets] if isinstance(targets, str) else list(targets)
-        chosen = choose(find_sites(self.model, self._probe), self.model, count)
-        return [re.escape(name) for name in chosen]
 
     def _probe(self, count: int) -> Any:
         """Return the output for noise frames, because some normalisations give NaN for constant
@@ -317,19 +311,16 @@ class Encoder(nn.Module):
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
-        if self.output is not None:
-            chosen = items.get(self.output)
-        else:
-            chosen = next(iter(items.values()), None) if items else first(output)
+        first_item = next(iter(items.values()), output)
+        chosen = first_item if self.output is None else items.get(self.output)
         if isinstance(chosen, Tensor):
             return chosen
         names = [str(name) for name, value in items.items() if isinstance(value, Tensor)]
         modules = [name for name, _ in self.model.named_modules() if name]
-        items_text = f" with {', '.join(names)}" if names else ""
         raise ValueError(
-            f"agent.output must name an item of the encoder's output or a module, got "
-            f"{self.output}. The encoder returns a {type(output).__name__}{items_text}; modules "
-            f"are, for example, {', '.join(modules[-8:])}."
+            "agent.output must name an item of the encoder's output or a module, got "
+            f"{self.output}. The encoder returns a {type(output).__name__}, items "
+            f"{', '.join(names) or 'none'}; modules are, for example, {', '.join(modules[-8:])}."
         )
 
     @torch.no_grad()
