@@ -91,6 +91,8 @@ class TextReader(nn.Module):
         self, vocabulary: Vocabulary, width: int, heads: int, layers: int, dropout: float
     ) -> None:
         super().__init__()
+        if width % heads:
+            raise ValueError(f"width ({width}) must be a multiple of heads ({heads}).")
         self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
         nn.init.normal_(self.words.weight, std=0.5)
         self.places = nn.Embedding(MAX_WORDS, width)

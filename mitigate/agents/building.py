@@ -41,7 +41,7 @@ def build_agent(
     # checked first, because a huge width would fill the memory, and a pattern may match endlessly
     if loading.is_ours(node["_target_"]):
         config = plain(node)
-        known = schema.schema_of(config["_target_"]).settings
+        known = schema.schema_of(config["_target_"])
         config = {name: value for name, value in config.items() if name in known}
         # the agent's class rejects unknown settings
         again = "Give it such a value, or leave it out."

@@ -172,12 +172,9 @@ def build_from(config: Path, weights: Path | None = None) -> Any:
                 count = sum(parameter.numel() for parameter in make().parameters())
             size = weights.stat().st_size
             if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
-                raise ValueError(
-                    f"The agent's settings in {config} do not fit: they require {count} weights, "
-                    f"but {weights} has only {size} bytes. Do not use this folder."
-                )
+                raise ValueError(f"they require {count} weights, but {weights} has {size} bytes")
         return make()
-    except (TypeError, RuntimeError) as error:
+    except (TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
 
 
@@ -290,7 +287,7 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
 
     Raises the errors of :func:`build_from`.
     """
-    known = schema.schema_of(target).settings
+    known = schema.schema_of(target)
     return schema.check(settings.read_agent(config, target, known), config, target)
 
 

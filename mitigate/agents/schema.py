@@ -113,21 +113,6 @@ ENCODERS = {  # settings that all shipped agents have
 }
 
 
-class Schema(NamedTuple):
-    """The allowed settings of a kind of agent, stored in ``settings_schema`` of its class.
-
-    Attributes:
-        settings: the allowed values by name; nested mappings describe the arguments of a part.
-        part: the setting that holds the arguments of the part with attention heads, or "" if there
-            is no such part.
-        usual: default width and default number of heads of that part.
-    """
-
-    settings: dict[str, Any]
-    part: str = ""
-    usual: tuple[int, int] = (1, 1)
-
-
 KINDS = (  # the only classes that the config in a folder may name
     "mitigate.agents.topological.TopologicalAgent",
     "mitigate.agents.recurrent.RecurrentAgent",
@@ -142,8 +127,8 @@ def class_of(target: str) -> Any:
     return getattr(import_module(module), name)  # the name comes from KINDS
 
 
-def schema_of(target: str) -> Schema:
-    """Return the settings schema of one of ``KINDS``."""
+def schema_of(target: str) -> dict[str, Any]:
+    """Return the allowed settings of one of ``KINDS`` by name; nested mappings describe parts."""
     return class_of(target).settings_schema
 
 
@@ -165,15 +150,7 @@ def check(
         ValueError: A setting is unknown or has an invalid value; the message names the file and the
             setting.
     """
-    kind = schema_of(target)
-    _check(values, kind.settings, file, "agent", again)
-    part = values.get(kind.part) or {}
-    width, heads = (part.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
-    if width % heads:
-        raise ValueError(
-            f"{file}: agent.{kind.part}.width ({width}) must be a multiple of agent."
-            f"{kind.part}.heads ({heads}). {again}"
-        )
+    _check(values, schema_of(target), file, "agent", again)
     adapters = values.get("adapters") or {}
     if adapters and "target_modules" not in adapters:
         raise ValueError(

@@ -216,7 +216,7 @@ def test_load_hardened_rejects_invalid_card(tmp_path, output):
 
 @pytest.mark.parametrize("folder", [None, 3, True])
 def test_load_hardened_rejects_values_that_are_no_path(folder):
-    with pytest.raises(TypeError, match=f"path of a hardened checkpoint, got {folder}. Name one"):
+    with pytest.raises(TypeError, match="PathLike"):
         agents.load_hardened(folder)
 
 

@@ -98,9 +98,11 @@ class FrontierAgent(SideBySide, nn.Module):
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"
 
     run_state = ("_started", "actions")
-    settings_schema = schema.Schema(
-        {**schema.ENCODERS, "width": schema.whole(4, 1024), "eye": schema.number(0.05, 5)}
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "width": schema.whole(4, 1024),
+        "eye": schema.number(0.05, 5),
+    }
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
     # number of episodes at once (heuristic): a frame takes twice as long if it is encoded alone

@@ -94,18 +94,14 @@ class RecurrentAgent(SideBySide, nn.Module):
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"
 
     run_state = ("_walk",)
-    settings_schema = schema.Schema(
-        {
-            **schema.ENCODERS,
-            "sensors": schema.some_of((RGB, DEPTH)),
-            "rgb_width": schema.whole(4, 1024),
-            "depth_width": schema.whole(4, 1024),
-            "policy": POLICY,
-            "vocabulary": schema.VOCABULARY,
-        },
-        part="policy",
-        usual=(160, 4),
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "sensors": schema.some_of((RGB, DEPTH)),
+        "rgb_width": schema.whole(4, 1024),
+        "depth_width": schema.whole(4, 1024),
+        "policy": POLICY,
+        "vocabulary": schema.VOCABULARY,
+    }
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS

@@ -104,17 +104,13 @@ class TopologicalAgent(Agent, nn.Module):
     fingerprint_kind = "mitigate.agents.topological.agent.TopologicalAgent"
 
     run_state = ("_memory", "_started")
-    settings_schema = schema.Schema(
-        {
-            **schema.ENCODERS,
-            "width": schema.whole(4, 1024),
-            "planner": PLANNER,
-            "vocabulary": schema.VOCABULARY,
-            "encoder": schema.one_of(RGB_ENCODERS),
-        },
-        part="planner",
-        usual=(128, 4),
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "width": schema.whole(4, 1024),
+        "planner": PLANNER,
+        "vocabulary": schema.VOCABULARY,
+        "encoder": schema.one_of(RGB_ENCODERS),
+    }
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder
     _started = False
