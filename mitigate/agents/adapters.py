@@ -42,7 +42,7 @@ _STATISTICS = "_statistics_before_adapters"
 
 def insert_adapters(
     model: nn.Module,
-    target_modules: Iterable[str],
+    target_modules: Iterable[str] = (),
     *,
     reduction: int = 8,
     kernel: int = 3,

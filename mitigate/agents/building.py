@@ -45,7 +45,7 @@ def build_agent(
         config = {name: value for name, value in config.items() if name in known}
         # the agent's class rejects unknown settings
         again = "Give it such a value, or leave it out."
-        schema.check(config, "The options", node["_target_"], again)
+        schema.check(config, known, "The options", again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if weights is not None and not hasattr(agent, "state_dict"):  # the config may name any class

@@ -225,8 +225,7 @@ def check_same(agent: Any, config: Path, again: str) -> None:
             ``again``).
     """
     stored = _settings_in(config, again)
-    stated = stated_settings(agent)
-    actual = stated
+    actual = stated = stated_settings(agent)
     if actual is None:
         attributes = {k: read(agent, k) for k, v in stored.items() if isinstance(v, _PLAIN)}
         actual = {name: value for name, value in attributes.items() if isinstance(value, _PLAIN)}
@@ -288,7 +287,9 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
     Raises the errors of :func:`build_from`.
     """
     known = schema.schema_of(target)
-    return schema.check(settings.read_agent(config, target, known), config, target)
+    values = settings.read_agent(config, target, known)
+    schema.check(values, known, config)
+    return values
 
 
 # hardened folders --------------------------------------------------------------------------------

@@ -136,32 +136,25 @@ _AGAIN = "Fetch the folder again, or train again."
 
 
 def check(
-    values: dict[str, Any], file: Path | str, target: str, again: str = _AGAIN
-) -> dict[str, Any]:
-    """Return ``values``, the settings of an agent, after checking them.
+    values: dict[str, Any],
+    schema: dict[str, Any],
+    file: Path | str,
+    again: str = _AGAIN,
+    where: str = "agent",
+) -> None:
+    """Check settings that come with weights.
 
     Args:
         values: the settings.
+        schema: the allowed values (:func:`schema_of`).
         file: source of the settings, for messages.
-        target: the kind of agent, one of ``KINDS``.
         again: advice that ends the error message.
+        where: dotted name of the settings, for messages.
 
     Raises:
         ValueError: A setting is unknown or has an invalid value; the message names the file and the
             setting.
     """
-    _check(values, schema_of(target), file, "agent", again)
-    adapters = values.get("adapters") or {}
-    if adapters and "target_modules" not in adapters:
-        raise ValueError(
-            f"{file}: agent.adapters lacks target_modules (give [] if only ring is used). {again}"
-        )
-    return values
-
-
-def _check(
-    values: dict[str, Any], schema: dict[str, Any], file: Path | str, where: str, again: str
-) -> None:
     for name, value in values.items():
         key = f"{where}.{name}"
         if name not in schema:
@@ -173,7 +166,7 @@ def _check(
                     f"{file}: {key} is {value!r:.80}, but must be {kind.words}. {again}"
                 )
         elif isinstance(value, dict):
-            _check(value, kind, file, key, again)
+            check(value, kind, file, again, key)
         elif value is not None:
             raise ValueError(
                 f"{file}: {key} is {value!r:.80}, but must be null or a mapping of "

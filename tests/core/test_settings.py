@@ -266,7 +266,6 @@ def test_file_without_settings_is_rejected(tmp_path, text):
         ({"planner": {"fusion": {"learned": 1}}}, "true or false"),
         ({"planner": {"fusion": {"views": None}}}, "no setting of agent.planner.fusion 'views'"),
         ({"adapters": {"model": None}}, "no setting of agent.adapters 'model'"),
-        ({"adapters": {"ring": ["stages.0"]}}, "lacks target_modules"),
         ({"adapters": {"target_modules": "stages.0"}}, "a list of at most 64"),
         ({"adapters": {"target_modules": ["(.|.)*(.|.)*!"]}}, "patterns without groups"),
         ({"adapters": {"target_modules": [".*.*.*!"]}}, "at most 2 of * + ?"),

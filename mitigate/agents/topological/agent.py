@@ -318,8 +318,8 @@ class TopologicalAgent(Agent, nn.Module):
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
-            kept = seen.clean_rgb is not None and seen.clean_depth is not None
-            assert kept, "rollouts.keep_clean() in the constructor of the objective keeps them"
+            # the objective keeps them if its constructor calls rollouts.keep_clean()
+            assert seen.clean_rgb is not None and seen.clean_depth is not None
             return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
         if seen.views is not None:
             return seen.views, {}, {}

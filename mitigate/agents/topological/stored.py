@@ -247,10 +247,11 @@ def _features(
         views = [torch.cat([view, concepts.sigmoid()], -1) for view, concepts in parts]
         features[RGB] = torch.cat(views).half().cpu().numpy()
     if [*map(id, depth)] != [*map(id, known_depth)]:
-        views, logits = zip(*(agent.encode_depth(p) for p in _parts(agent, depth)), strict=True)
-        features[DEPTH] = torch.cat(views).half().cpu().numpy()
+        parts = [agent.encode_depth(part) for part in _parts(agent, depth)]
+        features[DEPTH] = torch.cat([views for views, _ in parts]).half().cpu().numpy()
+        grids = torch.cat([logits for _, logits in parts]).float().cpu().numpy()
         features["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
-        for row, grid in enumerate(torch.cat(logits).float().cpu().numpy()):
+        for row, grid in enumerate(grids):
             chosen = select(grid)
             features["waypoints"][row, : len(chosen)] = chosen
     return features
