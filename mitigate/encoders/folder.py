@@ -1,9 +1,9 @@
-"""Save and load the result of training an encoder, as a folder that plain PyTorch can load.
+"""Save a trained encoder as a folder that plain PyTorch can load, and load such folders.
 
 Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
-weights are stored in ``model.safetensors``. ``encoder.json`` describes the frames and the output
-for which the weights were trained. The manifest lists all files. Loading runs no code from the
-folder; the caller must construct the encoder.
+weights are stored in ``model.safetensors``. ``encoder.json`` describes the input frames and the
+output with which the weights were trained. The manifest lists all files. Loading runs no code from
+the folder. Therefore the caller must construct the encoder.
 """
 
 from __future__ import annotations
@@ -55,7 +55,7 @@ def write(encoder: Encoder, folder: str | Path) -> Path:
 
 
 def described(encoder: Encoder) -> dict[str, Any]:
-    """Return the settings of the input and output of ``encoder``, as plain data."""
+    """Return, as plain data, the settings for the input and output of ``encoder``."""
     return {
         "format": FORMAT,
         "sensor": encoder.sensor,
@@ -72,7 +72,7 @@ def lines(encoder: Encoder, folder: str | Path) -> str:
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """Return the content of ``encoder.json``.
+    """Read ``encoder.json``.
 
     Raises:
         FileNotFoundError: The file is missing.
@@ -81,8 +81,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     file = Path(folder) / CARD
     if not file.is_file():
         raise FileNotFoundError(
-            f"{folder} holds no hardened encoder: {CARD} is missing. Name the folder `agent` of a "
-            "run of `make train RECIPE=encoder`."
+            f"{folder} must contain a hardened encoder, but {CARD} is missing. Name the folder "
+            "`agent` of a run of `make train RECIPE=encoder`."
         )
     if damage := folders.problem(file):
         raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
@@ -90,17 +90,18 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load weights that :func:`write` wrote into an encoder with the original weights.
+    """Load a folder that :func:`write` wrote into ``encoder``, which must have its original
+    weights.
 
-    Raises the errors of :func:`card` and ``load_adapters``; ValueError is also raised if the folder
+    Raises the same errors as :func:`card` and ``load_adapters``, and ValueError if the folder
     belongs to an encoder with different settings.
     """
     stored = card(folder)
     for name, value in described(encoder).items():
         if stored.get(name) != value:
             raise ValueError(
-                f"{folder} is of an encoder with {name}={stored.get(name)!r:.100}, but this one "
-                f"has {value!r:.100}. Build it with the settings in {CARD}."
+                f"{folder} belongs to an encoder with {name}={stored.get(name)!r:.100}, but the "
+                f"given encoder has {value!r:.100}. Construct it with the settings in {CARD}."
             )
     if encoder.tune == "adapters":
         adapters.remove_adapters(encoder.model)
