@@ -200,8 +200,8 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
     before = vars(model).get(_STATISTICS, {})
     if any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items()):
         warnings.warn(
-            "The backbone's running statistics (BatchNorm) have changed since the adapters were "
-            "inserted: save the backbone, too, or train with it in eval mode, model.eval().",
+            "The backbone's running statistics (BatchNorm) have changed, and the adapters fit only "
+            "this backbone: save it, too, or train with it in eval mode, model.eval().",
             stacklevel=3,
         )
     modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
