@@ -221,12 +221,8 @@ def read_state(path: Path) -> dict[str, Tensor]:
         return checkpoint.load_tensors(path)
     state = _load(path)
     for _ in NESTED:  # the loop is bounded, because a mapping may contain itself
-        if not isinstance(state, Mapping):
-            break
-        inner = next((name for name in NESTED if isinstance(state.get(name), Mapping)), None)
-        if inner is None:
-            break
-        state = state[inner]
+        parts = [state.get(name) for name in NESTED] if isinstance(state, Mapping) else []
+        state = next((part for part in parts if isinstance(part, Mapping)), state)
     tensors = _named_tensors(state)
     if not tensors:
         raise ValueError(f"{path} must contain named tensors. Save the encoder's state_dict().")
