@@ -72,8 +72,8 @@ def attach(model, folder, check=True):
     if check and backbone_sha(model) != settings["backbone_sha256"]:
         raise ValueError(
             f"The adapters in {folder} were trained with weights of sha256 "
-            f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load weights "
-            "with the first hash; for another precision, call attach(model, folder, check=False)."
+            f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load "
+            "weights with the first hash; for another precision: attach(model, folder, check=False)."
         )
     adapters = {name: _Adapter(folder, name, shape, tensors) for name, shape in shapes.items()}
     for name, adapter in adapters.items():

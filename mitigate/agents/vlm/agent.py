@@ -333,7 +333,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
             if base.get("sha256") != self._base():
                 raise ValueError(
                     f"The adapter {folder} was trained on the model {str(base.get('model')):.200} "
-                    f"with another sha256 than that of {self.model}. Set agent.model to it."
+                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to it."
                 )
         tensors = load_tensors(file)
         shapes, expected = (
