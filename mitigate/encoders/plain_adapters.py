@@ -73,7 +73,7 @@ def attach(model, folder, check=True):
         raise ValueError(
             f"The adapters in {folder} were trained with weights of sha256 "
             f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load "
-            "weights with the first hash; for another precision: attach(model, folder, check=False)."
+            "weights with the first hash. For another precision, call attach(..., check=False)."
         )
     adapters = {name: _Adapter(folder, name, shape, tensors) for name, shape in shapes.items()}
     for name, adapter in adapters.items():
