@@ -71,10 +71,6 @@ class FaceBuilder:
             self._frame(door)
         for instance, piece in enumerate(self.apartment.furniture):
             self._piece(instance, piece)
-        return self._faces()
-
-    def _faces(self) -> Faces:
-        """Return the arrays of all collected rectangles."""
         axis, sign, pattern, room, category, instance = np.array(self.kinds).T
         at, tile, *span = np.array(self.places, float).T
         low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
@@ -136,13 +132,8 @@ class FaceBuilder:
         floor_pattern = PATTERNS.index(str(rng.choice(floor_choice)))
         self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
         self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
-        inset = WALL / 2
-        for axis, sign, at in (
-            (0, 1, x0 + inset),
-            (0, -1, x1 - inset),
-            (1, 1, y0 + inset),
-            (1, -1, y1 - inset),
-        ):
+        for axis, sign, at in ((0, 1, x0), (0, -1, x1), (1, 1, y0), (1, -1, y1)):
+            at += sign * WALL / 2
             low, high = (y0, y1) if axis == 0 else (x0, x1)
             gaps = sorted(self._gaps(index, axis, at))
             edges = [low, *(e for gap in gaps for e in gap), high]
@@ -152,9 +143,9 @@ class FaceBuilder:
                 self._add(axis, sign, at, (a, LINTEL), (b, HEIGHT), walls, wall_pattern, index)
 
     def _gaps(self, room: int, axis: int, at: float) -> list[tuple[float, float]]:
-        doors = [d for d in self.apartment.doors if room in d.rooms and d.axis == axis]
-        near = [d for d in doors if abs((d.x, d.y)[axis] - at) < WALL]
-        return [((d.x, d.y)[1 - axis] - DOOR / 2, (d.x, d.y)[1 - axis] + DOOR / 2) for d in near]
+        places = [(d.x, d.y) for d in self.apartment.doors if room in d.rooms and d.axis == axis]
+        middles = [place[1 - axis] for place in places if abs(place[axis] - at) < WALL]
+        return [(middle - DOOR / 2, middle + DOOR / 2) for middle in middles]
 
     def _frame(self, door: Door) -> None:
         """Add the two sides and the top of a door frame."""
