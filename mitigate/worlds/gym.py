@@ -55,4 +55,3 @@ def _by_name(observation: Any) -> dict[str, Any]:
         for name, value in parts.items()
         for inner, part in _by_name(value).items()
     }
-

@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike
 SUCCESS_DISTANCE = 3.0
 
 
-
 @dataclass(frozen=True)
 class Rule:
     """A success rule: an episode succeeds if it ends within ``metres`` of the goal.
@@ -152,13 +151,7 @@ def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DI
 
 
 def of_episode(
-    rule: Rule,
-    path: ArrayLike,
-    reference: ArrayLike,
-    *,
-    start: float,
-    left: float,
-    stopped: bool,
+    rule: Rule, path: ArrayLike, reference: ArrayLike, *, start: float, left: float, stopped: bool
 ) -> dict[str, float]:
     """Return the measures of an episode: success, SPL, nDTW, and lengths in metres.
 

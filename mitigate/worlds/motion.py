@@ -60,8 +60,7 @@ class FaultyMotion(WorldWrapper):
             raise ValueError(
                 f"{fault.name!r} cannot change the actions of {type(_innermost(world)).__name__}. "
                 "It needs continuous actions (a Box), or a world that defines move(metres, "
-                "degrees), such as the apartments. Of the motion faults, repeated_action works "
-                "with all actions."
+                "degrees). Of the motion faults, repeated_action works with all actions."
             )
 
     def reset(self, episode: Episode) -> Observation:

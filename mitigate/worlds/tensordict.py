@@ -18,14 +18,7 @@ from torchrl.data import Bounded, Categorical, Composite, NonTensor, OneHot, Unb
 from torchrl.data.tensor_specs import ContinuousBox
 from torchrl.envs import EnvBase, GymLikeEnv
 
-from mitigate.core.observation import (
-    EPISODE,
-    FRAME,
-    INSTRUCTION,
-    STOP,
-    Observation,
-    Sensor,
-)
+from mitigate.core.observation import EPISODE, FRAME, INSTRUCTION, STOP, Observation, Sensor
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 from mitigate.worlds.episodes import Episode, read_episodes
@@ -128,13 +121,11 @@ class WorldEnv(EnvBase):
         """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
-            episode = self.episodes.draw(rng, (0, 1))
-            repetition = number
+            episode, repetition = self.episodes.draw(rng, (0, 1)), number
         else:
             repetition, index = divmod(number, len(self.episodes))
             episode = self.episodes[index]
-        name = f"{episode.episode_id}@{repetition}" if repetition else episode.episode_id
-        return episode, name
+        return episode, episode.episode_id + (f"@{repetition}" if repetition else "")
 
     def _state(self, observation: Observation, stopped: bool) -> TensorDictBase:
         done = self.world.done
@@ -161,19 +152,17 @@ class EnvWorld(SeededWorld):
     def _spaces(self, env: EnvBase) -> tuple[ActionSpace, Arrays]:
         if env.batch_size.numel() != 1:
             raise ValueError(
-                f"The batch size of the environment must be [] or [1], got {list(env.batch_size)}. "
-                "Pass a single environment."
+                f"Pass a single environment, not one with batch size {list(env.batch_size)}."
             )
         action = env.full_action_spec
         actions = [action[key] for key in action.keys(True, True)]
         if len(actions) != 1:
             raise ValueError(
-                f"The environment must have one action, got {len(actions)}. Wrap it in a transform "
-                "that computes them from one action."
+                f"The environment must have one action, got {len(actions)}. Combine its actions."
             )
         spec = env.observation_spec
         arrays = {_dotted(key): _describe(spec[key]) for key in spec.keys(True, True)}
-        return _space_of(actions[0], env.batch_size.numel()), arrays
+        return _space_of(actions[0]), arrays
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
@@ -192,19 +181,19 @@ class EnvWorld(SeededWorld):
         self._now = self.env.step(self._now)["next"]
         reward = float(self._now.get(self.env.reward_key).sum())
         over = any(bool(self._now[key].any()) for key in self.env.done_keys)
-        ends = [key for key in self._now.keys(True, True) if _dotted(key).endswith("terminated")]
-        self.terminated = any(bool(self._now[key].any()) for key in ends)
+        ends = [value for name, value in self._report().items() if name.endswith("terminated")]
+        self.terminated = any(bool(value.any()) for value in ends)
         return self._parts(), reward, over
 
     def _report(self) -> dict[str, Any]:
         return {_dotted(key): self._now[key] for key in self._now.keys(True, True)}
 
     def _parts(self) -> dict[str, Any]:
-        keys = {_dotted(key): key for key in self._now.keys(True, True)}
-        return {e: self._now[keys[e]].numpy(force=True) for e in self.entries.values()}
+        entries = self._report()
+        return {name: entries[name].numpy(force=True) for name in self.entries.values()}
 
 
-def _space_of(spec: Any, batch: int) -> ActionSpace:
+def _space_of(spec: Any) -> ActionSpace:
     """Return the action space that corresponds to a torchrl spec.
 
     Raises:
@@ -212,9 +201,9 @@ def _space_of(spec: Any, batch: int) -> ActionSpace:
             array.
     """
     kind = type(spec).__name__
-    if kind in ("Categorical", "OneHot") and spec.shape.numel() == batch * (
-        spec.space.n if kind == "OneHot" else 1
-    ):
+    if kind == "Categorical" and spec.shape.numel() == 1:
+        return Discrete(int(spec.space.n))
+    if kind == "OneHot" and spec.shape.numel() == spec.space.n:
         return Discrete(int(spec.space.n))
     if kind == "MultiCategorical":
         return MultiDiscrete(np.asarray(spec.nvec).reshape(spec.shape))
@@ -237,8 +226,7 @@ def _list_episodes(episodes: Any) -> list[Episode]:
     listed = list(read_episodes(episodes)) if is_file else list(episodes)
     if not listed:
         raise ValueError(
-            f"{episodes if is_file else 'The list'} must contain at least one episode. Add one, or "
-            "pass a source of training episodes."
+            f"{episodes if is_file else 'The list'} must contain at least one episode."
         )
     return listed
 

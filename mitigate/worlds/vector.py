@@ -16,8 +16,7 @@ try:
     from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 except ImportError as error:
     raise ImportError(
-        "The wrapper for vector environments needs gymnasium 1.1 or newer: "
-        "pip install 'gymnasium>=1.1'."
+        "Vector environments need gymnasium 1.1 or newer: pip install 'gymnasium>=1.1'."
     ) from error
 
 from mitigate.core.observation import DEPTH, RGB

@@ -413,8 +413,8 @@ def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
         ValueError: The median depth is above ``MAX_MEDIAN_DEPTH``.
     """
     readings = depth[depth > 0]
-    if len(readings) and float(np.median(readings)) > MAX_MEDIAN_DEPTH:
+    median = float(np.median(readings)) if len(readings) else 0.0
+    if median > MAX_MEDIAN_DEPTH:
         raise ValueError(
-            f"Half of {name} is farther than {np.median(readings):.0f} m: it is not in metres. "
-            f"{fix}"
+            f"Half of {name} is farther than {median:.0f} m: it is not in metres. {fix}"
         )

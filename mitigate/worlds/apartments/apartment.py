@@ -105,8 +105,7 @@ def apartment_of(scene_id: str) -> Apartment:
     apartment = Apartment(int(parts[2]))
     if apartment.split != parts[1]:
         raise ValueError(
-            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, "
-            f"not {parts[1]!r}."
+            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}."
         )
     return apartment
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-
 from mitigate.worlds.apartments.tasks import OGN_SHARE, DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.episodes import Episode

@@ -52,7 +52,6 @@ from mitigate.worlds.apartments.tasks import (
 from mitigate.worlds.episodes import Episode, to_json
 
 TRAIN = 100  # default number of apartments for the train split (heuristic)
-
 # arguments of habitat_sim.NavMeshSettings; Habitat places the agent cell_height above the floor
 NAVMESH = {
     "agent_radius": RADIUS,

@@ -229,7 +229,6 @@ def _place(
     return None
 
 
-
 def grow(rect: Rect, by: float) -> Rect:
     """Return a rectangle that is larger by ``by`` metres on each side."""
     return rect[0] - by, rect[1] - by, rect[2] + by, rect[3] + by

@@ -26,15 +26,15 @@ class FreeSpace:
     """
 
     def __init__(self, blocked: np.ndarray) -> None:
-        free = (~blocked).astype(np.uint8)
-        distance = cv2.distanceTransform(free, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        open_cells = (~blocked).astype(np.uint8)
+        distance = cv2.distanceTransform(open_cells, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         free = distance * CELL > RADIUS + CELL / 2
         _, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
         sizes = np.bincount(labels.ravel())
         sizes[0] = 0
         self.share = float(sizes.max() / max(1, free.sum()))
         self.free = labels == int(sizes.argmax())
-        self.index = np.full(free.shape, -1, np.int32)
+        self.index: np.ndarray = np.full(free.shape, -1, np.int32)
         self.cells = np.argwhere(self.free)
         self.index[self.free] = np.arange(len(self.cells))
         _, nearest = cv2.distanceTransformWithLabels(

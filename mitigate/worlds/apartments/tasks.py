@@ -199,7 +199,6 @@ def _pooled(seed: int, task: str, index: int) -> bytes:
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 
 
-
 def episode_file(split: str, task: str = "vln") -> Path:
     """Return the path of the shipped file that lists the episodes of a validation split."""
     return Path(__file__).parent / "episodes" / f"{split}_{task}.json.gz"

@@ -79,7 +79,6 @@ class ApartmentsWorld(World):
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
 
-
     @contextmanager
     def remembering(self) -> Iterator[None]:
         """Return a context manager that caches rendered frames, so that repeated poses are not

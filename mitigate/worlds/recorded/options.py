@@ -44,15 +44,13 @@ class Options:
     def __post_init__(self) -> None:
         if self.hfov is not None and not MIN_HFOV <= self.hfov <= MAX_HFOV:
             raise ValueError(
-                f"hfov must be a field of view of {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got "
-                f"{self.hfov:g}."
+                f"hfov must be {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got {self.hfov:g}."
             )
         if self.tolerance is not None and not self.tolerance >= 0:
             raise ValueError(f"tolerance must be at least 0 seconds, got {self.tolerance:g}.")
         if self.unit is not None and not 0 < self.unit <= 1:
             raise ValueError(
-                f"unit= must be above 0 and at most 1 metre per count, such as 0.001, got "
-                f"{self.unit:g}."
+                f"unit= must be above 0 and at most 1 metre per count, got {self.unit:g}."
             )
 
     @property

@@ -136,9 +136,8 @@ def test_transform_equals_the_suite(episodes):
     env = TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT, seed=5))
     for _ in range(4):
         data = env.reset()
-        frames = {
-            k: v for k, v in env.base_env.world.simulator.observe().items() if k in (RGB, DEPTH, POSE)
-        }
+        seen = env.base_env.world.simulator.observe()
+        frames = {name: seen[name] for name in (RGB, DEPTH, POSE)}
         corruption, key = HURT.draw(5, data["episode"], 0)
         assert key == Key(5, data["episode"], 0)
         expected = corrupt_observation(frames, corruption, key)
