@@ -67,8 +67,7 @@ class Lens:
         hfov = vfov = self.hfov
         offset = 0.0
         if self.focal is not None and self.size is not None and self.centre is not None:
-            pairs = zip(self.size, self.focal, strict=True)
-            hfov, vfov = (math.degrees(2 * math.atan2(side / 2, f)) for side, f in pairs)
+            hfov, vfov = self.fields_of_view(self.size[1], self.size[0])
             offset = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
         if not (MIN_HFOV <= hfov <= MAX_HFOV and MIN_VFOV <= vfov <= MAX_HFOV):
             raise ValueError(
