@@ -14,7 +14,7 @@ from mitigate.core.names import counted
 EVERY = 10.0  # minimum seconds between two plain lines of progress
 
 _open_bars: list[tqdm] = []
-_last_line = 0.0  # time (time.monotonic()) of the last plain line
+_last_line = 0.0  # value of time.monotonic() when the last plain line was printed
 
 
 class Progress:
@@ -24,7 +24,7 @@ class Progress:
         title: name of the job.
         total: number of units.
         unit: name of a unit, in the singular.
-        start: number of units that are already done.
+        start: number of units that were done before.
 
     Raises ValueError unless ``start`` is between 0 and ``total``.
     """
@@ -32,8 +32,8 @@ class Progress:
     def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
         if not 0 <= start <= total:
             raise ValueError(
-                f"Progress of {title!r}: start={start} must be at least 0 and at most "
-                f"total={total}. Pass the number of all {unit}s and of those already done."
+                f"Progress of {title!r}: start={start} must be between 0 and "
+                f"total={total}. Pass the total number of {unit}s and how many are already done."
             )
         self.title = title
         self.total = total
@@ -42,7 +42,8 @@ class Progress:
         self.done = start
         self.note = ""
         self._began = time.monotonic()
-        self._first: tuple[int, float] | None = None  # units done and time after the first advance
+        # units done after the first advance, and its time
+        self._first: tuple[int, float] | None = None
         self._bar: tqdm | None = None
 
     def __enter__(self) -> Progress:
@@ -72,10 +73,10 @@ class Progress:
             say(self._line(f"{end} {duration(time.monotonic() - self._began)}"))
 
     def advance(self, count: int = 1, note: str = "") -> None:
-        """Count ``count`` units as done; an empty ``note`` keeps the previous one.
+        """Record that ``count`` more units are done; an empty ``note`` keeps the previous note.
 
-        A waiting job calls this with 0, which prints a line if the last line is ``EVERY`` seconds
-        old.
+        A job that waits calls this method with ``count`` 0, which prints a new line if the last one
+        is ``EVERY`` seconds old.
         """
         self.done += count
         self.note = note or self.note
@@ -89,7 +90,7 @@ class Progress:
             say(self.line())
 
     def say(self, text: str) -> None:
-        """Print one line without breaking the bar."""
+        """Print one line above the progress bar."""
         say(text)
 
     def line(self) -> str:
@@ -102,17 +103,18 @@ class Progress:
         return self._line(f"{_rate(1 / pace, self.unit)}, {duration(self.left())} left")
 
     def left(self) -> float:
-        """Return the seconds left at the mean speed so far, or infinity if that is unknown."""
+        """Return the seconds left at the mean speed so far, or infinity if the speed is unknown."""
         pace = self._pace()
         if self.done >= self.total:
             return 0.0
         return math.inf if pace is None else (self.total - self.done) * pace
 
     def _pace(self) -> float | None:
-        """Return the mean seconds per unit, or None while it is unknown.
+        """Return the mean seconds per unit, or None while the mean is unknown.
 
-        The first units are not counted, because they also compile code and open files. After them,
-        1 % of the units must be done, because each worker compiles.
+        The mean excludes the first units, because their time includes compiling code and opening
+        files. The mean is known only after a further 1 % of the units, because every worker
+        compiles.
         """
         least = max(1, (self.total - self.start) // 100)
         if self._first is None or self.done - self._first[0] < least:

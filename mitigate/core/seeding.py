@@ -1,4 +1,4 @@
-"""Generate keyed random numbers, which depend only on a key and never on earlier draws.
+"""Generate keyed random numbers, which depend only on a key and never on earlier random numbers.
 
 A key is a tuple of integers and strings, such as ``(seed, "rollout", step)``. The same key gives
 the same numbers in any process and in any order; Python's ``hash()``, which is salted per process,
@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-# torch is imported later, because it is slow and most callers need only numpy's generators
+# torch is imported only where needed, because its import is slow and most callers use only numpy
 if TYPE_CHECKING:
     import torch
 

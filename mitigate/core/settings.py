@@ -1,7 +1,7 @@
-"""Read the settings that come with weights, which are plain data with a fixed schema.
+"""Read the settings file in a folder of weights, which is plain data with a fixed schema.
 
 A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags and
-interpolations; nothing in it is resolved, instantiated or run. Only this module reads such files.
+interpolations; nothing in it is resolved, instantiated or run. No other module reads such files.
 """
 
 from __future__ import annotations
@@ -20,8 +20,8 @@ from mitigate.core.output import is_regular
 
 LARGEST = 1 << 16  # maximum bytes of a file (heuristic; the config of a run has about 4000)
 DEEPEST = 16  # maximum nesting of lists and mappings (heuristic; the config of a run has 8)
-GREATEST = 1 << 53  # greatest allowed integer; greater floats are not exact (IEEE 754)
-UNRESOLVED = ("${", "???")  # OmegaConf would resolve such values, or read them as missing values
+GREATEST = 1 << 53  # largest allowed integer; floats represent larger integers inexactly (IEEE 754)
+UNRESOLVED = ("${", "???")  # OmegaConf resolves values with ${ and treats ??? as missing
 _SHOWN = 60  # maximum characters of a key or value in a message
 _WARNING = "Settings that come with weights are plain data: do not use this folder."
 
@@ -29,13 +29,15 @@ _WARNING = "Settings that come with weights are plain data: do not use this fold
 def read(file: Path) -> dict[str, Any]:
     """Return the YAML mapping in ``file``.
 
-    Allowed values are None, bools, finite numbers, strings, and lists and str-keyed dicts of these.
+    Allowed values are None, bools, finite numbers and strings, and lists and dicts (with str keys)
+    that contain such values.
 
     Raises:
-        ValueError: The file contains a different type of value, a repeated key or an OmegaConf
-            interpolation, or it has more than ``LARGEST`` bytes or ``DEEPEST`` levels.
+        ValueError: The file contains a value of another type, a repeated key or an OmegaConf
+            interpolation, is larger than ``LARGEST`` bytes, or is nested deeper than ``DEEPEST``
+            levels.
     """
-    is_regular(file)  # reading a FIFO would wait forever
+    is_regular(file)  # opening a FIFO would block forever
     with open(file, "rb") as stream:
         raw = stream.read(LARGEST + 1)
     if len(raw) > LARGEST:
@@ -57,7 +59,7 @@ def read(file: Path) -> dict[str, Any]:
 
 
 def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any]:
-    """Return the settings under ``agent`` in ``file``, without ``_target_``.
+    """Return the settings in the mapping ``agent`` of ``file``, without ``_target_``.
 
     Args:
         file: the YAML file.
@@ -65,8 +67,8 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
         known: names of the settings of the agent.
 
     Raises:
-        ValueError: as in :func:`read`; or the settings are missing, belong to a different agent,
-            are not in ``known``, or have a key that begins with "_", as Hydra's keys do.
+        ValueError: :func:`read` rejects the file, the settings are missing or belong to a different
+            agent, a setting is not in ``known``, or a key begins with "_", like Hydra's own keys.
     """
     settings = read(file).get("agent")
     if not isinstance(settings, dict):
@@ -84,8 +86,8 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
     for key, _ in _entries(settings):
         if any(part.startswith("_") for part in key.split(".")):
             raise ValueError(
-                f"{file}: agent.{_short(key)} begins with '_', as keys that name a class to build "
-                f"do. {_WARNING}"
+                f"{file}: agent.{_short(key)} must not begin with '_': Hydra uses "
+                f"such keys to choose the class that it builds. {_WARNING}"
             )
     for name in settings:
         if name not in known:
@@ -94,7 +96,9 @@ def read_agent(file: Path, target: str, known: Collection[str]) -> dict[str, Any
 
 
 def named(target: object) -> str:
-    """Return the option ``agent=`` that selects the class ``target``, or "" if no file does."""
+    """Return the value of the option ``agent=`` that selects the class ``target``, or "" if no
+    config file selects it.
+    """
     files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
     for file in files:
         lines = file.read_text(encoding="utf-8").splitlines()
@@ -104,14 +108,14 @@ def named(target: object) -> str:
 
 
 def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
-    """Return the message for the unknown dotted ``key`` in ``file``."""
+    """Return the error message for ``key`` (dotted) in ``file``, which is not in ``allowed``."""
     parent, _, name = key.rpartition(".")
     problem = names.unknown(f"setting of {parent}", _short(name), sorted(allowed))
     return f"{file}: {problem} Use the version of the agent that the weights belong to."
 
 
 class _PlainLoader(yaml.SafeLoader):
-    """SafeLoader that rejects YAML features which plain data does not need, before expanding
+    """YAML loader that rejects anchors, tags, deep nesting and repeated keys before it expands
     them.
     """
 
@@ -125,7 +129,7 @@ class _PlainLoader(yaml.SafeLoader):
             raise ValueError(f"it has the tag {_short(event.tag)}")
         self._depth += 1
         if self._depth > DEEPEST:
-            raise ValueError(f"it has more than {DEEPEST} levels")
+            raise ValueError(f"it has more than {DEEPEST} levels of nesting")
         node = super().compose_node(parent, index)
         self._depth -= 1
         return node
@@ -139,12 +143,14 @@ class _PlainLoader(yaml.SafeLoader):
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every nested value with its dotted key, and each invalid key as a tuple."""
+    """Yield every nested value with its dotted key; for an invalid key, yield a tuple as the
+    value.
+    """
     if isinstance(value, dict):
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
             if not isinstance(name, str) or _problem(name):
-                yield inner, (name,)  # a tuple is never valid plain data
+                yield inner, (name,)  # _problem reports such a tuple as an invalid key
             yield inner, item
             yield from _entries(item, inner)
     elif isinstance(value, list):
@@ -154,7 +160,9 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` itself (without its items) is not plain data, or an empty text."""
+    """Return why ``value`` is not plain data, or "" if it is; the items of a container are not
+    checked.
+    """
     if isinstance(value, tuple):
         return "is not a plain key"
     if isinstance(value, str):

@@ -1,8 +1,8 @@
-"""Handle signals that end a command: Ctrl-C (SIGINT), and SIGTERM, which is sent by ``timeout``,
-SLURM and containers.
+"""Handle the signals that end a command: SIGINT (Ctrl-C) and SIGTERM (sent by ``timeout``, SLURM
+and containers).
 
-A command that is ended prints how to resume, and exits with the status that a shell expects, 130 or
-143.
+When a signal ends a command, the command prints how to resume. Its exit status is the one that
+shells expect: 130 or 143.
 """
 
 from __future__ import annotations
@@ -28,17 +28,18 @@ class Ended(KeyboardInterrupt):
 
 
 def raise_ended(number: int, frame: FrameType | None) -> None:
-    """Signal handler that raises :class:`Ended`."""
+    """Raise :class:`Ended`; this function is a signal handler."""
     raise Ended(number)
 
 
 class SignalDelay:
-    """The signal handler of a block that delays signals.
+    """Signal handler that is installed while a block delays signals.
 
     Attributes:
-        number: number of the first signal, or None before a signal.
+        number: number of the first signal, or None if no signal was received.
         again: whether a second signal was received.
-        outer: the previous handlers. A signal is passed on to them if they also delay signals.
+        outer: the previous signal handlers. If they also delay signals, each signal is passed on to
+            them.
     """
 
     def __init__(self) -> None:
@@ -70,9 +71,9 @@ class SignalDelay:
 def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
-    The signal sets ``number`` of this context manager and of all enclosing ones. A second signal
-    ends the command immediately. Only the main thread can delay signals; in other threads this has
-    no effect.
+    The signal sets the attribute ``number`` of the yielded object, and of the objects that
+    enclosing blocks yielded. A second signal ends the command immediately. Only the main thread can
+    delay signals; in other threads this has no effect.
 
     Args:
         on: False delays nothing.
@@ -92,7 +93,7 @@ def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
 
 @contextmanager
 def uninterrupted() -> Iterator[None]:
-    """Protect the block from interrupts; use this for native code and writes that must be complete.
+    """Protect the block from interrupts, for native code and for writes that must be completed.
 
     A signal raises :class:`Ended` at the end of the block, unless an outer block delays signals. A
     second signal raises :class:`Ended` immediately.
@@ -110,7 +111,7 @@ def start_worker(process: BaseProcess) -> None:
     interrupt its imports. A worker that still runs when this interpreter ends is killed, because
     multiprocessing would send it SIGTERM, which it ignores, and then wait for it.
     """
-    resource_tracker.ensure_running()  # starting it would unblock the signals
+    resource_tracker.ensure_running()  # starting the tracker later would unblock the signals
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
     try:
         process.start()
@@ -122,8 +123,8 @@ def start_worker(process: BaseProcess) -> None:
 def leave_to_parent() -> None:
     """Ignore SIGINT and SIGTERM in a worker.
 
-    These signals reach the whole process group of a command. The parent finishes the current work
-    and ends the workers.
+    The terminal sends these signals to all processes of a command. The parent finishes the current
+    work and ends the workers.
     """
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)

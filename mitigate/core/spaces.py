@@ -1,7 +1,7 @@
-"""Define action spaces, which state the actions that a world accepts.
+"""Define action spaces, which describe the actions that a world accepts.
 
-The classes correspond to the spaces of gymnasium with the same names; :func:`from_gymnasium`
-converts them. gymnasium itself is not needed, and random actions depend only on a key.
+The classes correspond to spaces of gymnasium, which :func:`from_gymnasium` converts. gymnasium
+itself is not needed, and random actions depend only on a key.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ class ActionSpace:
         raise NotImplementedError
 
     def sample(self, rng: np.random.Generator) -> Any:
-        """Return a random action, uniform over the space."""
+        """Return a random action, which is uniform over the bounded dimensions of the space."""
         raise NotImplementedError
 
 
@@ -82,7 +82,9 @@ class Box(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class MultiDiscrete(ActionSpace):
-    """An array of integers; each is at least 0 and below its entry in ``counts``."""
+    """An array of integers; each integer is at least 0 and less than the entry of ``counts`` at its
+    position.
+    """
 
     counts: np.ndarray
 
@@ -92,8 +94,8 @@ class MultiDiscrete(ActionSpace):
             raise ValueError(f"The action must be whole numbers, got {_text(action)}.")
         if (values < 0).any() or (values >= self.counts).any():
             raise ValueError(
-                f"The action must be whole numbers from 0 to below {_text(self.counts)}, got "
-                f"{_text(action)}."
+                "The action must be whole numbers of at least 0 and less than "
+                f"{_text(self.counts)}, got {_text(action)}."
             )
         return values.astype(np.int64)
 
@@ -103,7 +105,7 @@ class MultiDiscrete(ActionSpace):
 
 @dataclass(frozen=True)
 class Composite(ActionSpace):
-    """A dictionary with one action for each of ``spaces``."""
+    """A dictionary with one action for each entry of ``spaces``."""
 
     spaces: Mapping[str, ActionSpace]
 
@@ -129,13 +131,13 @@ def from_gymnasium(space: Any) -> ActionSpace:
     """Return the action space that corresponds to ``space`` of gymnasium or gym.
 
     Raises:
-        ValueError: The space is of an unsupported kind, such as text or a graph.
+        ValueError: The kind of space is not supported, for example text or a graph.
     """
     kind = type(space).__name__
     if kind == "Discrete":
         return Discrete(
             int(space.n), int(getattr(space, "start", 0))
-        )  # gym before 0.22 has no start
+        )  # spaces of gym before 0.22 have no start
     if kind == "Box":
         return Box(np.asarray(space.low), np.asarray(space.high))
     if kind == "MultiDiscrete":
@@ -146,13 +148,15 @@ def from_gymnasium(space: Any) -> ActionSpace:
         return Composite({name: from_gymnasium(part) for name, part in space.spaces.items()})
     raise ValueError(
         "The action space must be Discrete, Box, MultiDiscrete, MultiBinary, or a Dict of these, "
-        f"got {space}. Wrap the environment in a gymnasium.ActionWrapper with such a space, whose "
-        "action() converts each action."
+        f"got {space}. Wrap the environment in a gymnasium.ActionWrapper with "
+        "such a space; its method action() must convert each action."
     )
 
 
 def _scalar(action: Any) -> Any:
-    """Return the only element of an array or tensor; other objects are returned unchanged."""
+    """Return the element of an array or tensor that has only one; return other objects
+    unchanged.
+    """
     return action.item() if getattr(action, "shape", None) in ((), (1,)) else action
 
 

@@ -1,8 +1,8 @@
-"""Run jobs in worker processes; if a worker dies, its jobs are run again at once.
+"""Run jobs in worker processes; if a worker dies, a new process runs its jobs.
 
-Each worker has its own pipe and receives one group of jobs at a time; results are returned one by
-one. When a worker dies, its pipe closes, so no process waits for the worker. The parent process
-ends the workers; if the parent was killed, each worker ends after its current job.
+Each worker has its own pipe and receives one group of jobs at a time. It sends each result as soon
+as the job is finished. When a worker dies, its pipe closes, so no process waits for the worker. The
+parent process ends the workers; if the parent was killed, each worker ends after its current job.
 """
 
 from __future__ import annotations
@@ -26,19 +26,19 @@ from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import delay_signals, leave_to_parent, start_worker
 
-SECOND = 1.0  # seconds to wait for messages before checking whether silent workers are alive
+SECOND = 1.0  # seconds to wait for messages from workers before other checks
 STUCK = 60.0  # seconds after which a worker that is still busy with one job is reported
 DEATHS = 1  # maximum number of workers that are replaced
 ALONE = "set workers=1, or define its classes at the top level of a module"
 
 
 class Task(Protocol):
-    """Base class of the work of worker processes; each worker receives a pickled copy."""
+    """A task that worker processes run; each worker receives a pickled copy."""
 
-    preload: ClassVar[str]  # module that all workers need, which is imported once
+    preload: ClassVar[str]  # module that all workers need; it is imported once
 
     def ready(self) -> AbstractContextManager[None]:
-        """Return a context manager around all jobs of a process, for setup and cleanup."""
+        """Return a context manager for setup and cleanup, in which a process runs all its jobs."""
         ...
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
@@ -51,11 +51,11 @@ class Task(Protocol):
 
 
 class WorkersDied(ValueError):
-    """Too many workers died; the results so far have been yielded."""
+    """Too many workers died; all finished results were yielded before this error."""
 
 
 def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
-    """Return the error for a group of jobs that no worker finished."""
+    """Return the error for a group of jobs whose workers all died."""
     return WorkersDied(
         f"{what} was lost with its worker {attempts} times. {done} of {total} jobs are finished. "
         "Check the logs of the nodes; if memory ran out, reserve more (launcher.memory=4)."
@@ -74,13 +74,13 @@ def cores() -> int:
 
 
 def count(requested: int | None, jobs: int, worth: int) -> int:
-    """Return how many processes to start.
+    """Return the number of processes to start.
 
     Args:
         requested: number from the options; None uses one per core.
         jobs: number of jobs.
-        worth: minimum number of jobs per process; with fewer, starting it takes longer than it
-            saves.
+        worth: minimum number of jobs per process; with fewer jobs, starting a process takes longer
+            than it saves.
 
     Raises:
         ValueError: ``requested`` is less than 1.
@@ -95,15 +95,15 @@ def results(
 ) -> Iterator[tuple[int, Any] | None]:
     """Yield (job number, result) pairs as results arrive.
 
-    Jobs are numbered across all groups. The jobs of a group run in order in one process: in the
-    current process if ``workers`` is 1, otherwise in a worker. While waiting for workers, the
+    The numbers count the jobs of all groups. The jobs of a group run in order in one process: in
+    the current process if ``workers`` is 1, otherwise in a worker. While waiting for workers, the
     generator yields None at least every ``SECOND``.
 
-    The first worker that dies is replaced, and its unfinished jobs run again in a new process.
+    If a worker dies, a new process runs its unfinished jobs; this happens at most once.
 
     Raises:
         WorkersDied: A second worker died.
-        Exception: A job raised this error.
+        Exception: A job raised an error, which is raised again here.
     """
     work = numbered(groups)
     workers = min(workers, len(work))
@@ -114,14 +114,16 @@ def results(
             for group in work:
                 outputs = task.work([job for _, job in group])
                 for number, _ in group:
-                    with delay_signals() as ending:  # finish a job that has started
+                    with delay_signals() as ending:  # a started job is finished first
                         result = next(outputs)
                     yield number, result
                     ending.check()
 
 
 def numbered(groups: Sequence[Sequence[Any]]) -> list[list[tuple[int, Any]]]:
-    """Return the jobs of each non-empty group with their numbers, counted across all groups."""
+    """Return the non-empty groups, with each job as (number, job); numbers count across all
+    groups.
+    """
     numbers = itertools.count()
     return [[(next(numbers), job) for job in group] for group in groups if len(group)]
 
@@ -133,7 +135,8 @@ class _Worker:
         self.pipe, theirs = context.Pipe()
         self.process = context.Process(target=_serve, args=(theirs, task), daemon=True)
         start_worker(self.process)
-        theirs.close()  # closed here, so that the pipe closes when the process dies
+        # only the worker keeps this end open, so the pipe closes when the worker dies
+        theirs.close()
         self.left: deque[tuple[int, Any]] = deque()
         self.heard = time.monotonic()
         self.reported = self.heard
@@ -143,12 +146,13 @@ class _Worker:
         self.left.extend(group)
         self.heard = time.monotonic()
         self.reported = self.heard
-        with suppress(OSError):  # the process is dead, which the reader of the pipe will notice
+        with suppress(OSError):  # the process is dead; reading its pipe will report this
             self.pipe.send_bytes(jobs)
 
     def end(self) -> str:
-        """Ensure that the process has ended, and return the cause."""
-        self.process.join(SECOND)  # the exit code may arrive after the pipe has closed
+        """End the process if it still runs, and return how it ended."""
+        # the exit code may become available only after the pipe is closed
+        self.process.join(SECOND)
         code = self.process.exitcode
         self.process.kill()
         self.process.join()
@@ -161,7 +165,7 @@ class _Worker:
 
 
 class _Crew:
-    """The workers and the groups that no worker has received yet."""
+    """The worker processes, and the groups of jobs that no worker has received yet."""
 
     def __init__(
         self,
@@ -177,7 +181,7 @@ class _Crew:
         self.done = 0
         self.deaths = 0
         self.context = context(task.preload)
-        # tensors are copied instead of shared
+        # pickled without shared memory, so each worker gets its own copy of the tensors
         self.copy = packed(task, "The agent or its world", ALONE)
         self.crew: list[_Worker] = []
         self.size = workers
@@ -187,7 +191,7 @@ class _Crew:
             for _ in range(self.size):
                 self.crew.append(_Worker(self.context, self.copy))
             while self.done < self.total:
-                # results that have already arrived are yielded before the error
+                # after a signal, results that have already arrived are yielded before the error
                 with delay_signals() as ending:
                     for worker in self.crew:
                         if not worker.left and self.waiting:
@@ -222,7 +226,7 @@ class _Crew:
             yield worker.left.popleft()[0], result
 
     def _replace(self, worker: _Worker) -> None:
-        """Replace the first dead worker by a new process; for later ones raise WorkersDied."""
+        """Replace a dead worker by a new process; raise WorkersDied if one was already replaced."""
         cause = worker.end()
         self.crew.remove(worker)
         self.deaths += 1
@@ -231,8 +235,9 @@ class _Crew:
             hint += "worker imports it."
             raise WorkersDied(
                 f"A second worker process was {cause}. {self.done} of {self.total} jobs are "
-                f"finished. There were {self.size} workers: use fewer (workers=1 takes the least "
-                f"memory), or free some memory.{hint if cause.startswith('ended with') else ''}"
+                f"finished. Free some memory, or use fewer than {self.size} workers "
+                "(workers=1 takes the least memory)."
+                f"{hint if cause.startswith('ended with') else ''}"
             )
         self.progress.say(
             f"A worker process was {cause}. Its unfinished jobs ({len(worker.left)}) start again "
@@ -260,7 +265,7 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
         thing: the object.
         what: name of the object in the error.
         instead: advice in the error if it cannot be pickled.
-        shared: whether to pass tensors in shared memory, for one process that reads them once.
+        shared: whether to pass tensors in shared memory; then only one process may read them, once.
 
     Raises:
         ValueError: ``thing`` cannot be pickled.
@@ -278,8 +283,8 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
 def context(preload: str) -> Any:
     """Return the multiprocessing context that starts workers.
 
-    If available, it is a fork server that has imported ``preload``, so that workers start fast.
-    Otherwise each worker is a new interpreter.
+    It uses a fork server that has imported ``preload``, so workers start fast. On systems without
+    fork servers, each worker is a new interpreter.
     """
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -289,7 +294,7 @@ def context(preload: str) -> Any:
 
 
 def _serve(pipe: Connection, copy: bytes) -> None:
-    """Run a worker, which receives groups of jobs and sends (result, None) or (None, error)."""
+    """Run a worker: receive groups of jobs, and send (result, None) per job or (None, error)."""
     leave_to_parent()
     try:
         task: Task = _unpacked(copy)
@@ -308,7 +313,9 @@ def _serve(pipe: Connection, copy: bytes) -> None:
 
 
 def _unpacked(copy: bytes) -> Any:
-    """Unpickle a task; raise ValueError for a class below ``if __name__ == "__main__":``."""
+    """Unpickle a task; raise ValueError if its class is defined under ``if __name__ ==
+    "__main__":``.
+    """
     try:
         return pickle.loads(copy)
     except AttributeError as error:
@@ -318,9 +325,9 @@ def _unpacked(copy: bytes) -> Any:
 
 
 def portable(error: Exception) -> tuple[Exception, Exception]:
-    """Return an error that can be sent to the parent, and a cause with the worker's traceback.
+    """Return a version of ``error`` that can be pickled, and a cause with the worker's traceback.
 
-    For a ValueError, the file and line in the user's code are added. An error that cannot be
+    The text of a ValueError gets the file and line in the user's code. An error that cannot be
     pickled becomes a RuntimeError with the same text.
     """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")

@@ -1,9 +1,9 @@
-"""Compiled blur filters for uint8 panoramas, along a line or with a Gaussian kernel. Edges are
+"""Compiled blur filters for uint8 panoramas: motion blur along a line, and Gaussian blur. Edges are
 replicated.
 
 All arithmetic works on whole rows of 16-bit integers. Every intermediate value is cast back to 16
-bits, so that LLVM uses full-width vector instructions. Arithmetic with 16 bits is about three times
-as fast as with 32 bits.
+bits, so that LLVM uses full-width vector instructions. This is about three times as fast as 32-bit
+arithmetic.
 """
 
 from __future__ import annotations
@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-# maximum total weight of a group of line taps, because 256 * 255 still fits 16 bits
+# maximum sum of the weights in a group of line taps; 256 * 255 still fits into 16 bits
 LINE_UNITS = 256
 
 _I16, _I32 = np.int16, np.int32
@@ -19,8 +19,8 @@ _I16, _I32 = np.int16, np.int32
 
 @njit(cache=True)
 def _pad(view, y, rx, scale, row):
-    """Write row y of uint8 [H, W, 3], multiplied by scale, to row [3 (W + 2 rx)] with repeated
-    edges.
+    """Write row y of the image ``view`` (uint8 [H, W, 3]), multiplied by ``scale``, into the buffer
+    ``row`` [3 (W + 2 rx)]; repeat the edge pixels.
     """
     height, width, _ = view.shape
     source = view[min(max(y, 0), height - 1)].reshape(-1)
@@ -35,8 +35,8 @@ def _pad(view, y, rx, scale, row):
 
 @njit(cache=True)
 def _hat(row, out):
-    """Smooth a row: out = (left + 2 row + right) / 4, rounded, per colour; out is 6 entries
-    shorter.
+    """Smooth a row per colour: out = (left + 2 centre + right) / 4, rounded; ``out`` is 6 entries
+    shorter than ``row``.
     """
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
@@ -55,8 +55,8 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 @njit(cache=True)
 def _mix(total, blurred, source, remainder, target):
-    """Write (total blurred + source remainder) / 65536, rounded, to target, and set total to
-    zero.
+    """Compute target = (total * blurred + source * remainder) / 65536, rounded; then set ``total``
+    to zero.
     """
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
@@ -66,20 +66,21 @@ def _mix(total, blurred, source, remainder, target):
 
 @njit(cache=True)
 def line(views, dy, dx, weights, step, strength, out):
-    """Blur uint8 [V, H, W, 3] along a line: out = (1 - strength) x + strength (mean of the taps).
+    """Blur views (uint8 [V, H, W, 3]) along a line and blend the result with the original views:
+    out = (1 - strength) * views + strength * (weighted mean of the taps).
 
-    ``dy, dx`` int64 [4 n] are offsets in pixels. ``weights`` int16 [4 n] are small integers; the
-    sum of each group of four is at most LINE_UNITS. With ``step`` 2, taps in a row are 2 px apart,
-    and the image is first smoothed along x by (1 2 1)/4, so that pixels between taps also
-    contribute.
+    ``dy`` and ``dx`` (int64 [4 n]) are offsets in pixels. ``weights`` int16 [4 n] are small
+    integers; the weights of each group of four taps sum to at most LINE_UNITS. If ``step`` is 2,
+    the taps in a row are 2 px apart. The image is then first smoothed along x by (1 2 1)/4, so that
+    the pixels between the taps also contribute.
     """
     count, height, width, _ = views.shape
     ry, rx = np.max(np.abs(dy)), np.max(np.abs(dx))
     padded = np.empty((height + 2 * ry, 3 * (width + 2 * rx)), np.uint8)
     wide = np.empty(padded.shape[1] + 6, np.uint8)
     part, total = np.zeros(3 * width, np.int16), np.zeros(3 * width, np.int32)
-    sums = part.view(np.uint16)  # int16 sums may wrap; they are never negative
-    # before these taps, the 16-bit sums are added to total and reset, so that they do not overflow
+    sums = part.view(np.uint16)  # the sums are never negative and may exceed the int16 range
+    # at the marked taps, the 16-bit sums are added to total and reset before they overflow
     full = np.zeros(dy.size, np.bool_)
     used = 0
     for k in range(0, dy.size, 4):
@@ -121,8 +122,8 @@ def line(views, dy, dx, weights, step, strength, out):
 
 @njit(cache=True)
 def _smooth(row, near, far):
-    """Smooth rows: row = (row + 2 near + far) / 4, int16 in [0, 2^14]; row must not overlap the
-    others.
+    """Compute row = (row + 2 near + far) / 4 in place; values are int16 in [0, 2^14], and ``row``
+    must not overlap the other two arrays.
     """
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
@@ -175,12 +176,12 @@ def _weigh_columns(row, centre, step, weights, rounding, total):
 
 @njit(cache=True)
 def gaussian(views, weights, levels, out):
-    """Convolve images uint8 [V, H, W, 3] with a separable kernel.
+    """Convolve views (uint8 [V, H, W, 3]) with a separable symmetric kernel.
 
-    ``weights`` int16 [r + 1] (r is even) are in units of 1/65536; neighbouring taps are 2^levels
-    pixels apart. The first weight is half of the centre weight. The image is first smoothed by
-    (1 2 1)/4 with steps of 1, 2, ... 2^(levels - 1) pixels, so that pixels between the taps also
-    contribute ("a trous").
+    ``weights`` int16 [r + 1] (r is even) are in units of 1/65536. The first weight is half the
+    weight of the centre tap. Neighbouring taps are 2^levels pixels apart. Therefore the image is
+    first smoothed by (1 2 1)/4 with steps of 1, 2, ... 2^(levels - 1) pixels, so that the pixels
+    between the taps also contribute (the "a trous" algorithm).
     """
     count, height, width, _ = views.shape
     r, step = weights.size - 1, 1 << levels
@@ -188,7 +189,8 @@ def gaussian(views, weights, levels, out):
     padded = np.empty((height + 2 * reach, 3 * (width + 2 * reach)), np.int16)
     tall, spare = np.empty(padded.shape[1], np.int16), np.empty(padded.shape[1], np.int16)
     total = np.empty(size, np.int16)
-    rounding = _I16((r + 1) // 2)  # truncating each product loses half a unit on average
+    # compensates for truncated products, which lose half a unit each on average
+    rounding = _I16((r + 1) // 2)
     for v in range(count):
         rows = height + 2 * reach
         for y in range(rows):

@@ -1,7 +1,7 @@
-"""The four depth corruptions of float32 panoramas [V, H, W] in metres.
+"""The four depth corruptions of the standard suite, for float32 panoramas [V, H, W] in metres.
 
-A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and are
-ignored in neighbourhoods. Only ``missing_data`` makes valid depth invalid; all other valid depth is
+A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and do not
+affect their neighbours. Only ``missing_data`` makes valid pixels invalid. All other valid depth is
 clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
@@ -26,7 +26,7 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-# half side of the square that is searched for an echo, as a fraction of min(H, W)
+# half the side of the square in which an echo is searched for, as a fraction of min(H, W)
 ECHO_REACH = 0.03
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
@@ -34,7 +34,7 @@ ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Return by how many metres depth is overestimated when the surface behind is ``gap`` metres
+    """Return the error of a depth reading, in metres, if the surface behind it is ``gap`` metres
     farther away.
 
     The value is computed from the phasor sum of two light paths.
@@ -46,10 +46,11 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """Return coefficients float32 [8] of p, lowest power first: echo_shift = gap p(gap) to 0.01 mm.
+    """Return the coefficients (float32 [8], lowest power first) of a polynomial p with
+    echo_shift(gap) = gap * p(gap), accurate to 0.01 mm.
 
-    The polynomial interpolates at the Chebyshev nodes of [0, 2.5] m, where the shift is smooth. The
-    compiler can vectorise a polynomial, but not table look-ups.
+    The polynomial interpolates the shift at the Chebyshev nodes of [0, 2.5] m, where the shift is
+    smooth. The compiler can vectorise a polynomial, but not table look-ups.
     """
     degree = 7
     nodes = 0.5 * ECHO_GAP * (1.0 + np.cos(np.pi * (np.arange(degree + 1) + 0.5) / (degree + 1)))
@@ -60,14 +61,16 @@ def echo_polynomial(severity: float) -> np.ndarray:
 
 @njit(cache=True)
 def larger(row, other):
-    """Compute row = max(row, other) in place, float32; the two must not overlap."""
+    """Compute row = max(row, other) in place, float32; the two arrays must not overlap."""
     for x in range(row.size):
         row[x] = row[x] if row[x] > other[x] else other[x]
 
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace entry i by the maximum of entries i to i + 2 reach, by doubling the window."""
+    """Replace row[i] by the maximum of row[i] to row[i + 2 * reach]; the window is doubled
+    repeatedly.
+    """
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -79,8 +82,8 @@ def farthest_along(row, spare, reach):
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """Write to out [H, W] the maximum of sign z in a square of 2 reach + 1, or -inf if none is
-    valid.
+    """Write to ``out`` [H, W], for each pixel, the maximum of sign * z in the square of side 2 *
+    reach + 1 around it, or -inf if no pixel there is valid.
     """
     height, width = view.shape
     rows = height + 2 * reach
@@ -127,28 +130,32 @@ def echo_reach(height: int, width: int) -> int:
 
 
 def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Over-estimate depth next to farther surfaces, as if light took a second path."""
+    """Overestimate depth next to farther surfaces, as if light took a second path."""
     reach, out = echo_reach(*views.shape[1:]), np.empty_like(views)
     _echo(views, reach, echo_polynomial(severity), np.float32(sensor.z_max), out)
     return out
 
 
-# as in a D435, the RMS error grows with z^2; s = 0.1 is similar to a Kinect
+# the RMS error grows with z^2, as in a D435; severity 0.1 is similar to a Kinect
 NOISE_BASE, NOISE_SQUARE = 0.02, 0.02
 HOLE_CORRELATION = 0.025  # as a fraction of min(H, W)
-# fraction of missing pixels at s = 1 (Zhang & Funkhouser 2018: often over half indoors)
+# fraction of missing pixels at severity 1; indoors, often more than half are missing (Zhang &
+# Funkhouser 2018)
 HOLE_SHARE = 0.5
 FAR_SHARE = 0.25  # fraction of the holes that have the value z_max ("incorrectly large")
-HOLE_FRAMES = 5  # number of frames after which the holes move
-STEP = 0.5  # in metres, at s = 1
-STEP_LEAST = 1e-30  # minimum step in metres: depth divided by a smaller step would overflow float32
+HOLE_FRAMES = 5  # number of frames after which holes move
+STEP = 0.5  # step of quantization in metres at severity 1
+# minimum step in metres; dividing depth by a smaller step would overflow float32
+STEP_LEAST = 1e-30
 
 _U = np.uint64
 
 
 @njit(cache=True)
 def _add_noise(views, streams, base, square, z_max, table, out):
-    """Add noise to 256 pixels at a time: first table look-ups, then vector arithmetic."""
+    """Add noise to blocks of 256 pixels, so that the table look-ups are separate from the
+    vectorised arithmetic.
+    """
     draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):
         stream = streams[v]
@@ -165,7 +172,9 @@ def _add_noise(views, streams, base, square, z_max, table, out):
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add s (0.02 + 0.02 z^2) N(0, 1) to each pixel of each frame; z is at most z_max."""
+    """Add severity * (0.02 + 0.02 z^2) * N(0, 1) to each pixel of each frame; z is limited to
+    z_max.
+    """
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
@@ -175,9 +184,11 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return a map uint8 [H, 2 W]: 0 means unchanged, 1 no reading, and 2 the value z_max.
+    """Return a map (uint8 [H, 2 W]) with a code per pixel: 0 keeps depth, 1 removes it, and 2 sets
+    it to z_max.
 
-    The array holds the map twice, side by side, so that a shifted row is one contiguous slice.
+    The array holds two copies of the map, side by side, so that a shifted row is one contiguous
+    slice.
     """
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
@@ -191,7 +202,7 @@ def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.nda
 
 
 def hole_streams(key: Key, views: int) -> np.ndarray:
-    """Return the digests of the offsets of ``hole_map`` for each view, uint64 [views]."""
+    """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
     return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
 
 
@@ -216,8 +227,8 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove depth where a random field is in its top 0.5 s; a quarter of these pixels becomes
-    z_max. The field moves every 5 frames.
+    """Remove depth at a fraction 0.5 * severity of the pixels, where a random field is highest; a
+    quarter of these pixels become z_max. The field moves every 5 frames.
     """
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)
@@ -237,12 +248,12 @@ def _round_off(views, step, z_max, out):
 
 
 def depth_step(severity: float) -> float:
-    """Return the step of ``quantization`` in metres."""
+    """Return the step in metres to which ``quantization`` rounds."""
     return max(STEP * severity, STEP_LEAST)
 
 
 def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Round depth to multiples of 0.5 s metres."""
+    """Round depth to multiples of 0.5 * severity metres."""
     out = np.empty_like(views)
     step, z_max = np.float32(depth_step(severity)), np.float32(sensor.z_max)
     _round_off(views.reshape(-1), step, z_max, out.reshape(-1))

@@ -1,4 +1,4 @@
-"""Define the range of a depth camera and the validity of its pixels.
+"""Define the range of a depth camera, and which of its pixels are valid.
 
 A pixel is invalid if z <= 0, NaN or infinite.
 """
@@ -13,11 +13,11 @@ from numba import njit
 
 from mitigate.core import observation
 
-NEAREST = np.float32(1e-3)  # minimum of corrupted valid depth, in metres
-# normalised value of valid depth at or below z_min, because 0 means no reading
+NEAREST = np.float32(1e-3)  # minimum valid depth after a corruption, in metres
+# normalised value of valid depth at or below z_min; it is not 0, because 0 means no reading
 LEAST = np.float32(1e-6)
-# Heuristic check of the unit: at least one of MIN_NEAR valid pixels must be nearer than
-# MAX_RANGES times z_max (outdoors, only the ground is that near).
+# Heuristic check of the unit: at least a fraction 1 / MIN_NEAR of the valid pixels must be nearer
+# than MAX_RANGES * z_max. (The fraction is small, because outdoors only the ground is so near.)
 # About UNIT_SAMPLES pixels are checked.
 MAX_RANGES = 3.0
 MIN_NEAR = 10
@@ -29,7 +29,7 @@ LIGHT_SPEED = 299_792_458.0  # metres per second
 class DepthSensor:
     """The range of a depth camera, and its value for missing depth.
 
-    Agents interpret missing depth differently: R2R-CE agents treat 0 as missing, VLFM as far away,
+    Agents interpret the value 0 differently: R2R-CE agents treat it as missing, VLFM as far away,
     and L3MVN as the maximum of the image column.
 
     Attributes:
@@ -58,7 +58,7 @@ class DepthSensor:
         return np.where(normalised == 0, 0, metres).astype(np.float32)
 
     def from_metres(self, metres: np.ndarray) -> np.ndarray:
-        """Convert metres to normalised depth in [0, 1]; only 0 (no reading) becomes 0."""
+        """Convert metres to normalised depth in [0, 1]; only 0 (no reading) is mapped to 0."""
         unit = (metres - self.z_min) / np.float32(self.z_max - self.z_min)
         return np.where(metres == 0, 0, np.clip(unit, LEAST, 1)).astype(np.float32)
 
@@ -76,24 +76,24 @@ def flat(views: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def _is_near(pixels, limit):
-    """Return whether at least 1 of ``MIN_NEAR`` valid pixels is at most ``limit``, or no pixel is
-    valid.
+    """Return whether at least a fraction 1 / ``MIN_NEAR`` of the valid pixels has a depth of at
+    most ``limit``, or no pixel is valid.
     """
     near = valid = 0
     step = pixels.size // UNIT_SAMPLES + 1
     for i in range(0, pixels.size, step):
         valid += is_valid(pixels[i])
         near += is_valid(pixels[i]) & (pixels[i] <= limit)
-        # the result is known: even if all other pixels are valid and far, enough are near
+        # enough pixels are near, even if all remaining pixels are valid and far
         if MIN_NEAR * near * step >= pixels.size:
             return True
     return MIN_NEAR * near >= valid
 
 
 def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max, so it is not in metres.
+    """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max: then it is not in metres.
 
-    Such depth, clipped to the sensor's range, would be a flat wall.
+    Clipping such depth to the sensor's range would give a flat wall.
     """
     if not _is_near(views.reshape(-1), np.float32(MAX_RANGES * sensor.z_max)):
         median = float(np.median(views[(views > 0) & (views < np.inf)]))

@@ -1,13 +1,14 @@
 """Simulate low light with sensor noise, using the ELD model.
 
 Source: Wei et al., "Physics-based noise modeling for extreme low-light photography", IEEE TPAMI
-2021. D = K Poisson(I) + TukeyLambda + row noise, rounded by the ADC. Simplifications: sRGB is
-approximated by an exponent of 2.2, noise is sampled per channel without a Bayer pattern, and the
-three channels of a row have the same row noise. Clipping at 0 brightens dark areas, as in real
-cameras.
+2021. The noise model is D = K * Poisson(I) + TukeyLambda + row noise, rounded by the ADC.
+Simplifications: sRGB is approximated by an exponent of 2.2, noise is sampled per channel without a
+Bayer pattern, and the three channels of a row have the same row noise. Negative values are clipped
+to 0, which brightens dark areas, as in real cameras.
 
-Sampling needs two table look-ups per channel: a (signal level x quantile) table of photon counts
-and a quantile table of read noise, indexed by the bits of one hash per pixel.
+Sampling a channel needs two table look-ups. One table contains photon counts by signal level and
+quantile; the other one contains quantiles of read noise. The bits of one hash per pixel are the
+indices.
 """
 
 from __future__ import annotations
@@ -22,10 +23,11 @@ from numba import njit
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
 
-WHITE = 15583.0  # sensor units at full scale: 14 bits minus the black level (Sony A7S2)
-DARKEST = 300.0  # exposure ratio at s = 1 (ELD trains on 100-300)
+WHITE = 15583.0  # sensor units at full scale, which are 14 bits minus the black level (Sony A7S2)
+DARKEST = 300.0  # exposure ratio at severity 1; ELD trains with ratios of 100 to 300
 GAMMA = 2.2
-# Camera calibration in the paper: range of the gain K, and (a, b) in ln sigma = a ln K + b.
+# Camera calibration from the paper: the range of the gain K, and (a, b) of ln(sigma) = a * ln(K) +
+# b for two noise components.
 GAINS = (0.0939, 6.011)
 READ = (0.4621, 0.5657)
 ROW = (0.5275, -0.5917)
@@ -38,7 +40,9 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda and two sigmas."""
+    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda, and the sigmas of
+    read and row noise.
+    """
 
     ratio: float
     gain: float
@@ -67,7 +71,9 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points], exactly up to mean 64, above by Cornish-Fisher."""
+    """Compute Poisson quantiles [means, points]. They are exact for means up to 64; larger means
+    use the Cornish-Fisher expansion.
+    """
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -89,10 +95,11 @@ def _photon_table(means, points, deviates, out):
 
 @dataclass(frozen=True)
 class Tables:
-    """The look-up tables of one severity. int32 tables hold values in 1/256 of a sensor unit.
+    """The look-up tables of one severity. int32 tables hold values in units of 1/256 of a sensor
+    unit.
 
-    photons int32 [LEVELS * 256], read int32 [4096], row int32 [4096]. decode uint8 [D] maps the sum
-    of the three values plus ``offset``, in whole sensor units, to a grey level.
+    ``photons`` is int32 [LEVELS * 256]; ``read`` and ``row`` are int32 [4096]. ``decode`` (uint8
+    [D]) maps the sum of the three values and ``offset``, in whole sensor units, to a grey level.
     """
 
     photons: np.ndarray
@@ -122,7 +129,7 @@ def tables(severity: float) -> Tables:
 
 @njit(cache=True)
 def _levels(source, opacity, part, out):
-    """Darken one row like ``low_light``, but with a resolution of a quarter grey level."""
+    """Darken one row like ``low_light``, but with a resolution of a quarter of a grey level."""
     for i in range(part.size):
         gap = np.int16(np.int16(-np.int16(source[i])) << 7)
         part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
@@ -132,8 +139,8 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """Sample noisy frames uint8 [V, H, W, 3]; unsigned indices avoid numba's check for negative
-    ones.
+    """Sample noisy frames (uint8 [V, H, W, 3]). Unsigned indices avoid numba's check for negative
+    indices.
     """
     count, height, width, _ = views.shape
     size = 3 * width
@@ -157,11 +164,11 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 
 
 def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Apply ``low_light`` and add sensor noise; uint8 [V, H, W, 3].
+    """Darken views (uint8 [V, H, W, 3]) like ``low_light`` and add sensor noise.
 
-    The darkness mask is the mask of ``low_light``. Up to s = 0.6, the mean brightness equals the
-    brightness under ``low_light`` within 1 %. At higher severities, clipping noise at 0 brightens
-    the frame, so that s = 1 is not darker than s = 0.8.
+    The mask that darkens the frame is that of ``low_light``. Up to severity 0.6, the mean
+    brightness is within 1 % of the brightness under ``low_light``. At higher severities, noise is
+    clipped at 0, which brightens the frame, so that severity 1 is not darker than severity 0.8.
     """
     count, height, width, _ = views.shape
     t = tables(severity)

@@ -18,7 +18,7 @@ def example_rgb() -> np.ndarray:
     Returns:
         uint8 array of shape [400, 600, 3], RGB.
     """
-    import cv2  # imported here, because agents must load without OpenCV
+    import cv2  # imported here, because agents must be loadable without OpenCV
 
     picture = cv2.imread(str(_FOLDER / "photograph.jpg"), cv2.IMREAD_COLOR)
     assert picture is not None

@@ -1,5 +1,5 @@
-"""Corrupt the frames of a folder into a new folder; runs can resume, and files are written
-atomically.
+"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed, and files are
+written atomically.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ FORMATS = ("png", "same")
 
 @dataclass(frozen=True)
 class Settings:
-    """Options for corrupting a folder; raises ValueError for an invalid value."""
+    """Options for corrupting a folder; the constructor raises ValueError for an invalid value."""
 
     corruption: str
     severity: float
@@ -51,11 +51,12 @@ class Settings:
     # "folder": each folder is an episode; "all": all frames are one episode
     episode: str = "folder"
     format: str = "png"  # output format of a corrupted JPEG: "png" or "same"
-    unit: float | None = None  # metres per count of a 16-bit PNG; None assumes mm, after a check
+    # metres per count of a 16-bit PNG; None means mm, if a check finds this plausible
+    unit: float | None = None
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
-    no_reading: int = NO_READING  # 16-bit PNG value that, like 0, means no reading
-    hfov: float | None = None  # degrees, horizontal field of view for camera faults
+    no_reading: int = NO_READING  # pixel value of a 16-bit PNG that, like 0, means "no reading"
+    hfov: float | None = None  # horizontal field of view in degrees, for camera faults
 
     def __post_init__(self) -> None:
         check_gate(Corruption(self.corruption, self.severity))
@@ -70,20 +71,22 @@ class Settings:
                 raise ValueError(f"{name} must be one of {', '.join(allowed)}, got {value}.")
         if not 0.0 < self.metres_per_count < float("inf"):
             raise ValueError(
-                f"unit must be mm, cm, m or the metres per count of a 16-bit PNG above 0, such as "
-                f"0.00025, got {self.unit}."
+                "unit must be mm, cm, m or a positive number (metres per count of a 16-bit PNG, "
+                f"such as 0.00025), got {self.unit}."
             )
         if not self.missing >= 0.0:
             raise ValueError(
-                f"missing must be 0 (no reading) or more metres, got {self.missing:g}."
+                f"missing must be 0 (no reading) or a depth in metres, got {self.missing:g}."
             )
         if not 0 <= self.no_reading <= NO_READING:
-            raise ValueError(f"no_reading must be 0 to {NO_READING}, got {self.no_reading}.")
+            raise ValueError(
+                f"no_reading must be between 0 and {NO_READING}, got {self.no_reading}."
+            )
         DepthSensor(z_max=self.z_max)  # checks z_max
         if "camera_height" in parts(self.corruption):
             raise ValueError(
-                "camera_height needs a world that renders; files show one height. Choose another "
-                "corruption."
+                "camera_height needs a world that renders frames again: "
+                "recorded frames cannot show another height. Choose another corruption."
             )
         if family(self.corruption) == CAMERA and self.hfov is None:
             raise ValueError(
@@ -103,9 +106,10 @@ class Settings:
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
 
-    Frames are numbered by name inside their episode, comparing digits as numbers ("9" before "10");
-    a damaged file keeps its number. A file that is already in ``out`` is not written again. RGB and
-    depth of an episode are numbered separately. A temporal fault shows earlier files of an episode.
+    The frames of an episode are numbered in the order of their file names, in which digits are
+    compared as numbers ("9" is before "10"). A damaged file keeps its number. RGB and depth frames
+    are numbered separately. A file that is already in ``out`` is not written again. A temporal
+    fault repeats frames of earlier files of the episode.
 
     Args:
         source: Folder with frames.
@@ -113,8 +117,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         settings: The options.
 
     Returns:
-        The summary, which is also written to ``out/corrupt.json``: settings, counts and skipped
-        files.
+        The summary with settings, counts and skipped files, which is also written to
+        ``out/corrupt.json``.
 
     Raises:
         FileNotFoundError: The folder does not exist or contains no frame.
@@ -138,7 +142,7 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
 
 
 def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dict:
-    """Corrupt the frames of ``plan``; return the summary as :func:`run` does."""
+    """Corrupt the frames of ``plan`` and return the summary."""
     summary = _begin(out, settings, plan)
     outputs = {frame.path: _output(frame.path, settings.format) for frame in plan.frames}
     names = set(outputs)
@@ -153,7 +157,7 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
             else:
                 _corrupt_frame(source, out, target, frame, settings, plan, summary, stream)
             names.add(target)
-    finally:  # so that a resumed run does not compute these frames again
+    finally:  # a resumed run then does not compute these frames again
         _write_summary(out, summary)
     missing = [
         out / outputs[frame.path]
@@ -212,8 +216,8 @@ def _corrupt_frame(
 
 
 def _checksum(source: Path, output: Path) -> str:
-    """Return one checksum of the input file and the output file of a frame; "" if a file cannot be
-    read.
+    """Return one checksum for the input file and the output file of a frame, or "" if one of them
+    cannot be read.
     """
     try:
         return _short_hash(sha256(source) + sha256(output))
@@ -231,7 +235,7 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check the results of an earlier run in ``out``, and then write settings and episodes
+    """Check that the results of an earlier run in ``out`` match; then write settings and episodes
     there.
     """
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
@@ -258,7 +262,8 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums of an earlier run, or an empty dict if an earlier version wrote none.
+    """Return the checksums of an earlier run; the dict is empty if an old version wrote no
+    checksums.
 
     Raises:
         ValueError: ``out`` was written with different settings or frames.
@@ -268,12 +273,13 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
         earlier = read_object(out / SUMMARY, unknown, LARGEST_LIST)
     except FileNotFoundError:
         raise ValueError(
-            f"{out} must be empty or have a {SUMMARY} of this program. Name a new or an empty "
-            "folder."
+            f"{out} must be empty or contain {SUMMARY}, which this program writes. "
+            "Name a new or an empty folder."
         ) from None
     try:
         earlier_settings = dict(earlier["settings"])
-        # earlier versions used only the count 0, so no_reading=0 resumes their folders
+        # in earlier versions, only the pixel value 0 meant "no reading", so no_reading=0 resumes
+        # their folders
         is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
         earlier_settings.setdefault("no_reading", settings["no_reading"] if is_rgb else 0)
         recorded = dict(earlier["episodes"]).items()
@@ -294,9 +300,9 @@ def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) ->
     for name, (count, digest) in digests.items():
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
-                f"The first {count} frames of episode {short(name, 200)} are not those that {out} "
-                "was made from: files were added between them, removed or renamed, so their "
-                "numbers changed. Name another folder, or delete this one. (Frames may be added at "
+                f"{out} was made from other frames: among the first {count} frames of episode "
+                f"{short(name, 200)}, files were added, removed or renamed, so frame numbers "
+                "changed. Name another folder, or delete this one. (Frames may be added at "
                 "the end.)"
             )
     return checksums
@@ -318,7 +324,7 @@ def _write_summary(out: Path, summary: dict) -> None:
 
 
 def check_folders(source: Path, out: Path) -> None:
-    """Check that ``source`` exists, and that neither folder contains the other.
+    """Check that ``source`` exists and that neither folder contains the other one.
 
     Raises:
         FileNotFoundError: There is no folder ``source``.
@@ -333,8 +339,8 @@ def check_folders(source: Path, out: Path) -> None:
     real_out = out.resolve()
     if real_out.is_relative_to(real_source) or real_source.is_relative_to(real_out):
         raise ValueError(
-            f"{out} and {source} must not be the same folder nor one inside the other: results "
-            "would be read as frames, or overwrite them. Name another folder."
+            f"{out} and {source} must be different folders, and neither may contain the other: "
+            "results would be read as frames, or overwrite them. Name another folder."
         )
 
 

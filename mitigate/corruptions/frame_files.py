@@ -1,7 +1,7 @@
 """Read and write frame files: 8-bit RGB in PNG and JPEG, depth in 16-bit PNG and in NPY.
 
-This module also finds the frames of a folder and their order. Files are untrusted, so they are
-decoded completely before anything is written, and are never unpickled.
+This module also finds the frames in a folder and determines their order. Files are untrusted, so
+they are decoded completely before anything is written, and are never unpickled.
 """
 
 from __future__ import annotations
@@ -26,26 +26,28 @@ from mitigate.core.observation import DEPTH, RGB
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
 # JPEG quality (heuristic), with full colour resolution; used only with format=same
 JPEG_QUALITY = 95
-PNG_LEVEL = 3  # zlib level that takes half the time of the default 6, for a few per cent more bytes
+# zlib level; it takes half the time of the default level 6, and files are a few per cent larger
+PNG_LEVEL = 3
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
-MAX_COUNT = 65534  # greatest depth count in a 16-bit PNG
-# count that, besides 0, means no reading: in 7-Scenes, and for a saturated sensor
+MAX_COUNT = 65534  # maximum depth value in a 16-bit PNG
+# pixel value that, like 0, means "no reading": in 7-Scenes, and in saturated sensors
 NO_READING = 65535
 SCALE_FILES = 16  # number of files in a folder whose depth scale is checked (heuristic)
 SCALE_PIXELS = 8192  # number of pixels that are checked per file (heuristic)
 
 
 class LeftOutError(ValueError):
-    """Raised for a file that cannot be corrupted; the message is the reason."""
+    """Raised for a file that cannot be corrupted; the message says why."""
 
 
 def modality(path: Path) -> str:
     """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
     Raises:
-        LeftOutError: The file is neither, or it is a pipe or device, which may never end.
+        LeftOutError: The file has neither modality, or it is a pipe or a device, which may never
+            end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise LeftOutError("is not a regular file")
@@ -78,15 +80,15 @@ def corrupt_file(
     corrupt_frame: Callable[[np.ndarray], np.ndarray],
     no_reading: int = NO_READING,
 ) -> bytes:
-    """Return the content of an output file with the corrupted frame of ``path``.
+    """Corrupt the frame in the file ``path``, and return the content of the output file.
 
     Args:
         path: The file to read.
-        suffix: File suffix that determines the format of the result.
+        suffix: Suffix of the output file, which determines its format.
         unit: Metres per count of a 16-bit PNG.
-        corrupt_frame: Function of uint8 [H, W, 3], or of float32 metres in the shape of the file.
-            Pixels that this function does not change keep their stored values.
-        no_reading: Count in a 16-bit PNG that means no reading, in addition to 0.
+        corrupt_frame: Function that corrupts one frame: uint8 [H, W, 3], or float32 metres in the
+            shape of the file. Pixels that this function does not change keep their stored values.
+        no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
 
     Raises:
         LeftOutError: The file is damaged or has an unsupported format.
@@ -110,9 +112,9 @@ def corrupt_file(
 
 
 def counts(metres: np.ndarray, unit: float) -> np.ndarray:
-    """Convert metres to uint16 counts of ``unit`` metres, the pixels of a 16-bit PNG.
+    """Convert metres to the pixel values of a 16-bit PNG: uint16 counts of ``unit`` metres.
 
-    Missing depth becomes 0, and all other depth at least 1.
+    Missing depth becomes 0; all other depth becomes at least 1.
     """
     valid = np.isfinite(metres) & (metres > 0)
     return np.clip(np.rint(np.where(valid, metres, 0) / unit), valid, MAX_COUNT).astype(np.uint16)
@@ -138,16 +140,16 @@ def read(path: Path, unit: float) -> np.ndarray:
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
-    """Check that the assumed unit of depth files is plausible. Only a sample of the files is read.
+    """Check that the assumed unit of depth files is plausible; only a sample of the files is read.
 
     Args:
-        paths: Depth files, 16-bit PNG and NPY.
+        paths: Depth files (16-bit PNG and NPY).
         unit: Assumed metres per count of a 16-bit PNG.
-        z_max: Far limit of the camera in metres.
+        z_max: Maximum depth of the camera in metres.
 
     Raises:
-        ValueError: Most PNG depth values are at or beyond the far limit, or no NPY depth value
-            exceeds 1, as in normalised depth.
+        ValueError: Most PNG depth values are at least ``z_max``, or no NPY depth value exceeds 1,
+            so the values may be normalised depth.
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
@@ -172,9 +174,9 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         if not (counts % 8).any():
             likely += "; SUN RGB-D, whose counts are multiples of 8, needs a rotation by 3 bits"
         raise ValueError(
-            f"The unit of the depth seems wrong: with {unit:g} metres per count, {far:.0%} of the "
-            f"readings are at {z_max:g} m or beyond (median {np.median(counts) * unit:.3g} m). "
-            f"Set unit= to the metres per count ({likely}), or unit={unit:g} if it is right."
+            f"The unit of depth seems wrong: with {unit:g} metres per count, {far:.0%} of the "
+            f"readings are {z_max:g} m or more (median {np.median(counts) * unit:.3g} m). "
+            f"Set unit= to the metres per count ({likely}), or to {unit:g} if that is right."
         )
 
 
@@ -200,9 +202,10 @@ def _decode(path: Path) -> np.ndarray:
 
 
 def _load(path: Path) -> np.ndarray:
-    """Load floating-point depth from NPY."""
+    """Load floating-point depth from an NPY file."""
     try:
-        # memory-mapped, so that a header with a false shape allocates no memory
+        # the file is memory-mapped, because a wrong shape in its header could require too much
+        # memory
         mapped = np.load(path, mmap_mode="r", allow_pickle=False)
         if isinstance(mapped, np.ndarray) and mapped.size > MAX_PIXELS:
             raise ValueError(f"it has {mapped.shape} numbers")
@@ -232,7 +235,9 @@ def _encode(image: Image.Image, suffix: str) -> bytes:
 
 @dataclass(frozen=True)
 class Frame:
-    """An input file with its relative path, and the episode and frame number of its key."""
+    """An input file: its relative path, its episode and its frame number, which determine its
+    key.
+    """
 
     path: Path
     episode: str
@@ -241,10 +246,12 @@ class Frame:
 
 @dataclass
 class Plan:
-    """The content of a folder: frames in order, skipped files, and suffixes of other files."""
+    """The content of a folder: its frames in order, skipped files, and counts of other files by
+    suffix.
+    """
 
     frames: list[Frame] = field(default_factory=list)
-    # maps a skipped file or folder/ to the reason
+    # maps a skipped file, or a skipped folder with a final slash, to the reason
     left_out: dict[str, str] = field(default_factory=dict)
     other_modality: int = 0
     other_files: Counter[str] = field(default_factory=Counter)  # suffix -> files
@@ -258,13 +265,14 @@ class Plan:
 
 
 def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
-    """Find the frames of some modalities; a damaged file keeps its number but is skipped.
+    """Find the frames of some modalities; a damaged file is numbered like a frame but skipped.
 
     Args:
         source: The folder, which is searched recursively.
-        out: Folder of the results, which is skipped even if a link leads there, or None.
-        kinds: "rgb", "depth" or both, each numbered separately.
-        episode: "folder" (each folder is an episode) or "all" (one episode).
+        out: Folder of the results, or None. It is skipped, even if ``source`` contains a link to
+            it.
+        kinds: "rgb", "depth" or both; their frames are numbered separately.
+        episode: "folder" (each folder is an episode) or "all" (all frames are one episode).
     """
     plan = Plan()
     counts: Counter[tuple[str, str]] = Counter()
@@ -287,24 +295,25 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
-    """Return counts of files by suffix as text, with the most frequent suffix first: "3 .tif, 1
-    .webp".
+    """Return the number of files per suffix as text, with the most frequent suffix first: "3 .tif,
+    1 .webp".
     """
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 
 
 def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
-    """Yield relative paths, one folder after the other in natural order, without hidden ones.
+    """Yield the relative paths of all files that are not hidden, folder by folder in natural order.
 
-    Links to folders are followed, except for loops and links into the real path ``out``.
+    Links to folders are followed, unless a link leads to an enclosing folder or into ``out`` (a
+    real path).
     """
 
     def note_unreadable(error: OSError) -> None:
         folder = Path(error.filename).relative_to(source).as_posix()
         plan.left_out[f"{folder}/"] = f"cannot be read: {error.strerror}"
 
-    real_paths = {Path(): source.resolve()}  # real path of each folder, by its relative path
+    real_paths = {Path(): source.resolve()}  # maps the relative path of a folder to its real path
     for folder, folders, files in os.walk(source, onerror=note_unreadable, followlinks=True):
         relative = Path(folder).relative_to(source)
         for name in sorted((name for name in files if name[0] != "."), key=natural):
@@ -314,7 +323,8 @@ def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
             inner = relative / name
             real = real_paths[relative] / name
             is_link = os.path.islink(os.path.join(folder, name))
-            if is_link:  # resolving every folder takes cubic time in the number of levels
+            # only links are resolved: resolving all folders takes cubic time in the nesting depth
+            if is_link:
                 real = real.resolve()
             real_paths[inner] = real
             reason = ""
@@ -328,6 +338,6 @@ def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
 
 
 def natural(name: str) -> tuple:
-    """Return a sort key that compares digits as numbers."""
+    """Return a sort key for names in which digits are compared as numbers."""
     parts = re.split(r"([0-9]+)", name)
     return tuple(int(p) if i % 2 else p for i, p in enumerate(parts)), name

@@ -1,35 +1,39 @@
 """Corrupt recorded frames: mitigate corrupt IN OUT corruption=... severity=...
 
-  IN          folder of frames, with any subfolders and links to folders: 8-bit RGB as PNG or
-              JPEG; depth as 16-bit PNG, or as NPY float metres, [H, W], [H, W, 1] or with views
-              first. Or the folder of a LeRobot dataset, version 3 (pip install -e '.[lerobot]')
-  OUT         folder for the corrupted frames, with the same tree and names
+  IN          folder of frames, which may contain subfolders and links to folders. RGB is 8-bit
+              PNG or JPEG. Depth is 16-bit PNG, or NPY in metres (float, [H, W], [H, W, 1], or with
+              views as the first axis). IN may also be the folder of a LeRobot dataset, version 3
+              (pip install -e '.[lerobot]').
+  OUT         folder for the corrupted frames; it gets the same subfolders and file names
 
-  corruption  its name (see --list), or intermittent+NAME; frames of the other modality are skipped
+  corruption  name of the corruption (see --list), or intermittent+NAME; frames of modalities that
+              it does not corrupt are skipped
   severity    0 (clean) to 1 (worst)
   seed        corruption seed (0)
-  episode     folder: each folder is an episode, frames in the order of their names (default);
+  episode     folder (default): each folder is an episode, with frames in the order of their names;
               all: all frames are one episode
-  unit        of 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025; default: mm, after a
-              check that the depth may be in mm (and NPY in metres; unit=m skips this check)
-  format      format of a corrupted JPEG: png, which keeps every pixel (default), or same: JPEG
-              with the same name, at quality 95. For the videos of a LeRobot dataset, png means
-              lossless H.264 in RGB, and same the codec of the original, which is lossy
-  z_max       depth range in metres (10): valid depth beyond it is clipped
-  missing     value of missing data in metres (0: no reading)
-  no_reading  count of a 16-bit PNG that means no reading, next to 0 (65535)
-  hfov        horizontal field of view in degrees, which the camera faults need
-  cameras     cameras of a LeRobot dataset, with commas; default: all that the corruption applies to
-  tolerance   maximum seconds between a row of a LeRobot dataset and its video frame (0.0001);
-              episode, unit and no_reading do not apply to such a dataset
+  unit        unit of depth in 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025. The
+              default is mm; then the command first checks that depth may be in mm (and in metres
+              in NPY). unit=m skips this check for NPY.
+  format      output format of a JPEG: png (default) keeps every pixel; same writes a JPEG with the
+              same name, at quality 95. For the videos of a LeRobot dataset, png writes lossless
+              H.264 in RGB, and same uses the codec of the original, which is lossy.
+  z_max       maximum depth in metres (10); valid depth beyond it is clipped
+  missing     value in metres that replaces missing depth (0: no reading)
+  no_reading  pixel value of a 16-bit PNG that, like 0, means "no reading" (65535)
+  hfov        horizontal field of view in degrees; camera faults need it
+  cameras     cameras of a LeRobot dataset, separated by commas; the default is all cameras that the
+              corruption applies to
+  tolerance   maximum seconds between a row of a LeRobot dataset and its video frame (0.0001). The
+              options episode, unit and no_reading do not apply to such a dataset.
 
-  --list      list the corruptions: what they corrupt, what severity means, their draws and source
+  --list      list all corruptions with their modality, meaning of severity, randomness and source
   --help      this help
 
-The same command resumes an interrupted run, and writes changed frames again. OUT/corrupt.json holds
-the settings, counts, skipped files with the reason, and a checksum of each frame. Files of other
-formats are not read but counted by suffix. Exit status: 0 done, 1 done but bad files were skipped,
-2 not done.
+The same command resumes an interrupted run; it also writes changed frames again. OUT/corrupt.json
+holds the settings, counts, skipped files with the reason, and a checksum of each frame. Files of
+other formats are not read, but are counted by suffix. The exit status is 0 if the run is done, 1 if
+it is done but bad files were skipped, and 2 if it failed.
 
 Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """
@@ -48,12 +52,13 @@ from mitigate.corruptions.folders import UNITS, Settings
 from mitigate.corruptions.frame_files import count_suffixes
 from mitigate.corruptions.lerobot.dataset import TOLERANCE
 
-DATASET_OPTIONS = ("cameras", "tolerance")  # of LeRobot datasets only
+DATASET_OPTIONS = ("cameras", "tolerance")  # options that apply only to LeRobot datasets
 MAX_LISTED = 5  # number of skipped files that are printed; the summary lists all
 
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]:
-    """Return IN, OUT, the settings, and the options ``DATASET_OPTIONS``.
+    """Parse the arguments into IN, OUT, the settings, and those options that are in
+    ``DATASET_OPTIONS``.
 
     Raises:
         ValueError: An argument is invalid.
@@ -68,8 +73,8 @@ def _settings(options: dict[str, str]) -> Settings:
     for option in fields(Settings):
         if option.default is MISSING and option.name not in options:
             raise ValueError(
-                f"The option {option.name}= is missing. Write for example corruption=spatter "
-                "severity=0.5. List the corruptions with --list."
+                f"The option {option.name}= is missing. An example is corruption=spatter "
+                "severity=0.5. The option --list lists the corruptions."
             )
     return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
 
@@ -102,8 +107,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             return _corrupt_dataset(source, out, settings, of_dataset)
         if of_dataset:
             raise ValueError(
-                f"{', '.join(of_dataset)} applies only to a LeRobot dataset, which has "
-                f"meta/info.json, and {source} has none. Remove it."
+                f"{', '.join(of_dataset)} applies only to a LeRobot dataset, but {source} "
+                "is none: it has no meta/info.json. Remove the option."
             )
         summary = folders.run(source, out, settings)
     except (OSError, ValueError) as error:

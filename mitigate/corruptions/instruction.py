@@ -1,9 +1,9 @@
 """Corrupt instructions before an episode begins.
 
-There are five families, as in NavTrust: four styles, capitals, masks, and misleading sentences
-before the instruction (black box) or in the agent's system prompt (white box). Each family is a
-pure function of (text, severity, key). Severity 0 changes nothing. A higher severity changes all
-words that a lower one changes.
+There are five families of corruptions, as in NavTrust: (1) four styles, (2) capitals, (3) masks,
+(4) misleading sentences before the instruction (black box), (5) misleading sentences in the agent's
+system prompt (white box). Each family is a pure function of (text, severity, key). Severity 0
+changes nothing. Words that change at one severity also change at every higher severity.
 """
 
 from __future__ import annotations
@@ -51,22 +51,22 @@ def corrupt_instruction(
     rewrite: Rewrite | None = None,
     tagger: str = "own",
 ) -> str:
-    """Corrupt the words of one instruction.
+    """Corrupt one instruction.
 
     Args:
         text: the instruction, in English.
         name: one of INSTRUCTION, except "white_box", which corrupts a system prompt
             (``inject_system_prompt``).
-        severity: s in [0, 1]: the probability of a rewrite (styles), the fraction of eligible words
-            (capitals, masks), or the fraction of the sampled attack sentences (black box); 0
-            returns ``text``.
-        key: determines the random numbers; its frame is not used. An integer is used as the seed, a
-            string as the episode.
+        severity: number from 0 to 1. It is the probability of a rewrite (styles), the fraction of
+            eligible words that change (capitals, masks), or the fraction of the sampled attack
+            sentences that are used (black box). If it is 0, ``text`` is returned.
+        key: determines the random numbers; its frame has no effect. An integer sets only the seed,
+            and a string sets only the episode.
         split: split of the attack sentences: "train", "validation" or "test".
         mask_token: text that replaces a hidden word.
-        rewrite: function (text, style) -> text, such as a language model, that replaces the rules
-            for styles.
-        tagger: method that finds the eligible words: "own" or "spacy".
+        rewrite: function (text, style) -> text that replaces the rules for styles, for example a
+            language model.
+        tagger: tagger that finds the eligible words: "own" or "spacy".
 
     Raises:
         ValueError: An argument is invalid, or the text is empty.
@@ -78,8 +78,8 @@ def corrupt_instruction(
     if name == "white_box":
         raise ValueError(
             "'white_box' changes the agent's system prompt, not the instruction: "
-            "call inject_system_prompt(prompt, severity, key). For an agent without a prompt it is "
-            "not applicable; 'black_box' puts the same sentences in front of the instruction."
+            "call inject_system_prompt(prompt, severity, key). It does not apply to an agent "
+            "without a prompt: there, 'black_box' puts the same sentences before the instruction."
         )
     check_text(text)
     if severity == 0.0:
@@ -103,25 +103,28 @@ def check_options(split: str, mask_token: str, tagger: str) -> None:
     prefixes(split)
     if not isinstance(mask_token, str) or not mask_token.strip():
         raise ValueError(
-            "The mask token is empty: give the agent tokenizer's own, such as [MASK] (BERT) or "
-            "<mask> (RoBERTa). A tokenizer that has none takes the default '[MASK]' as text."
+            "mask_token must not be empty. Use the mask token of the agent's tokenizer, such as "
+            "[MASK] (BERT) or <mask> (RoBERTa). A tokenizer without a mask token reads the default "
+            "'[MASK]' as plain text."
         )
     named(tagger)
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
-    """Return whether the instruction of this episode is rewritten, with probability s."""
+    """Return whether the instruction of this episode is rewritten; ``severity`` is the
+    probability.
+    """
     return uniform(digest(key, manner)) < severity
 
 
 def inject_system_prompt(
     prompt: str | None, severity: float, key: Key | int | str, split: str = "test"
 ) -> str | NotApplicable:
-    """Insert misleading sentences into ``prompt``, before the placeholder for the task or at the
-    end.
+    """Insert misleading sentences into a system prompt, before the placeholder for the task or at
+    the end.
 
-    The placeholder is the first ``{instruction}``, ``{task}`` or similar. Severity is the same as
-    for "black_box". Without a prompt (None or empty) the result is NotApplicable.
+    The placeholder is the first ``{instruction}``, ``{task}`` or similar. ``severity`` has the same
+    meaning as for "black_box". If ``prompt`` is None or empty, the result is NotApplicable.
 
     Raises:
         ValueError: The severity, key or split is invalid.
@@ -139,7 +142,9 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Sample one misleading sentence per kind, and return the fraction ``severity`` of them."""
+    """Sample one misleading sentence per kind of attack, and return a fraction ``severity`` of
+    them.
+    """
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]
@@ -151,7 +156,7 @@ def stacked(severity: float, key: Key, split: str) -> list[str]:
 
 
 def _eligible(text: str, name: str, tagger: str) -> list[Token]:
-    """Return the tokens that the family "capitals" (or "masks") may change."""
+    """Return the tokens that the corruption ``name`` (capitals or masks) may change."""
     candidates = [token for token in named(tagger)(text) if token.is_word]
     if name == "capitalize":
         return [token for token in candidates if token.tag in SPOKEN]
@@ -161,7 +166,7 @@ def _eligible(text: str, name: str, tagger: str) -> list[Token]:
 def _replaced(
     text: str, eligible: list[Token], severity: float, stream: int, change: Callable[[str], str]
 ) -> str:
-    """Return ``text`` with the fraction ``severity`` of the eligible words changed."""
+    """Change a fraction ``severity`` of the eligible words, and return the new text."""
     order = sorted(range(len(eligible)), key=lambda i: (uniform(stream, i), i))
     chosen = order[: math.floor(severity * len(eligible) + 0.5)]
     for place in sorted(chosen, reverse=True):

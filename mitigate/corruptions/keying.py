@@ -1,14 +1,14 @@
 """Keyed random numbers, which depend only on seed, episode, corruption, frame, view and pixel.
 
-A blake2b digest of the key's parts has 64 bits. An integer hash (splitmix64, Steele et al. 2014)
-of that digest plus a counter gives the numbers. Global state, Python's ``hash()`` and generators
-with state are not used. So a frame gets the same pixels in any batch, process, order or resumed
-run.
+The parts of a key are hashed to a 64-bit blake2b digest. An integer hash (splitmix64, Steele et al.
+2014) of the digest and a counter gives the random numbers. Global state, Python's ``hash()`` and
+stateful generators are not used. Therefore a frame gets the same pixels in any batch, process,
+order or resumed run.
 
-Tables and masks are computed in float64 and rounded to fixed point or float32, and kernels use only
-basic arithmetic, so the last bit of a machine's ``exp`` does not reach the pixels. (After editing
-``mix``, delete ``__pycache__``: numba does not notice that functions inlined in other files have
-changed.)
+Tables and masks are computed in float64 and then rounded to fixed point or float32. Kernels use
+only basic arithmetic. Therefore pixels do not depend on the last bit of functions such as ``exp``,
+which differs between machines. (After editing ``mix``, delete ``__pycache__``: numba does not
+notice changes of functions that are inlined in other files.)
 """
 
 from __future__ import annotations
@@ -26,7 +26,8 @@ from numba import njit
 
 from mitigate.core.memory import Memory
 
-MAX_CACHE_BYTES = 256 << 20  # cache size per process in bytes (heuristic): 20 masks of 1080p
+# cache size per process in bytes (heuristic), enough for 20 masks of 1080p frames
+MAX_CACHE_BYTES = 256 << 20
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -34,7 +35,7 @@ _memory = Memory(MAX_CACHE_BYTES)
 
 
 def cached(function: Callable[P, T]) -> Callable[P, T]:
-    """Cache the results of a pure function of hashable arguments: arrays or tuples of arrays."""
+    """Cache the results (arrays or tuples of arrays) of a pure function with hashable arguments."""
 
     @wraps(function)
     def lookup(*args: P.args, **kwargs: P.kwargs) -> T:
@@ -47,10 +48,11 @@ def cached(function: Callable[P, T]) -> Callable[P, T]:
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
-# size of the normal quantile table, for |n| <= 3.7; its 16 KB fit into the L1 cache
+# log2 of the size of the table of normal quantiles, which covers +-3.7; its 16 KB fit into the L1
+# cache
 NORMAL_BITS = 12
-FIELD_SIDE = 128  # number of cells along the shorter side of a random field, at every frame size
-# maximum number of cells along the longer side; beyond 32:1 the cells get longer
+FIELD_SIDE = 128  # number of cells along the shorter side of a random field, for all frame sizes
+# maximum number of cells along the longer side; for aspect ratios beyond 32:1, cells get longer
 FIELD_LONGEST = 32 * FIELD_SIDE
 
 _U = np.uint64
@@ -60,10 +62,11 @@ _S30, _S27, _S31 = _U(30), _U(27), _U(31)
 
 @dataclass(frozen=True)
 class Key:
-    """The key of a time step, which determines all its random numbers.
+    """The key of a time step; it determines all random numbers of the step.
 
     Lens dirt, flare position and similar properties depend on seed and episode; pixel noise also
-    depends on the frame. A per-frame schedule uses a new ``episode`` for every frame.
+    depends on the frame. A schedule with the mode ``per_frame`` uses a new ``episode`` for every
+    frame.
 
     Attributes:
         seed: Corruption seed.
@@ -89,7 +92,7 @@ class Key:
 
 
 def as_key(key: Key | int | str) -> Key:
-    """Convert ``key`` to a Key: an int n becomes Key(n, "0"), a str t becomes Key(0, t).
+    """Convert ``key`` to a Key: an int n becomes Key(n, "0"), and a str t becomes Key(0, t).
 
     Raises:
         ValueError: ``key`` is neither a Key, an int nor a str.
@@ -108,16 +111,18 @@ def as_key(key: Key | int | str) -> Key:
 
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
-    """Return the hash state of these parts, which callers can copy and extend, and its digest."""
+    """Return the hash state of seed, episode and name, which callers copy and extend, and its
+    digest.
+    """
     text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
     state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
     return state, int.from_bytes(state.digest(), "little")
 
 
 def digest(key: Key, name: str, *, frame: bool = False) -> int:
-    """Return the 64-bit digest of the random number ``name``, for the episode or for the frame.
+    """Return the 64-bit digest for the random number ``name``, either per episode or per frame.
 
-    View k of a frame uses ``scramble(digest, k)``.
+    View number k of a frame uses ``scramble(digest, k)``.
     """
     state, value = _episode_hash(int(key.seed), str(key.episode), name)
     if not frame:
@@ -128,7 +133,9 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Return output number ``counter`` of the splitmix64 stream ``value`` (Python integers)."""
+    """Return output number ``counter`` of the splitmix64 stream with the seed ``value``; this
+    version uses Python integers.
+    """
     z = (value + (counter + 1) * GOLDEN) & MASK
     z = ((z ^ (z >> 30)) * MIX_A) & MASK
     z = ((z ^ (z >> 27)) * MIX_B) & MASK
@@ -136,7 +143,9 @@ def scramble(value: int, counter: int) -> int:
 
 
 def uniform(value: int, counter: int = 0) -> float:
-    """Return number ``counter`` of the stream ``value``, uniform in [0, 1) with 53 bits."""
+    """Return output number ``counter`` of the stream ``value`` as a uniform number in [0, 1) with
+    53 bits.
+    """
     return (scramble(value, counter) >> 11) * 2.0**-53
 
 
@@ -156,15 +165,15 @@ def _fill_streams(value, out):
 
 
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
-    """Return the digests of the random number ``name`` for each view of a frame, uint64 [views]."""
+    """Return one digest per view of a frame for the random number ``name``, uint64 [views]."""
     out = np.empty(views, np.uint64)
     _fill_streams(_U(digest(key, name, frame=True)), out)
     return out
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """Return standard normal quantiles of 2^bits equally likely bins, with variance one,
-    float64.
+    """Return the standard normal quantiles at the centres of 2^bits equally likely bins, scaled to
+    unit variance, float64.
     """
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
@@ -174,7 +183,7 @@ def unit_normals(bits: int) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def normal_table() -> np.ndarray:
-    """Return the table of quantiles for pixel noise, float32 [4096]."""
+    """Return the table of normal quantiles that pixel noise uses, float32 [4096]."""
     return unit_normals(NORMAL_BITS).astype(np.float32)
 
 
@@ -186,7 +195,7 @@ def _fill_normals(value, table, out):
 
 
 def normals(value: int, count: int) -> np.ndarray:
-    """Return standard normal numbers from the stream ``value``, float32 [count]."""
+    """Return ``count`` standard normal numbers from the stream ``value``, float32 [count]."""
     out = np.empty(count, np.float32)
     _fill_normals(_U(value), normal_table(), out)
     return out
@@ -241,14 +250,14 @@ def _resize_torus(cells, height, width):
 
 
 def field_grid(height: int, width: int) -> tuple[int, int]:
-    """Return the number of rows and columns of cells of a random field."""
+    """Return the numbers of rows and columns of a random field's grid."""
     scale = FIELD_SIDE / min(height, width)
     rows, cols = (min(round(side * scale), FIELD_LONGEST) for side in (height, width))
     return rows, cols
 
 
 def field_weights(correlation: float) -> np.ndarray:
-    """Return the smoothing kernel of a random field, float32 [2 radius + 1] with a norm of 1."""
+    """Return the smoothing kernel of a random field, float32 [2 * radius + 1], with norm 1."""
     sigma = correlation * FIELD_SIDE
     radius = int(np.ceil(3.0 * sigma))
     weights = np.exp(-0.5 * (np.arange(-radius, radius + 1) / sigma) ** 2)
@@ -260,8 +269,8 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
     """Sample a Gaussian random field on a torus.
 
     The field is sampled on a grid whose shorter side has ``FIELD_SIDE`` cells, and then resampled.
-    So a frame and its half-size copy get the same pattern. For frames longer than 32:1, the cells
-    are longer.
+    Therefore a frame and a copy of half its size get the same pattern. If the aspect ratio of a
+    frame exceeds 32:1, the cells are longer.
 
     Args:
         value: Random stream.
@@ -270,8 +279,8 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
         correlation: Standard deviation of the smoothing kernel as a fraction of the shorter side.
 
     Returns:
-        The field, float32 [height, width] with unit standard deviation, and the cells before
-        resampling, float32 [cells].
+        The field (float32 [height, width]), which has unit standard deviation, and the cells before
+        resampling (float32 [cells]).
     """
     rows, cols = field_grid(height, width)
     noise = normals(value, rows * cols).reshape(rows, cols)
@@ -282,11 +291,13 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_place(cells: int, share: float) -> int:
-    """Return the place, in rising order, of the first of the highest fraction of the cells."""
+    """Return the index, among the sorted cells, at which the highest fraction ``share`` begins."""
     return cells - round(share * cells)
 
 
 def top_share(cells: np.ndarray, share: float) -> float:
-    """Return the level that a fraction ``share`` of the cells reach; infinity for a share of 0."""
+    """Return the threshold that a fraction ``share`` of the cells reaches, or infinity if ``share``
+    is 0.
+    """
     place = top_place(cells.size, share)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

@@ -1,9 +1,9 @@
-"""Compute opacity masks of RGB corruptions for darkness, dirt, glare and a disk.
+"""Compute the masks of RGB corruptions: darkness, dirt, glare and a black disk.
 
-Darkness, dirt and glare use one operation, ``out = x + (colour - x) alpha``, with a 16-bit opacity
-mask. Masks are cached by the 64-bit digest of their episode, so they are computed only for the
-first frame of an episode. Formulas and sources are in docs/corruptions.md. Constants without a
-source were chosen by this project.
+Darkness, dirt and glare are blended with ``out = x + (colour - x) * alpha``, where ``alpha`` is a
+16-bit opacity mask. Masks are cached by the 64-bit digest of their episode, so a mask is computed
+only for the first frame of an episode. Formulas and sources are in docs/corruptions.md. Constants
+without a source were chosen by this project.
 """
 
 from __future__ import annotations
@@ -17,25 +17,25 @@ from numba import njit
 from mitigate.core import observation
 from mitigate.corruptions.keying import cached, field, top_share, uniform
 
-# the mean brightness is between RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
+# the mean brightness is between that of RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
 DARK_BASE, DARK_RAMP = 0.60, 0.37
-SPATTER_CORRELATION = 0.018  # as a fraction of min(H, W)
-SPATTER_COVER = 0.45  # ImageNet-C covers 0.04-0.57 of the frame
-SPATTER_EDGE = 0.25  # as a multiple of the field's standard deviation
+SPATTER_CORRELATION = 0.018  # correlation length as a fraction of min(H, W)
+SPATTER_COVER = 0.45  # covered fraction at severity 1; ImageNet-C covers 0.04 to 0.57
+SPATTER_EDGE = 0.25  # width of soft edges, as a multiple of the field's standard deviation
 SPATTER_COLOURS = ((63, 42, 20), (175, 238, 238))  # mud, water (ImageNet-C)
-FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # width as a fraction of the image diagonal
+FLARE_CORE, FLARE_CORE_WIDTH = 0.85, 0.18  # widths are fractions of the image diagonal
 FLARE_HALO, FLARE_HALO_WIDTH = 0.30, 0.35
 FLARE_TINT = (1.0, 0.96, 0.88)
-# range and size of the radial table; cells differ by less than 0.04 grey levels
+# range and size of the radial table; neighbouring cells differ by less than 0.04 grey levels
 GLOW_REACH, GLOW_CELLS = 1.5, 16384
-DISK_RADIUS = 0.5  # as a fraction of min(H, W)
+DISK_RADIUS = 0.5  # radius at severity 1 as a fraction of min(H, W)
 NEUTRAL = (1.0, 1.0, 1.0)
 
 
 @njit(cache=True)
 def _expand(share, weight, out):
-    """Write min(share [H, W] times channel weight, 1) to out int16 [H, 3 W], in units of
-    1/32768.
+    """Write min(share * weight of the channel, 1) to ``out`` (int16 [H, 3 W]) in units of 1/32768;
+    ``share`` is [H, W].
     """
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
@@ -49,9 +49,10 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Return the opacity mask int16 [H, 3 W]: ``share`` [H, W] times ``strength`` and ``tint``.
+    """Return the opacity mask (int16 [H, 3 W]): the product of ``share`` ([H, W]), ``strength`` and
+    ``tint``.
 
-    ``share`` is at least 0.
+    Values of ``share`` must be at least 0.
     """
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
@@ -60,15 +61,16 @@ def opacity_mask(
 
 @lru_cache(maxsize=64)
 def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
-    """Return an image row of one colour, int16 [3 W], in the format that ``cover`` needs."""
+    """Return an image row of one colour in the format that ``cover`` needs, int16 [3 W]."""
     return np.tile(np.array(colour, np.int16), width)
 
 
 @njit(cache=True)
 def cover(views, alpha, colour, out):
-    """Blend uint8 [V, H, W, 3] with a colour row int16 [3 W] by the opacity alpha int16 [H, 3 W].
+    """Blend views (uint8 [V, H, W, 3]) with an image row of one colour (int16 [3 W]); the opacity
+    is ``alpha`` (int16 [H, 3 W]).
 
-    Two separate loops over a row of 16-bit numbers compile to full-width vector code.
+    Two separate loops per row of 16-bit numbers compile to full-width vector code.
     """
     count, height, _, _ = views.shape
     flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
@@ -84,10 +86,10 @@ def cover(views, alpha, colour, out):
 
 
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return the terms of ``light_ramp``.
+    """Return the terms whose sum gives ``light_ramp``.
 
     Returns:
-        The term of each row, float32 [H], the term of each column, float32 [W], and whether the
+        The terms of the rows (float32 [H]), the terms of the columns (float32 [W]), and whether the
         ramp is the square root of their sum.
     """
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
@@ -104,14 +106,16 @@ def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndar
 
 @cached
 def light_ramp(value: int, height: int, width: int) -> np.ndarray:
-    """Return a gradient float32 [H, W] in [0, 1]: a linear ramp, or the distance to a light."""
+    """Return a gradient in [0, 1] (float32 [H, W]): a linear ramp, or the distance to a light."""
     down, right, radial = ramp_terms(value, height, width)
     ramp = np.add.outer(down, right)
     return np.sqrt(ramp) if radial else ramp
 
 
 def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return the fraction of light that is lost, s (0.60 + 0.37 t), float32 [H, W]."""
+    """Return the fraction of light that is lost: severity * (0.60 + 0.37 * ramp), float32 [H,
+    W].
+    """
     ramp = light_ramp(value, height, width)
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
@@ -138,7 +142,7 @@ def spatter_colour(value: int) -> tuple[int, int, int]:
 
 @lru_cache(maxsize=64)
 def spatter_row(value: int, width: int) -> np.ndarray:
-    """Return a ``colour_row`` of mud or water, int16 [3 W]."""
+    """Return an image row in the colour of mud or water, int16 [3 W]."""
     return colour_row(spatter_colour(value), width)
 
 
@@ -146,19 +150,21 @@ def spatter_row(value: int, width: int) -> np.ndarray:
 def flare_centres(
     value: int, views: int, height: int, width: int, heading: float | None
 ) -> tuple[tuple[float, float] | None, ...]:
-    """Return the position of the light in each view, which is (x, y) in pixels, or None if the
-    light is not visible.
+    """Return the position (x, y) of the light in each view in pixels, or None for views that do not
+    show the light.
 
-    The direction of the light is fixed in the world. It is sampled in the image of a camera with a
-    random yaw, at column U(0.1, 0.9) W and row U(0, 0.5) H. View k faces the direction ``heading``
-    - 30 k degrees without pitch (``heading`` in rad, counter-clockwise), for any number of views.
-    If the heading is unknown, the random yaw is that of view 0.
+    The direction of the light is fixed in the world. It is sampled as a position in the image of a
+    camera with a random yaw: column U(0.1, 0.9) * W and row U(0, 0.5) * H. View number k has the
+    yaw ``heading`` - 30 * k degrees and no pitch (``heading`` in radians, counter-clockwise), for
+    any number of views. If the heading is unknown, the position is sampled in view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
-    focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)  # over the width
-    # angle of the light from the camera's axis, counter-clockwise
+    # focal length in image widths
+    focal = 0.5 / math.tan(math.radians(observation.HFOV_DEGREES) / 2.0)
+    # angle from the camera's axis to the light, counter-clockwise
     yaw = math.atan2(0.5 - column, focal)
-    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)  # tangent of the elevation angle
+    # tangent of the light's elevation
+    tangent = (0.5 - row) * height / width / focal * math.cos(yaw)
     if heading is not None:
         yaw += 2.0 * math.pi * uniform(value, 2) - heading
     centres = []
@@ -174,8 +180,8 @@ def flare_centres(
 
 @lru_cache(maxsize=1)
 def glow_table() -> np.ndarray:
-    """Return the glow at distances of 0 to 1.5 diagonals at severity 1, float32 [GLOW_CELLS +
-    1].
+    """Return the glow at severity 1 for distances from 0 to 1.5 image diagonals, float32
+    [GLOW_CELLS + 1].
     """
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
@@ -184,17 +190,20 @@ def glow_table() -> np.ndarray:
 
 @njit(cache=True)
 def _look_up(down, right, table, out):
-    """Write to out[y, x] the table value nearest to sqrt(down[y] + right[x]), all float32."""
+    """Set out[y, x] to the table entry whose index is nearest to sqrt(down[y] + right[x]); all
+    arrays are float32.
+    """
     for y in range(down.size):
         for x in range(right.size):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
 def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return squared distances to the pixel (x, y) along each axis, in cells of ``glow_table``.
+    """Return squared distances to the pixel (x, y) along each axis; the unit is the cell size of
+    ``glow_table``.
 
     Returns:
-        The term of each row, float32 [H], and of each column, float32 [W].
+        The terms of the rows (float32 [H]) and of the columns (float32 [W]).
     """
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
@@ -214,7 +223,9 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
 
 @lru_cache(maxsize=32)
 def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
-    """Return the first and end column of the disk in each row, int64 [H, 2]."""
+    """Return, for each row, the first column of the disk and the column after its last one, int64
+    [H, 2].
+    """
     radius = DISK_RADIUS * severity * min(height, width)
     reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
     half = np.sqrt(np.maximum(reach, 0.0))
@@ -225,7 +236,9 @@ def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
 
 @njit(cache=True)
 def blacken(frames, spans):
-    """Set the pixels of uint8 [V, H, W, 3] inside the spans (int64 [H, 2]) to black, in place."""
+    """Set the pixels of frames (uint8 [V, H, W, 3]) inside the spans (int64 [H, 2]) to black, in
+    place.
+    """
     count, height, _, _ = frames.shape
     flat = frames.reshape(count, height, -1)
     for v in range(count):

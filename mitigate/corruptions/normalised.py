@@ -1,4 +1,4 @@
-"""Corrupt depth that is normalised to [0, 1], as Habitat's sensors do."""
+"""Corrupt depth that is normalised to [0, 1], as Habitat's sensors return it."""
 
 from __future__ import annotations
 
@@ -22,25 +22,25 @@ def corrupt_normalised(
 ) -> dict:
     """Call ``corrupt_observation`` on an observation whose ``depth`` is normalised.
 
-    ``depth`` is float32 in [0, 1]: 0 means no reading (or depth not beyond ``sensor.z_min``), and
-    other values v mean z_min + v (z_max - z_min) metres. Pixels that the corruption does not
-    change, and all pixels that are 0, negative, NaN or infinite, are returned unchanged bit for
-    bit. Pixels that the corruption removes become the normalised ``sensor.missing``: 0 by default,
-    1 for ``DepthSensor(missing=z_max)``.
+    ``depth`` is float32 in [0, 1]. The value 0 means no reading, or depth of at most
+    ``sensor.z_min``. Any other value v means z_min + v * (z_max - z_min) metres. Pixels that the
+    corruption does not change keep their exact bits, as do pixels that are 0, negative, NaN or
+    infinite. Pixels that the corruption removes get the normalised value of ``sensor.missing``,
+    which is 0 by default and 1 for ``DepthSensor(missing=z_max)``.
 
     Args:
         obs: The observation.
         corruption: The corruption.
-        key: Key of the random draws.
-        sensor: Depth range, and the value that marks a missing reading.
-        hfov: Horizontal field of view in degrees by entry, which camera faults need.
+        key: Key of the random numbers.
+        sensor: Depth range, and the value that marks missing depth.
+        hfov: For each entry, the horizontal field of view in degrees, which camera faults need.
 
     Returns:
-        A new dict; entries that are not corrupted are the same objects.
+        A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
     Raises:
-        ValueError: Depth is above 1 (so probably in metres), ``sensor.missing`` is negative, or an
-            error of ``corrupt_observation``.
+        ValueError: Depth is above 1 (so probably in metres), ``sensor.missing`` is negative, or
+            ``corrupt_observation`` raises an error.
     """
     check_sensor(sensor)
     if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
@@ -51,7 +51,7 @@ def corrupt_normalised(
     maximum = _to_metres(clean.reshape(-1), *range_, metres.reshape(-1))
     if maximum > 1.0:
         raise ValueError(
-            f"Normalised depth must be in 0-1, got {maximum:g}. For depth in metres, set "
+            f"Normalised depth must be between 0 and 1, got {maximum:g}. For depth in metres, set "
             "normalised=False, or call corrupt_observation."
         )
     in_metres = {**obs, observation.DEPTH: metres}
@@ -63,17 +63,18 @@ def corrupt_normalised(
 
 
 def check_sensor(sensor: DepthSensor) -> None:
-    """Raise ValueError if ``missing`` cannot be normalised: negative or NaN."""
+    """Raise ValueError if ``missing`` cannot be normalised because it is negative or NaN."""
     if not sensor.missing >= 0.0:
         raise ValueError(
-            f"missing must be 0 (no reading) or more metres for normalised depth, got {sensor}."
+            "For normalised depth, missing must be 0 (no reading) or a depth in metres, got "
+            f"{sensor}."
         )
 
 
 def _checked(clean: np.ndarray) -> np.ndarray:
     if clean.dtype != np.float32:
         raise ValueError(
-            f"Normalised depth must be float32 in 0-1, got {clean.dtype}. Convert it: "
+            f"Normalised depth must be float32 from 0 to 1, got {clean.dtype}. Convert it: "
             "depth.astype(np.float32)."
         )
     return clean
@@ -86,7 +87,9 @@ def _range(sensor: DepthSensor) -> tuple[np.float32, np.float32]:
 
 @njit(cache=True)
 def _to_metres(clean, z_min, span, out):
-    """Write valid depth in metres and 0 for other pixels; return the largest valid value."""
+    """Convert valid depth to metres and all other pixels to 0; return the largest valid value of
+    ``clean``.
+    """
     maximum = np.float32(0)
     for i in range(clean.size):
         value = clean[i]

@@ -1,6 +1,6 @@
-"""Define the record of a corruption: its function, and its description for tables and suites.
+"""Define the record of a corruption, which holds its function and its description.
 
-A package can add a corruption with a record in the entry point group ``mitigate.corruptions``
+A package can add a corruption by a record in the entry point group ``mitigate.corruptions``
 (``docs/bring-your-own.md``). The records of this project are at the end of ``rgb.py``,
 ``depth.py``, ``registry.py``, ``broad/__init__.py`` and the files of ``unseen`` and ``faults``.
 """
@@ -16,11 +16,11 @@ import numpy as np
 from mitigate.corruptions.keying import Key
 
 MODALITIES = ("rgb", "depth", "instruction")
-FRAMES = "rgb+depth"  # modality of a fault of both sensors, or of the only one
-ACTION = "action"  # modality of a fault of motion
+FRAMES = "rgb+depth"  # modality of faults that affect both sensors, or the only available one
+ACTION = "action"  # modality of motion faults
 TEMPORAL, CAMERA, MOTION = "temporal", "camera", "motion"
-FAMILIES = (TEMPORAL, CAMERA, MOTION)  # of faults, each with a suite of this name
-VALIDATION, TEST = "validation", "test"  # the two halves of the unseen corruptions
+FAMILIES = (TEMPORAL, CAMERA, MOTION)  # families of faults; each has a suite of the same name
+VALIDATION, TEST = "validation", "test"  # the two sets of unseen corruptions
 
 
 @dataclass(frozen=True)
@@ -28,23 +28,24 @@ class Record:
     """A corruption.
 
     Attributes:
-        name: Lower case with underscores.
-        modality: What it corrupts, one of ``MODALITIES``, ``FRAMES`` or ``ACTION``.
-        apply: A pure function. For RGB: (views uint8 [V, H, W, 3], severity in (0, 1], key, heading
-            or None) -> new array of the same shape. For depth: (views float32 metres [V, H, W],
-            severity, key, DepthSensor) -> new array of the same shape. None for instructions, which
-            ``corrupt_instruction`` changes, and for faults with ``draw``.
-        severity: What the severity s controls, in a few words.
-        label: Title in tables; by default the name in words.
-        source: Sources of the constants, in a word or two.
-        episode: What is drawn once per episode.
-        frame: Which random values are drawn for each frame.
-        version: Version of a corruption outside the suite; rows of another version are not reused.
-            Those of the suite have the version of the suite.
-        half: The half to which an unseen corruption belongs: ``VALIDATION`` or ``TEST``. Methods
-            may be chosen on the validation half only.
-        family: Family of a fault, one of ``FAMILIES``.
-        draw: What a fault does at an instant, a pure function of (severity, key)
+        name: Name in lower case with underscores.
+        modality: What the corruption changes: one of ``MODALITIES``, ``FRAMES`` or ``ACTION``.
+        apply: A pure function. For RGB, its arguments are views (uint8 [V, H, W, 3]), severity in
+            (0, 1], key, and heading or None. For depth, they are views (float32 metres [V, H, W]),
+            severity, key, and a DepthSensor. It returns a new array of the same shape as the views.
+            The value is None for corruptions of instructions, which ``corrupt_instruction``
+            applies, and for faults with ``draw``.
+        severity: What the severity (called s) controls, in a few words.
+        label: Title in tables; by default, it is made from ``name``.
+        source: Sources of the constants, in one or two words.
+        episode: Which random values are sampled once per episode.
+        frame: Which random values are sampled for each frame.
+        version: Version of a corruption that is not in the standard suite; result rows of another
+            version are not reused. Corruptions in the suite have the version of the suite.
+        half: The set to which an unseen corruption belongs: ``VALIDATION`` or ``TEST``. Only the
+            validation set may be used to choose methods.
+        family: Family of a fault (one of ``FAMILIES``), or "" for other corruptions.
+        draw: Pure function of (severity, key) that returns what a fault does in one time step
             (``mitigate/corruptions/faults``).
 
     Raises:
@@ -84,12 +85,14 @@ class Record:
 
     @classmethod
     def of(cls, modality: str, apply: Callable[..., np.ndarray], **fields: Any) -> Record:
-        """Return the record of a function, with the name of the function."""
+        """Return the record of a corruption that has the name of its function."""
         return cls(apply.__name__, modality, apply, **fields)
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The modalities that it corrupts; a fault of both sensors corrupts those available."""
+        """The modalities that are corrupted; a fault that affects both sensors corrupts those
+        available.
+        """
         return tuple(self.modality.split("+"))
 
     @property

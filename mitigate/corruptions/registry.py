@@ -1,9 +1,10 @@
-"""All corruptions: the standard suite, unseen ones, named cameras, faults, and plugins (packages).
+"""Registry of all corruptions: the standard suite, unseen corruptions, errors of named depth
+cameras, faults, random compositions, and plugins (packages).
 
-Every result row contains the version of the suite. All other corruptions have separate versions,
-and are used only where they are named. Two corruptions at once are a pair, such as
-``low_light+missing_data``: the first one is applied first, and each uses the same random numbers as
-when it is applied alone.
+Every result row contains the version of the suite. Corruptions outside the suite have their own
+versions, and are used only where they are named explicitly. A pair, such as
+``low_light+missing_data``, combines two corruptions: the first one is applied first, and each one
+uses the same random numbers as when it is applied alone.
 """
 
 from __future__ import annotations
@@ -40,7 +41,7 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
-# depth errors of named cameras
+# measured errors of named depth cameras
 SENSORS = {record.name: record for record in sensors.RECORDS}
 # names of the random compositions for training
 BROAD = {record.name: record for record in broad.RECORDS}
@@ -54,8 +55,8 @@ HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", 
 def plugin_records() -> dict[str, Record]:
     """Return the records of installed packages.
 
-    An invalid record is skipped with a warning, so that a broken package that is not used causes no
-    error.
+    An invalid record is skipped with a warning, so that a broken package causes no error if it is
+    not used.
     """
     records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
@@ -64,7 +65,7 @@ def plugin_records() -> dict[str, Record]:
             problem = _problem(
                 record, {"clean", *SUITE, *UNSEEN, *SENSORS, *BROAD, *FAULTS, *records}
             )
-        except Exception as error:  # code of an installed package may raise any error
+        except Exception as error:  # the code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:
             warnings.warn(
@@ -78,7 +79,7 @@ def plugin_records() -> dict[str, Record]:
 
 
 def _problem(record: object, names: set[str]) -> str:
-    """Return the reason why a package's record cannot be used, or an empty text."""
+    """Return the reason why a package's record cannot be used, or "" if it can."""
     if not isinstance(record, Record):
         return f"is a {type(record).__name__}, not a mitigate.corruptions.Record"
     if record.name in names:
@@ -91,15 +92,16 @@ def _problem(record: object, names: set[str]) -> str:
 
 
 def names(*modalities: str) -> tuple[str, ...]:
-    """Return the names of the suite's corruptions of ``modalities``, in order."""
+    """Return the names of the suite's corruptions that change one of ``modalities``, in order."""
     return tuple(name for name, record in SUITE.items() if record.modality in modalities)
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Return the names of the unseen corruptions of ``modalities``, of one half or of both.
+    """Return the names of the unseen corruptions that change one of ``modalities``; ``half``
+    restricts them to the validation or the test set.
 
     Raises:
-        ValueError: The half is unknown.
+        ValueError: ``half`` is unknown.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
@@ -111,39 +113,41 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 
 def known(*modalities: str) -> tuple[str, ...]:
-    """Return all corruption names of ``modalities``, including those outside the suite."""
+    """Return the names of all corruptions that change one of ``modalities``, except faults."""
     others = {**SENSORS, **BROAD, **plugin_records()}.items()
     fixed = names(*modalities) + unseen_names(*modalities)
     return fixed + tuple(n for n, r in others if r.modality in modalities)
 
 
 def fault_names(*families: str) -> tuple[str, ...]:
-    """Return the names of the faults of ``families``, in order."""
+    """Return the names of all faults in ``families``, in order."""
     return tuple(name for name, record in FAULTS.items() if record.family in families)
 
 
 def family(name: str) -> str:
-    """Return the family of a fault, or of any part of a pair; empty for other corruptions."""
+    """Return the family of a fault, or of the fault in a pair; return "" for other corruptions."""
     return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
 
 
 def broad_name(modality: str) -> str:
-    """Return the name of the broad augmentation of a modality."""
+    """Return the name of the random composition for a modality."""
     return next(name for name, record in BROAD.items() if record.modality == modality)
 
 
 def record(name: str) -> Record:
-    """Return the record of a corruption; KeyError if it is unknown."""
+    """Return the record of a corruption; raise KeyError for an unknown name."""
     return INCLUDED[name] if name in INCLUDED else plugin_records()[name]
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Split the name of a pair into its two names; a single name gives a tuple of one."""
+    """Split the name of a pair into its two names; for a single corruption, return a tuple with its
+    name.
+    """
     return tuple(name.split(AND))
 
 
 def title(name: str) -> str:
-    """Return the title of a corruption in tables; the corruption need not be installed."""
+    """Return the title of a corruption for tables, even if its package is not installed."""
     if AND in name:
         return f" {AND} ".join(map(title, parts(name)))
     if name in INCLUDED or name in plugin_records():
@@ -152,14 +156,18 @@ def title(name: str) -> str:
 
 
 def version(name: str) -> dict[str, str]:
-    """Return the entry ``version`` of a row, or "" if all parts belong to the suite."""
+    """Return the entry ``version`` of a result row as a dict, which is empty if all parts belong to
+    the suite.
+    """
     others = (part for part in parts(name) if part != "clean" and part not in SUITE)
     versions = [record(part).version for part in others]
     return {"version": AND.join(versions)} if versions else {}
 
 
 def modality(name: str) -> str:
-    """Return the modality that a corruption changes; "rgb+depth" for a fault of both."""
+    """Return the modality that a corruption changes, or "rgb+depth" for a fault that affects
+    both.
+    """
     return record(name).modality
 
 

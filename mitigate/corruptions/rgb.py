@@ -1,9 +1,9 @@
-"""The eight RGB corruptions of uint8 panoramas [V, H, W, 3].
+"""The eight RGB corruptions of the standard suite, for uint8 panoramas [V, H, W, 3].
 
 Every public function takes (views, severity in (0, 1], key, heading) and returns a new array of the
-same shape. Lengths are fractions of the frame. Formulas and sources are in docs/corruptions.md.
-Constants without a source were chosen by this project. Masks are defined in ``masks``, and compiled
-blurs in ``blur``.
+same shape. Lengths are defined as fractions of the frame size. Formulas and sources are in
+docs/corruptions.md. Constants without a source were chosen by this project. Masks are defined in
+``masks``, and compiled blurs in ``blur``.
 """
 
 from __future__ import annotations
@@ -18,25 +18,27 @@ from mitigate.corruptions.eld import low_light_noise
 from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
-BLUR_LENGTH = 0.10  # as a fraction of W at s = 1; ImageNet-C kernels are 3-14 % of W
-LONG_BLUR = 12.0  # length in px from which every second column is enough
-BLUR_ANGLE = 10.0  # maximum angle from horizontal in degrees, because yaw turns dominate
-# as a fraction of min(H, W); ImageNet-C disks have radii of 3-10 px at 224
+BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernels are 3 to 14 % of W
+LONG_BLUR = 12.0  # minimum length in px of lines for which every second column is enough
+# maximum angle to the horizontal in degrees; it is small, because robots mostly turn in yaw
+BLUR_ANGLE = 10.0
+# sigma at severity 1 as a fraction of min(H, W); ImageNet-C disks have radii of 3 to 10 px at 224
 DEFOCUS_SIGMA = 5.0 / 224.0
 DEFOCUS_SPREAD = 0.2
-DEFOCUS_LEAST = 0.15  # sigma in px; a narrower Gaussian has no effect
-# minimum sigma as a multiple of the tap distance, which keeps the mean error under 0.4 grey levels
+DEFOCUS_LEAST = 0.15  # minimum sigma in px; a narrower Gaussian has no effect
+# minimum sigma as a multiple of the tap distance; the mean error is then below 0.4 grey levels
 LEAST_TAP_SIGMA = 1.15
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
 
 @lru_cache(maxsize=64)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
-    """Return the taps (dy, dx, weights) of a line of ``length`` px at ``angle`` rad.
+    """Return the taps (dy, dx, weights) of a line with a length in px and an angle in radians.
 
-    The number of taps is a multiple of four. The weight of every ``step``-th column is the part of
-    the column that the line covers. It is divided between the two nearest rows. Weights are small
-    integers. A fully covered column has the weight LINE_UNITS / length, which is at least 2.
+    The number of taps is a multiple of four. Only every ``step``-th column has taps. The weight of
+    a column is the fraction of it that the line covers, divided between the two nearest rows.
+    Weights are small integers. A fully covered column has the weight LINE_UNITS / length, which is
+    at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step
@@ -47,7 +49,8 @@ def line_taps(length: float, angle: float, step: int = 1) -> tuple:
         y = abs(x) * math.tan(abs(angle))
         low = math.floor(y)
         upper = round(weight * (y - low))
-        sign = 1 if x * angle >= 0 else -1  # the line is symmetric, so only half is computed
+        # rows are computed for abs(x) and abs(angle), because the line is symmetric
+        sign = 1 if x * angle >= 0 else -1
         for row, share in ((low, weight - upper), (low + 1, upper)):
             if share > 0:
                 taps[sign * row, x] = share
@@ -64,13 +67,13 @@ def blur_line(severity: float, key: Key, width: int) -> tuple[float, float]:
 
 
 def tap_step(length: float) -> int:
-    """Return the distance of the taps of a line of ``length`` pixels along x."""
+    """Return the distance along x, in pixels, between the taps of a line of ``length`` pixels."""
     return 1 if length < LONG_BLUR else 2
 
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a nearly horizontal line blur of length 0.10 s W; lengths below 1 px have no
-    effect.
+    """Blend with a nearly horizontal line blur of length 0.10 * severity * W; lengths below 1 px
+    have no effect.
     """
     length, angle = blur_line(severity, key, views.shape[2])
     if length < 1.0:
@@ -96,8 +99,8 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Cover the image with mud or water where a random field, fixed per episode, is in its top 0.45
-    s.
+    """Cover a fraction 0.45 * severity of the image with mud or water, where a random field is
+    highest; the field is fixed per episode.
     """
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
@@ -105,8 +108,8 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Add a glow (screen blending) to the views that see a light with a fixed direction in the
-    world.
+    """Add the glow of a light, by screen blending, to the views that show the light; it has a fixed
+    direction in the world.
     """
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
@@ -122,10 +125,11 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
 
 @lru_cache(maxsize=64)
 def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
-    """Return ``weights, levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
+    """Return the arguments ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px; the
+    kernel ends at 3 sigma.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels has variance h^2 / 2. The taps add the remaining
-    variance, and their sigma is at least LEAST_TAP_SIGMA times their distance.
+    Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The taps add the
+    remaining variance; their sigma is at least LEAST_TAP_SIGMA times their distance.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
@@ -140,13 +144,15 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
 
 
 def defocus_sigma(severity: float, key: Key, height: int, width: int) -> float:
-    """Return the sigma of ``defocus`` in pixels."""
+    """Return the sigma in pixels with which ``defocus`` blurs."""
     spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
     return DEFOCUS_SIGMA * severity * spread * min(height, width)
 
 
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blur with a Gaussian of sigma = 5 s u min(H, W) / 224, with u ~ U(0.8, 1.2) per episode."""
+    """Blur with a Gaussian of sigma = 5 * severity * u * min(H, W) / 224, with u ~ U(0.8, 1.2) per
+    episode.
+    """
     sigma = defocus_sigma(severity, key, *views.shape[1:3])
     if sigma < DEFOCUS_LEAST:
         return views.copy()

@@ -1,4 +1,4 @@
-"""Sample the corruption of each training frame with a schedule."""
+"""Schedules, which sample the corruption of each training frame."""
 
 from __future__ import annotations
 
@@ -21,34 +21,37 @@ from mitigate.corruptions.suite import (
 )
 
 MODES = ("clean", "per_frame", "per_episode", "success_distributed")
-Severity = float | Sequence[float]  # a value, or the lower and upper end of a range
+Severity = float | Sequence[float]  # a number, or the lower and upper limit of a range
 
 
 @dataclass
 class Schedule:
-    """Samples the corruption and the key of each frame.
+    """A schedule samples the corruption and the key of each frame.
 
     The modes are:
 
     - ``clean``: nothing is corrupted.
     - ``per_frame``: each frame gets its own corruption and random numbers (transient faults).
     - ``per_episode``: each episode gets its own corruption and random numbers (persistent faults).
-    - ``success_distributed``: each episode gets corruption k with a probability proportional to
-      (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an earlier evaluation.
+    - ``success_distributed``: each episode gets one corruption. The probability of corruption k is
+      proportional to (1 - SR_k)^alpha + floor, where SR_k is the success rate under k in an earlier
+      evaluation.
 
     Args:
         mode: One of MODES.
-        severity: s in [0, 1] for RGB corruptions, and for depth corruptions unless
-            ``severity_depth`` is set (the paper also trains at 0.9 / 0.8). Either value may be a
-            range (low, high), from which a severity is sampled uniformly per frame or episode.
-        severity_depth: s for depth corruptions; None means ``severity``.
+        severity: Severity in [0, 1] of RGB corruptions, and of depth corruptions unless
+            ``severity_depth`` is set (the paper also trains with 0.9 and 0.8). Either value may be
+            a range (low, high), from which a severity is sampled uniformly per frame or episode.
+        severity_depth: Severity of depth corruptions; None means ``severity``.
         clean_share: Fraction of frames (``per_frame``) or episodes that stay clean, in [0, 1].
         names: Corruptions to choose from.
-        broad_share: Fraction in [0, 1] of corrupted frames or episodes in which a random
-            composition (``broad``) of the same modality replaces the sampled corruption.
-        alpha: Exponent in the weights of ``success_distributed``, >= 0.
-        floor: Minimum of the weights, >= 0; if above 0, every corruption can be sampled.
-        success: SR_k in [0, 1] by name; None means uniform weights until ``refresh``.
+        broad_share: Fraction in [0, 1] of the corrupted frames or episodes. In this fraction, a
+            random composition (``broad``) of the same modality replaces the sampled corruption.
+        alpha: Exponent (>= 0) in the weights of ``success_distributed``.
+        floor: Term (>= 0) that is added to the weights; if it is above 0, every corruption can be
+            sampled.
+        success: Success rate in [0, 1] of each corruption, by name. If None, weights are uniform
+            until ``refresh`` is called.
 
     Raises:
         ValueError: An argument is out of range.
@@ -82,8 +85,8 @@ class Schedule:
         )
         if not self.names or len(set(self.names)) < len(self.names):
             raise ValueError(
-                f"names must be at least one corruption and each only once, got {self.names}. "
-                f"Leave it out to draw from all of {', '.join(NAMES)}."
+                "names must contain at least one corruption, and each only once, got "
+                f"{self.names}. Leave out names to sample from all of {', '.join(NAMES)}."
             )
         shares = {"clean_share": self.clean_share, "broad_share": self.broad_share}
         for name, share in shares.items():
@@ -93,7 +96,7 @@ class Schedule:
             raise ValueError(
                 f"broad_share must be 0 in the mode clean, which corrupts nothing, got "
                 f"{self.broad_share!r}. Choose another mode (in a config: schedule=per_episode), "
-                "or leave it out."
+                "or leave out broad_share."
             )
         if not (0.0 <= self.alpha < math.inf and 0.0 <= self.floor < math.inf):
             raise ValueError(
@@ -115,12 +118,12 @@ class Schedule:
 
     @property
     def weights(self) -> dict[str, float]:
-        """The probability of each corruption, given that the frame is not clean; the sum is 1."""
+        """The probability of each corruption for a frame that is not clean; the sum is 1."""
         return dict(zip(self.names, self._weights, strict=True))
 
     def only(self, modality_: str) -> Schedule:
-        """Return this schedule with only the corruptions of one modality; raise ValueError if no
-        corruption is left.
+        """Return a copy of the schedule with only the corruptions of one modality; raise ValueError
+        if there are none.
         """
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
@@ -130,13 +133,14 @@ class Schedule:
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
-        """Recompute the weights from success rates by name; unknown names are ignored.
+        """Recompute the weights from success rates (by name); names that are not in the schedule
+        are ignored.
 
         A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
         rates; the other modes keep uniform weights.
 
         Raises:
-            ValueError: A corruption has never had a rate, or a rate is outside [0, 1].
+            ValueError: No rate of a corruption is known, or a rate is outside [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]
@@ -156,7 +160,7 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """Return the corruption and the key of a frame, which depend only on the arguments and
+        """Sample the corruption and the key of a frame; both depend only on the arguments and the
         weights.
         """
         episode = str(episode)
@@ -175,7 +179,7 @@ class Schedule:
         return self.corruption(name, uniform(value, 2)), key
 
     def corruption(self, name: str, place: float = 0.5) -> Corruption:
-        """Return a corruption at this schedule's severity for its modality.
+        """Return a corruption with the severity that this schedule has for its modality.
 
         Args:
             name: Name of the corruption.
@@ -187,17 +191,19 @@ class Schedule:
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """Return the state for a checkpoint as JSON data, so that a resumed run has the same
+        """Return the state as JSON data for a checkpoint, so that a resumed run has the same
         weights.
         """
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
-        """Restore ``state_dict()``; raise ValueError if it lacks a corruption of this schedule."""
+        """Restore the result of ``state_dict()``; raise ValueError if it lacks a corruption of this
+        schedule.
+        """
         if "success" not in state:
             raise ValueError(
-                f"The state of a Schedule must have the entry 'success', got only {sorted(state)}. "
-                "Pass the result of state_dict()."
+                f"The state of a Schedule must have the entry 'success', got only the entries "
+                f"{sorted(state)}. Pass the result of state_dict()."
             )
         self.success = None
         self._weights = [1.0 / len(self.names)] * len(self.names)
@@ -206,7 +212,8 @@ class Schedule:
 
 
 def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-    """Return the corruption and the key of a frame; a plain corruption applies to every frame.
+    """Return the corruption and the key of a frame; if ``by`` is a Corruption, it applies to every
+    frame.
 
     Raises:
         ValueError: ``by`` is neither a Corruption nor a Schedule.
@@ -217,7 +224,8 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 
 
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
-    """Return the names of corruptions that ``by`` may apply, or an empty tuple for clean frames.
+    """Return the names of the corruptions that ``by`` may apply; the tuple is empty if all frames
+    stay clean.
 
     Raises:
         ValueError: ``by`` is neither a Corruption nor a Schedule.
@@ -234,6 +242,6 @@ def _checked(severity: Severity) -> float | tuple[float, float]:
     if len(ends) != 2 or ends[0] > ends[1]:
         raise ValueError(
             f"A range of severities must be [low, high] with low <= high, got {list(severity)}. "
-            "Write for example schedule.severity=[0.3,1.0]."
+            "An example is schedule.severity=[0.3,1.0]."
         )
     return ends[0], ends[1]

@@ -1,10 +1,11 @@
-"""Depth errors of named cameras, from published models and datasheets.
+"""Simulate the depth errors of four cameras; the models come from publications and datasheets.
 
-At severity 0.5 a frame has the errors that the source reports; at severity s they are 2 s times as
-large. A profile has up to five errors, in the order of their effect: a wrong scale of the whole
-episode, pixels that read a neighbour (lateral noise), axial noise, rounding of disparity, and a
-limited range. Functions have the same arguments and results as in ``corruptions/depth.py``, and
-treat invalid pixels in the same way.
+At severity 0.5, a frame has the errors that the source reports. At other severities, the errors are
+multiplied by 2 * severity. A profile has up to five errors, which are applied in this order: (1)
+pixels take the depth of a neighbour (lateral noise), (2) depth has a wrong offset and scale in the
+whole episode, (3) axial noise is added, (4) disparity is rounded, and (5) the range is limited.
+Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
+pixels in the same way.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, uniform, view_streams
 from mitigate.corruptions.record import Record
 
-PUBLISHED = 0.5  # severity at which the errors have the published size
+PUBLISHED = 0.5  # severity at which errors have their published size
 
 
 @dataclass(frozen=True)
@@ -28,14 +29,14 @@ class Profile:
     """The errors of a depth camera.
 
     Attributes:
-        sd: Coefficients (a, b, c) of the standard deviation a + b d + c d^2 in metres.
-        origin: The depth in metres from which d is measured: d = z - origin.
-        lateral: Standard deviation of the sideways error as a fraction of the image width.
-        disparity: Depth takes only the values disparity / n metres for whole numbers n; 0 means
-            no rounding.
-        offset: Largest systematic error in metres.
-        scale: Largest systematic error as a fraction of the depth.
-        far: The largest depth that is measured, in metres.
+        sd: Coefficients (a, b, c) of the standard deviation a + b * d + c * d^2 in metres.
+        origin: Depth in metres at which d is 0: d = z - origin.
+        lateral: Standard deviation of the lateral error as a fraction of the image width.
+        disparity: Constant for rounding. Depth takes only the values ``disparity`` / n metres,
+            where n is a whole number. If it is 0, depth is not rounded.
+        offset: Maximum constant error in metres.
+        scale: Maximum error that is proportional to depth, as a fraction of depth.
+        far: Maximum depth that is measured, in metres.
     """
 
     sd: tuple[float, float, float]
@@ -47,21 +48,23 @@ class Profile:
     scale: float = 0.0
 
 
-# Axial and lateral noise: Nguyen, Izadi and Lovell 2012, surfaces that face the camera, with images
-# 640 pixels wide. Steps of 1/8 pixel: Barron and Malik 2013. Range: datasheet.
+# Sources: axial and lateral noise for surfaces that face the camera, with images that are 640
+# pixels wide (Nguyen, Izadi and Lovell 2012); steps of 1/8 pixel (Barron and Malik 2013); range
+# (datasheet).
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
 )
-# RMS error z^2 e / (f B) with e = 0.08 pixels, baseline B = 0.05 m and f of images that are 848
-# pixels and 90 degrees wide: Grunnet-Jepsen, Sweetser and Woodfill 2018. Steps of 1/32 pixel and
-# range: datasheet.
+# The RMS error is z^2 * e / (f * B), with e = 0.08 pixels, the baseline B = 0.05 m, and the focal
+# length f of images that are 848 pixels and 90 degrees wide (Grunnet-Jepsen, Sweetser and Woodfill
+# 2018). Steps of 1/32 pixel and the range come from the datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
-# Standard deviation 2.5 mm at 1 m and 15.5 mm at 9 m, mean error 5 and 14 mm: datasheet, indoors.
+# The datasheet gives, indoors, a standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m, and a mean
+# error of 5 mm and 14 mm.
 REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
-# Standard deviation up to 17 mm, systematic error up to 11 mm + 0.1 %, range of the narrow mode:
-# datasheet, confirmed by Tolgyessy et al. 2021.
+# The datasheet gives a standard deviation of up to 17 mm, a systematic error of up to 11 mm + 0.1
+# %, and the range of the narrow mode. Tolgyessy et al. 2021 confirm these values.
 AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
 
 _U = np.uint64
@@ -102,10 +105,10 @@ def _measure(views, streams, sd, origin, lateral, steps, bias, limits, missing, 
 def measured(
     views: np.ndarray, profile: Profile, name: str, severity: float, key: Key, sensor: DepthSensor
 ) -> np.ndarray:
-    """Return depth as a camera with the errors of ``profile`` measures it.
+    """Return depth with the errors of ``profile``.
 
-    All errors are ``severity / PUBLISHED`` times as large as published, and the range is as many
-    times smaller.
+    The published errors are multiplied by ``severity / PUBLISHED``; the range is divided by this
+    factor.
     """
     factor = severity / PUBLISHED
     sign = 2.0 * uniform(digest(key, name)) - 1.0
@@ -129,22 +132,22 @@ def measured(
 
 
 def kinect_v1(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with structured light as a Kinect for Xbox 360 does."""
+    """Return depth as a Kinect for Xbox 360, which uses structured light, measures it."""
     return measured(views, KINECT_V1, "kinect_v1", severity, key, sensor)
 
 
 def realsense_d435(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with active stereo as a RealSense D435 does."""
+    """Return depth as a RealSense D435, which uses active stereo, measures it."""
     return measured(views, REALSENSE_D435, "realsense_d435", severity, key, sensor)
 
 
 def realsense_l515(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth with a scanning laser as a RealSense L515 does."""
+    """Return depth as a RealSense L515, which scans with a laser, measures it."""
     return measured(views, REALSENSE_L515, "realsense_l515", severity, key, sensor)
 
 
 def azure_kinect(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Measure depth by time of flight as an Azure Kinect does."""
+    """Return depth as an Azure Kinect, which uses time of flight, measures it."""
     return measured(views, AZURE_KINECT, "azure_kinect", severity, key, sensor)
 
 

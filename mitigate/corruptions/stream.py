@@ -1,7 +1,7 @@
 """Corrupt the observations of a sequence, including faults that depend on earlier frames.
 
-The entry points for sequences pass each observation through a ``FrameStream``. For corruptions of
-single frames it equals ``corrupt_observation``.
+All code that corrupts sequences passes each observation through a ``FrameStream``. For corruptions
+of single frames, it gives the same result as ``corrupt_observation``.
 """
 
 from __future__ import annotations
@@ -31,18 +31,20 @@ from mitigate.corruptions.suite import (
 
 
 def is_timed(corruption: Corruption) -> bool:
-    """Return whether a corruption has a temporal fault."""
+    """Return whether a corruption contains a temporal fault."""
     return any(registry.record(part.name).family == TEMPORAL for part in corruption.parts)
 
 
 def shows_past(corruption: Corruption) -> bool:
-    """Return whether a corruption may show the frame of an earlier instant."""
+    """Return whether a corruption may show a frame of an earlier time step."""
     records = (registry.record(part.name) for part in corruption.parts if part.name != GATE)
     return any(record.family == TEMPORAL and record.draw is not None for record in records)
 
 
 def mount_of(corruption: Corruption, key: Key) -> Mount | None:
-    """Return the displacement of the camera at an instant; None without an active camera fault."""
+    """Return the displacement of the camera in a time step, or None if no camera fault is
+    active.
+    """
     parts = corruption.parts
     if parts and parts[0].name == GATE and not _draw(parts[0], key):
         return None
@@ -51,23 +53,25 @@ def mount_of(corruption: Corruption, key: Key) -> Mount | None:
 
 
 def _draw(part: Corruption, key: Key) -> Any:
-    """Return what a fault does at the instant of ``key``."""
+    """Return what a fault does in the time step of ``key``."""
     draw = registry.record(part.name).draw
     assert draw is not None, "only faults are drawn"
     return draw(part.severity, key)
 
 
 class FrameStream:
-    """Corrupt the observations of one episode after another, in the order of their frames.
+    """Corrupts the observations of episodes, one episode after another, in the order of their
+    frames.
 
-    For temporal faults it keeps the clean frames of the last instants, and forgets them when the
-    episode of the key changes or its frame number does not grow. So the result is a function of the
-    key and the frames of its episode only.
+    For temporal faults, the stream keeps the clean frames of the last time steps. It forgets them
+    when the episode of the key changes or its frame number does not increase. So the result depends
+    only on the key and the frames of its episode.
 
     Args:
-        sensor: Depth range, and the value that marks a missing reading.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
-        hfov: Horizontal field of view in degrees by entry, which camera faults need.
+        sensor: Depth range, and the value that marks missing depth.
+        normalised: Whether depth is normalised to [0, 1] over the sensor's range; otherwise it is
+            in metres.
+        hfov: For each entry, the horizontal field of view in degrees, which camera faults need.
     """
 
     def __init__(
@@ -80,7 +84,8 @@ class FrameStream:
         self.sensor = sensor
         self.hfov = hfov
         self._corrupt = corrupt_normalised if normalised else corrupt_observation
-        self._past: dict[str, list[tuple[int, np.ndarray]]] = {}  # by entry: frame number, frame
+        # frame numbers and frames, by entry
+        self._past: dict[str, list[tuple[int, np.ndarray]]] = {}
         self._episode = (0, "")
 
     def corrupt(
@@ -97,12 +102,13 @@ class FrameStream:
         Args:
             obs: The observation (``core/observation.py``); it is not modified.
             corruption: The corruption.
-            key: Key of the random draws; ``key.frame`` is the number of the instant.
-            partial: Whether to ignore corruptions of frames that ``obs`` lacks.
-            displaced: Whether the frames already show the camera faults (``World.displaced``).
+            key: Key of the random numbers; ``key.frame`` is the number of the time step.
+            partial: Whether to ignore corruptions of modalities that ``obs`` lacks.
+            displaced: Whether the frames were rendered with the camera faults
+                (``World.displaced``).
 
         Returns:
-            A new dict; entries that are not corrupted are the same objects.
+            A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
         Raises:
             ValueError: As in ``corrupt_observation``.
@@ -128,10 +134,10 @@ class FrameStream:
         return {**obs, **{entry: self._arriving(entry, p, key) for entry, p in changed.items()}}
 
     def remember(self, obs: Mapping[str, Any], key: Key) -> None:
-        """Keep the frames and the pose of an instant, which later instants may show.
+        """Keep the frames and the pose of a time step, because later time steps may show them.
 
         Raises:
-            ValueError: A frame and the frame before it have different shapes.
+            ValueError: A frame and the previous frame have different shapes.
         """
         if (key.seed, key.episode) != self._episode:
             self._past.clear()
@@ -150,11 +156,13 @@ class FrameStream:
                 del past[0]
 
     def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
-        """Return the frame that arrives, corrupted as it was when it was recorded."""
+        """Return the frame that arrives, with the other corruptions of the step at which it was
+        recorded.
+        """
         frame_shown = key.frame
         for late in (part for part in parts if shows_past(part)):
             frame_shown -= _draw(late, replace(key, frame=frame_shown))
-        # the delays of two temporal faults add up, but older frames are not stored
+        # the delays of two temporal faults add up, but frames older than OLDEST are not stored
         frame_shown = max(frame_shown, key.frame - OLDEST)
         instant, frame = self._recall(entry, frame_shown)
         arriving: dict[str, Any] = {entry: frame.copy()}
@@ -166,6 +174,8 @@ class FrameStream:
         return arriving[entry]
 
     def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:
-        """Return the newest instant up to ``number`` and its entry, or else the oldest one."""
+        """Return the newest stored pair (step number, frame) whose step is at most ``number``; if
+        there is none, return the oldest pair.
+        """
         past = self._past[entry]
         return next((instant for instant in reversed(past) if instant[0] <= number), past[0])

@@ -1,5 +1,5 @@
-"""Apply corruptions to frames: Corrupt a frame with ``corrupt``, or an observation with
-``corrupt_observation``.
+"""Apply corruptions to frames: ``corrupt`` changes one frame, ``corrupt_observation`` changes all
+frames of an observation.
 
 Both are pure functions of (frame, name, severity, key, heading).
 """
@@ -22,31 +22,30 @@ from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import ACTION, CAMERA, FRAMES, MODALITIES, MOTION, TEMPORAL
 
-# maximum views per time step; R2R's discrete panoramas have 3 elevations of 12, VLN-CE has 12
+# maximum views per time step; R2R's discrete panoramas have 12 views at each of 3 elevations,
+# VLN-CE has 12 views
 MAX_VIEWS = 36
 
 
 def rgb_views(frame: np.ndarray) -> np.ndarray:
-    """Return the frame as contiguous uint8 [V, H, W, 3]; raise ValueError if it is not an RGB
-    frame.
-    """
+    """Return an RGB frame as contiguous uint8 [V, H, W, 3]; raise ValueError for other frames."""
     if frame.dtype != np.uint8:
         raise ValueError(
-            f"RGB frames must be uint8 in 0-255, got {frame.dtype}. Convert them: "
-            "np.rint(frame * 255).astype(np.uint8) if they are in 0-1, "
-            "np.rint(frame).astype(np.uint8) if they are in 0-255."
+            f"RGB frames must be uint8 from 0 to 255, got {frame.dtype}. Convert them: "
+            "np.rint(frame * 255).astype(np.uint8) if values are from 0 to 1, "
+            "np.rint(frame).astype(np.uint8) if they are from 0 to 255."
         )
     if frame.ndim not in (3, 4) or frame.shape[-1] != 3 or 0 in frame.shape:
         raise ValueError(
-            f"RGB frames must be [H, W, 3] or [views, H, W, 3], got {frame.shape}. Move the "
-            "channels last, drop an alpha channel, and corrupt a batch one instant at a time, "
-            "because every instant has its own key."
+            f"RGB frames must be [H, W, 3] or [views, H, W, 3], got {frame.shape}. The channels "
+            "must be the last axis, without alpha. Corrupt the time steps of a batch one at a "
+            "time, because each has its own key."
         )
     return _one_instant(np.ascontiguousarray(frame if frame.ndim == 4 else frame[None]))
 
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
-    """Return the frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
+    """Return a depth frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
     dtypes.
     """
     if frame.ndim > 2 and frame.shape[-1] == 3:
@@ -58,14 +57,14 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
     if frame.dtype != np.float32:
         raise ValueError(
             f"Depth must be float32 in metres, got {frame.dtype}. Convert it: "
-            "depth.astype(np.float32), divided by 1000 for millimetres (uint16). For depth "
-            "normalised to 0-1 use DepthSensor(z_min, z_max).to_metres."
+            "depth.astype(np.float32), divided by 1000 for millimetres (uint16). Convert "
+            "normalised depth (0 to 1) with DepthSensor(z_min, z_max).to_metres."
         )
     shape = frame.shape[:-1] if frame.ndim > 2 and frame.shape[-1] == 1 else frame.shape
     if len(shape) not in (2, 3) or 0 in shape:
         raise ValueError(
             f"Depth must be [H, W], [H, W, 1], [views, H, W] or [views, H, W, 1], got "
-            f"{frame.shape}. Corrupt a batch one instant at a time, because every instant has its "
+            f"{frame.shape}. Corrupt the time steps of a batch one at a time, because each has its "
             "own key."
         )
     views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
@@ -75,30 +74,30 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
 
 
 def _one_instant(views: np.ndarray) -> np.ndarray:
-    """Return ``views`` [V, ...]; raise ValueError for more views than a panorama has."""
+    """Return ``views`` [V, ...]; raise ValueError if there are more views than in a panorama."""
     if len(views) > MAX_VIEWS:
         raise ValueError(
-            f"An instant must have at most {MAX_VIEWS} views, got {len(views)}. The leading "
-            "axis is the views of one panorama, which share one mask. Corrupt a batch one instant "
-            "at a time, because every instant has its own key."
+            f"A frame must have at most {MAX_VIEWS} views, got {len(views)}. The first axis "
+            "contains the views of one panorama, which share one mask. Corrupt the time steps of a "
+            "batch one at a time, because each has its own key."
         )
     return views
 
 
-# Increase this version when any pixel or word of any corruption changes,
-# for inputs that follow docs/corruptions.md and docs/instructions.md.
+# Increase this version when the result of any corruption changes in any pixel or word, for inputs
+# that follow docs/corruptions.md and docs/instructions.md.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
 DEPTH = registry.names("depth")
 NAMES = RGB + DEPTH
-# these are applied by instruction.py before an episode starts
+# instruction.py applies these corruptions before an episode starts
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
-    """Return ``name``, or raise ValueError with the nearest allowed name.
+    """Return ``name`` if it is allowed; otherwise raise ValueError with the nearest allowed name.
 
     By default, all corruptions of frames are allowed, including plugins.
     """
@@ -109,14 +108,14 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
         return name
     if name in INSTRUCTION:
         raise ValueError(
-            f"The corruption must be one of frames ({', '.join(allowed)}), got {name!r}, which "
-            "corrupts instructions. For instructions use mitigate corrupt_episodes, or "
-            "corrupt_instruction in Python."
+            f"The corruption must be one that changes frames ({', '.join(allowed)}), got {name!r}, "
+            "which changes instructions. Corrupt instructions with mitigate corrupt_episodes, or "
+            "with corrupt_instruction in Python."
         )
     if name in registry.FAULTS:
         raise ValueError(
-            f"The corruption must be one of single frames ({', '.join(allowed)}), got the "
-            f"{registry.family(name)} fault {name!r}. A fault can be used as a condition of "
+            f"The corruption must be one that changes single frames ({', '.join(allowed)}), got "
+            f"the {registry.family(name)} fault {name!r}. A fault can be used as a condition of "
             f"an evaluation (conditions=[{name}]) or in a Corruption object; training schedules "
             "do not sample faults."
         )
@@ -129,9 +128,7 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float in [0, 1]; raise ValueError otherwise, and for str and
-    bool.
-    """
+    """Return ``severity`` as a float; raise ValueError if it is outside [0, 1], a str or a bool."""
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -139,8 +136,8 @@ def check_severity(severity: float) -> float:
     if not 0.0 <= value <= 1.0:
         raise ValueError(
             f"Severity must be a number from 0 (clean) to 1 (worst), got {severity!r}. The paper "
-            "uses 0.6 for R2R and 0.5 for RxR and HM3D. Divide percentages by 100, and the 1-5 "
-            "scale of ImageNet-C by 5."
+            "uses 0.6 for R2R, and 0.5 for RxR and HM3D. Divide percentages by 100, and severities "
+            "1 to 5 of ImageNet-C by 5."
         )
     return value
 
@@ -150,9 +147,9 @@ class Corruption:
     """A corruption, or a pair of corruptions, with a severity.
 
     Attributes:
-        name: "clean", the name of a corruption, or a pair such as "low_light+missing_data"; the
-            first of a pair is applied first.
-        severity: Severity in [0, 1], the same for both corruptions of a pair.
+        name: "clean", the name of a corruption, or a pair such as "low_light+missing_data", whose
+            first corruption is applied first.
+        severity: Severity in [0, 1]; both corruptions of a pair have this severity.
 
     Raises:
         ValueError: The name is unknown, a pair is invalid, the severity is outside [0, 1], or
@@ -170,15 +167,15 @@ class Corruption:
         object.__setattr__(self, "severity", check_severity(self.severity))
         if self.name == "clean" and self.severity > 0.0:
             raise ValueError(
-                f"The severity of 'clean' must be 0, got {self.severity}. Use CLEAN, or name a "
-                f"corruption: {', '.join((*NAMES, *INSTRUCTION))}."
+                f"The severity of 'clean' must be 0, got {self.severity}. Use CLEAN, or one of the "
+                f"corruptions {', '.join((*NAMES, *INSTRUCTION))}."
             )
 
     @property
     def parts(self) -> tuple[Corruption, ...]:
-        """The single corruptions in the order of their effect; empty for "clean".
+        """The single corruptions in the order in which they are applied; empty for "clean".
 
-        A camera fault comes first, because it changes what the lens sees.
+        Camera faults are applied first, because they change what the lens sees.
         """
         if self.name == "clean":
             return ()
@@ -192,14 +189,15 @@ class Corruption:
     def modalities(self) -> tuple[str, ...]:
         """The corrupted modalities: "rgb", "depth", "instruction".
 
-        A fault of both sensors has both, and needs only one of them.
+        A fault that affects both sensors has both modalities, but only one of them must be
+        available.
         """
         records = [registry.record(part.name) for part in self.parts if part.name != GATE]
         return tuple(dict.fromkeys(m for record in records for m in record.modalities))
 
     @property
     def modality(self) -> str:
-        """The corrupted modalities in one word: "rgb", "rgb+depth", or "none" if clean."""
+        """The corrupted modalities as one string: "rgb", "rgb+depth", or "none" if clean."""
         return registry.AND.join(self.modalities) or "none"
 
 
@@ -208,7 +206,7 @@ def _check_pair(name: str) -> None:
     names = registry.parts(name)
     if "clean" in names:
         raise ValueError(
-            f"A pair must not contain 'clean', which means no corruption, got {name!r}. Name the "
+            f"A pair must consist of two corruptions, and 'clean' is none, got {name!r}. Name the "
             "other corruption alone, or a pair such as low_light+missing_data."
         )
     for part in names:
@@ -218,13 +216,14 @@ def _check_pair(name: str) -> None:
         of_frames = gated.modality not in ("instruction", ACTION)
         if names[0] != GATE or not of_frames or gated.family == TEMPORAL:
             raise ValueError(
-                f"{GATE!r} must be the first of a pair, and the second a corruption of frames "
-                f"without its own intervals, got {name!r}. Write for example {GATE}+spatter."
+                f"{GATE!r} must be the first name of a pair. The second one must be a corruption "
+                f"of frames that is not a temporal fault, got {name!r}. An example is "
+                f"{GATE}+spatter."
             )
     if len(names) != 2 or names[0] == names[1]:
         raise ValueError(
-            f"A pair must be two different corruptions, got {name!r}. Write for example "
-            "low_light+missing_data; the first is applied first."
+            f"A pair must consist of two different corruptions, got {name!r}. An example is "
+            "low_light+missing_data; the first corruption is applied first."
         )
 
 
@@ -232,17 +231,19 @@ CLEAN = Corruption("clean", 0.0)
 
 
 def check_gate(corruption: Corruption) -> Corruption:
-    """Return ``corruption``, or raise ValueError if it is ``intermittent`` without a second one."""
+    """Return ``corruption``; raise ValueError if it is ``intermittent`` without a second
+    corruption.
+    """
     if corruption.name == GATE:
         raise ValueError(
-            f"{GATE!r} must be the first of a pair: it limits the second corruption to intervals. "
-            f"Write for example {GATE}+spatter."
+            f"{GATE!r} must be the first name of a pair: it limits the second corruption to "
+            f"intervals. An example is {GATE}+spatter."
         )
     return corruption
 
 
 def check_corruption(corruption: Corruption) -> Corruption:
-    """Return ``corruption``, or raise ValueError if it is not a :class:`Corruption`."""
+    """Return ``corruption``; raise ValueError if it is not a :class:`Corruption`."""
     if not isinstance(corruption, Corruption):
         raise ValueError(
             f"The corruption must be a Corruption(name, severity), such as "
@@ -262,8 +263,9 @@ def check_heading(heading: float | None) -> float | None:
         value = math.nan
     if not math.isfinite(value):
         raise ValueError(
-            f"The heading must be in finite radians, got {heading!r}. If it is unknown, pass "
-            "heading=None or an observation without a pose; a flare then keeps its place in view 0."
+            f"The heading must be a finite number (radians), got {heading!r}. If the heading is "
+            "unknown, pass heading=None or an observation without a pose; a flare then keeps its "
+            "position in view 0."
         )
     return value
 
@@ -281,26 +283,27 @@ def corrupt(
     """Corrupt the frame of one modality at one time step.
 
     Args:
-        frame: uint8 [H, W, 3] or [V, H, W, 3] for RGB names; float32 metres [H, W], [H, W, 1],
-            [V, H, W] (W not 3) or [V, H, W, 1] for depth names. View k of V faces yaw -30 k degrees
-            without pitch. V is the number of views of one time step (at most 36), which share one
-            mask. The axis is not a batch axis; corrupt a batch one time step at a time, each with
-            its own key.
-        name: One of NAMES, or another known corruption of frames.
-        severity: s in [0, 1]; 0 returns a bit-exact copy.
-        key: Key of the random numbers; an int is used as the seed, a str as the episode.
-        heading: Heading of the agent in radians, counter-clockwise, so that a flare keeps its
-            direction in the world. None (unknown): the flare keeps its place in view 0.
-        sensor: Depth range, and the value that marks a missing reading.
-        hfov: Horizontal field of view in degrees, which camera faults need.
+        frame: For corruptions of RGB, uint8 [H, W, 3] or [V, H, W, 3]. For corruptions of depth,
+            float32 metres [H, W], [H, W, 1], [V, H, W] (W is not 3) or [V, H, W, 1]. V is the
+            number of views of one time step (at most 36), which share one mask. View number k has a
+            yaw of -30 * k degrees and no pitch. The first axis is not a batch axis: corrupt the
+            time steps of a batch one at a time, each with its own key.
+        name: One of NAMES, or any other registered corruption of frames.
+        severity: Severity in [0, 1]; 0 returns a bit-exact copy.
+        key: Key of the random numbers. An int sets only the seed, and a str sets only the episode.
+        heading: Heading of the agent in radians, counter-clockwise, with which a flare keeps its
+            direction in the world. If the heading is None (unknown), a flare keeps its position in
+            view 0.
+        sensor: Depth range, and the value that marks missing depth.
+        hfov: Horizontal field of view in degrees; camera faults need it.
 
     Returns:
         A new array of the same shape and dtype; the input is not modified.
 
     Raises:
-        ValueError: An argument is invalid, the corruption depends on earlier frames, or over nine
-            tenths of the depth are beyond three times the sensor's z_max, so it is probably in
-            millimetres.
+        ValueError: An argument is invalid, or the corruption depends on earlier frames, or more
+            than nine tenths of the depth values exceed three times the sensor's z_max (and are
+            probably in millimetres).
     """
     if name not in registry.FAULTS:
         check_name(name)
@@ -316,8 +319,8 @@ def corrupt(
         )
     if record.family == TEMPORAL and record.draw is not None:
         raise ValueError(
-            f"{name!r} is a {record.family} fault, which depends on earlier frames, but a single "
-            "frame was passed. Pass the frames of a sequence in order to a FrameStream "
+            f"{name!r} is a {record.family} fault, which depends on earlier frames. Instead of a "
+            "single frame, pass the frames of a sequence in order to a FrameStream "
             "(docs/faults.md)."
         )
     rgb = record.modality == "rgb" or (record.modality == FRAMES and frame.dtype == np.uint8)
@@ -343,19 +346,21 @@ def corrupt(
     if not is_array or result.dtype != views.dtype or result.shape != views.shape:
         actual = f"{result.dtype} {result.shape}" if is_array else type(result).__name__
         raise ValueError(
-            f"The function of corruption {name!r} must keep shape and dtype, got {actual} for "
-            f"{views.dtype} {views.shape}."
+            f"The function of corruption {name!r} must return an array of the same shape and dtype "
+            f"as its input, got {actual} for {views.dtype} {views.shape}."
         )
     return result.reshape(frame.shape)
 
 
 def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
-    """Return the field of view; ValueError if a fault of the camera cannot be shown."""
+    """Return the field of view; raise ValueError if the camera fault cannot be computed from a
+    frame.
+    """
     if mount.height:
         raise ValueError(
-            f"{name!r} needs a world that renders from another height; a frame alone does not show "
-            "what such a camera sees. Use the apartments, or a world that defines displaced() "
-            "(docs/faults.md), or leave it out."
+            f"{name!r} needs a world that renders from another height, because a frame does not "
+            "show what such a camera sees. Use the apartments or another world that defines "
+            "displaced() (docs/faults.md), or leave out this fault."
         )
     if hfov is None:
         raise ValueError(
@@ -363,7 +368,9 @@ def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
             "hfov of the Sensor of your world."
         )
     if not NARROWEST <= hfov <= WIDEST:
-        raise ValueError(f"hfov must be {NARROWEST:g} to {WIDEST:g} degrees, got {hfov!r}.")
+        raise ValueError(
+            f"hfov must be between {NARROWEST:g} and {WIDEST:g} degrees, got {hfov!r}."
+        )
     return float(hfov)
 
 
@@ -376,22 +383,22 @@ def corrupt_observation(
 ) -> dict:
     """Corrupt the frames of an observation (``core/observation.py``).
 
-    Corruptions of instructions and motion faults change nothing here; they are applied by
-    ``corrupt_instruction`` and ``mitigate/worlds/motion.py``.
+    This function ignores corruptions of instructions, which ``corrupt_instruction`` applies, and
+    motion faults, which ``mitigate/worlds/motion.py`` applies.
 
     Args:
-        obs: The observation; the heading is read from ``obs["pose"]``, if present.
+        obs: The observation. The heading is read from ``obs["pose"]``, if this entry exists.
         corruption: The corruption.
-        key: Key of the random draws.
-        sensor: Depth range, and the value that marks a missing reading.
-        hfov: Horizontal field of view in degrees by entry, which camera faults need.
+        key: Key of the random numbers.
+        sensor: Depth range, and the value that marks missing depth.
+        hfov: For each entry, the horizontal field of view in degrees, which camera faults need.
 
     Returns:
-        A new dict; entries that are not corrupted are the same objects.
+        A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
     Raises:
-        ValueError: The modality is missing, the pose is not [3], ``corruption`` is not a
-            Corruption, or an error of ``corrupt``.
+        ValueError: The modality is missing, the shape of the pose is not [3], ``corruption`` is not
+            a Corruption, or ``corrupt`` raises an error.
     """
     result = dict(obs)
     for part in check_corruption(corruption).parts:
@@ -407,13 +414,13 @@ def _corrupt_entry(
     sensor: DepthSensor,
     hfov: Mapping[str, float | None],
 ) -> dict:
-    """Return the entries that one corruption changes, by name."""
+    """Apply one corruption, and return the entries that it changes as a dict."""
     pose = obs.get(observation.POSE)
     entries = changed_entries(obs, part)
     if pose is not None and np.shape(pose) != (3,):
         raise ValueError(
-            f"{observation.POSE!r} must be [3] = (x, y, heading), got {np.shape(pose)}. Leave it "
-            "out if the heading is unknown; a flare then keeps its place in view 0."
+            f"{observation.POSE!r} must be [3] = (x, y, heading), got {np.shape(pose)}. Leave "
+            "it out if the heading is unknown; a flare then keeps its position in view 0."
         )
     heading = None if pose is None else float(pose[2])
     return {
@@ -431,19 +438,19 @@ def _corrupt_entry(
 
 
 def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
-    """Return the frames of an observation that a single corruption changes.
+    """Return the names of the entries of an observation that a single corruption changes.
 
     Raises:
-        ValueError: The observation has none of the frames.
+        ValueError: The observation has no entry that the corruption could change.
     """
     modalities = registry.record(part.name).modalities
     entries = tuple(
         name for name in modalities if name in obs
-    )  # each entry has the name of its modality
+    )  # entries have the names of modalities
     if not entries:
         raise ValueError(
             f"{part.name!r} needs the entry {' or '.join(map(repr, modalities))}, which the "
-            f"observation lacks (it has {', '.join(map(repr, obs)) or 'none'}). Add that sensor, "
+            f"observation lacks (it has {', '.join(map(repr, obs)) or 'none'}). Add this sensor, "
             f"or leave {part.name!r} out of the suite."
         )
     return entries

@@ -1,4 +1,4 @@
-"""Frames of a LeRobot dataset, for recipes that need frames alone."""
+"""Read the frames of a LeRobot dataset, for recipes that need only frames."""
 
 from __future__ import annotations
 
@@ -25,23 +25,23 @@ from mitigate.encoders.sources import (
 class DatasetFrames:
     """The frames of one camera of a LeRobot dataset.
 
-    Each episode is a scene. The last scenes are unseen. A single episode is split into blocks of
-    consecutive frames.
+    Each episode is a scene. The last scenes are held out. If there is only one episode, it is split
+    into blocks of consecutive frames, which replace scenes.
 
     Args:
         path: folder of the dataset.
-        camera: name of the camera; None: the only one of ``sensor``.
+        camera: name of the camera. None selects the only camera of ``sensor``.
         sensor: "rgb" or "depth".
-        size: side in pixels to which frames are resized; None: unchanged.
+        size: side in pixels to which frames are resized. None keeps their size.
         held_out: fraction of the scenes that are held out.
-        block: frames per block of a single episode; blocks are smaller if needed, so that five of
-            them can be held out.
-        episodes: numbers of the episodes to read; None: all.
+        block: maximum frames per block if there is only one episode. Blocks are smaller if five
+            blocks could not be held out otherwise.
+        episodes: numbers of the episodes to read. None reads all.
         tolerance: maximum seconds between a row and its video frame.
 
     Raises:
         FileNotFoundError: There is no such dataset, or a file is missing.
-        ValueError: The dataset is damaged, an argument is out of range, or several cameras fit.
+        ValueError: The dataset is damaged, an argument is out of range, or several cameras match.
     """
 
     files = True
@@ -66,8 +66,8 @@ class DatasetFrames:
         if len(cameras) != 1:
             names = ", ".join(c.name for c in self.dataset.cameras.values()) or "none"
             raise ValueError(
-                f"env.camera must name one of the {sensor} cameras of {path}: {len(cameras)} fit. "
-                f"Its cameras: {names}."
+                f"env.camera must name one of the {sensor} cameras of {path}, because "
+                f"{len(cameras)} cameras match. All cameras: {names}."
             )
         self.camera = cameras[0]
         frames: dict[str, list[tuple[Episode, int]]] = {}
@@ -81,8 +81,8 @@ class DatasetFrames:
         unseen = last_scenes(list(self._frames), self.held_out)
         if not unseen:
             raise ValueError(
-                f"{self.dataset.path} has one frame, but training and unseen frames must come from "
-                "different scenes. Use a dataset with several episodes."
+                f"{self.dataset.path} has only one frame, but training frames and held-out frames "
+                "must come from different scenes. Use a dataset with several episodes."
             )
         return [name for name in self._frames if (name in unseen) != (split == TRAIN)]
 

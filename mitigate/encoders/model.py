@@ -1,4 +1,4 @@
-"""Wrap a user's encoder with its input transform, its target output, and adapters."""
+"""Wrap a user's encoder with an input transform, the choice of its output, and adapters."""
 
 from __future__ import annotations
 
@@ -31,22 +31,24 @@ MOST = 4096  # maximum side in pixels (heuristic)
 
 @dataclass
 class Transform:
-    """Convert uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]`` to ``[n, c, size, size]`` floats.
+    """Convert frames (uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``) to the encoder's input
+    (floats ``[n, c, size, size]``).
 
     Args:
         size: side in pixels.
-        resize: one of ``RESIZE``; bilinear and bicubic are antialiased when they shrink, as in
-            torchvision and PIL.
-        crop: whether to resize the shorter side and take the centre square (as CLIP does), instead
-            of resizing both sides.
-        mean: mean of each channel, after ``scale``.
-        std: standard deviation of each channel, after ``scale``.
-        scale: divisor of RGB: 255 for values 0 to 1 (most encoders), 1 for 0 to 255.
-        bgr: whether to reverse the channels.
-        near: minimum depth in metres; see ``far``.
-        far: maximum depth in metres; depth is clipped to ``near`` and ``far``, scaled to (depth -
-            near) / (far - near), as in habitat-lab, and then normalised by ``mean`` and ``std``.
-            None: metres, unscaled.
+        resize: one of ``RESIZE``; bilinear and bicubic use antialiasing when frames get smaller, as
+            in torchvision and PIL.
+        crop: whether to resize the shorter side and crop the central square, as CLIP does. If
+            false, both sides are resized.
+        mean: mean of each channel after division by ``scale``.
+        std: standard deviation of each channel after division by ``scale``.
+        scale: divisor of RGB values. Use 255 for encoders that expect values from 0 to 1 (most
+            encoders), and 1 for values from 0 to 255.
+        bgr: whether to reverse the order of the colour channels.
+        near: minimum depth in metres (see ``far``).
+        far: maximum depth in metres. Depth is clipped to ``near`` and ``far``, scaled to (depth -
+            near) / (far - near), as in habitat-lab, and then normalised by ``mean`` and ``std``. If
+            it is None, depth is not scaled but stays in metres.
 
     Raises:
         ValueError: An argument is invalid; the message names the option.
@@ -71,7 +73,7 @@ class Transform:
         self.far = None if self.far is None else float(self.far)
 
     def settings(self) -> dict:
-        """Return the arguments, as plain data."""
+        """Return the arguments as plain data."""
         return dict(vars(self))
 
     def __call__(self, frames: Tensor) -> Tensor:
@@ -155,12 +157,12 @@ def _numbers(values: Any) -> bool:
 
 TUNE = ("adapters", "all")
 POOL = ("mean", "first", "flatten")
-SENSORS = {"rgb": 3, "depth": 1}  # number of channels of a frame
+SENSORS = {"rgb": 3, "depth": 1}  # number of channels per frame
 AUTO, SITES = "auto", 6
 
 
 class Encoder(nn.Module):
-    """Maps frames to features; the recipe for encoders trains this module instead of an agent.
+    """Module that maps frames to features; the recipe for encoders trains it instead of an agent.
 
     Args:
         model: same as in :func:`mitigate.encoders.loading.load_model`.
@@ -170,14 +172,16 @@ class Encoder(nn.Module):
             weights.
         prefix: same as in :func:`mitigate.encoders.loading.load_weights`.
         sensor: "rgb" or "depth".
-        output: the target features. None means the output of the model, a number or a name means
-            that item of the output (``pooler_output``), and any other text is the dotted name of a
-            module.
-        pool: how the report converts features to a vector: "mean" over places or tokens, "first"
-            token (CLIP's class token), or "flatten". The training target itself is not pooled.
-        tune: "adapters", or "all" weights of the encoder (BatchNorm statistics stay fixed).
-        adapters: a mapping with targets ("auto", or regular expressions), sites (number of blocks
-            for "auto"), and reduction, kernel, middle and gate as in ``insert_adapters``.
+        output: which features are trained. None means the output of the model. A number or a name
+            selects an item of this output (such as ``pooler_output``). Any other text is the dotted
+            name of a module.
+        pool: how the report converts features to a vector: "mean" (over positions or tokens),
+            "first" (the first token, which is CLIP's class token) or "flatten". In training,
+            features are not pooled.
+        tune: which weights are trained: "adapters", or "all" weights of the encoder. BatchNorm
+            statistics stay fixed in both cases.
+        adapters: a mapping with the keys targets ("auto", or regular expressions), sites (number of
+            blocks for "auto"), and reduction, kernel, middle and gate (as in ``insert_adapters``).
 
     Raises:
         ValueError, FileNotFoundError: An argument is invalid; the message lists valid values.
@@ -208,8 +212,8 @@ class Encoder(nn.Module):
                 raise ValueError(unknown(f"agent.{name}", value, list(allowed)))
         if model is None:
             raise ValueError(
-                "agent.model is not set. Name your encoder: agent.model=package.module:callable, "
-                "or an exported file (.pt2, docs/encoder.md)."
+                "agent.model is not set. Set it to your encoder: package.module:callable, or an "
+                "exported file (.pt2, docs/encoder.md)."
             )
         self.given = {"model": model, "kwargs": kwargs, "weights": weights, "prefix": prefix}
         self.sensor, self.output, self.pool, self.tune = sensor, output, pool, tune
@@ -219,7 +223,7 @@ class Encoder(nn.Module):
         if means not in (1, channels):
             raise ValueError(
                 f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
-                "channels. For depth without normalisation set agent.transform.mean=[0] "
+                "channels. To use depth without normalisation, set agent.transform.mean=[0] and "
                 "agent.transform.std=[1]."
             )
         self.model = loading.load_model(model, kwargs)
@@ -242,7 +246,7 @@ class Encoder(nn.Module):
         return {}
 
     def choose_trained(self) -> None:
-        """Make only the adapters trainable, or with ``tune="all"`` all weights."""
+        """Make the adapters trainable, or all weights if ``tune`` is "all"; freeze all others."""
         self.model.requires_grad_(False)
         trained = inserted.adapter_parameters(self.model)
         if self.tune == "all":
@@ -251,7 +255,7 @@ class Encoder(nn.Module):
             parameter.requires_grad_(True)
 
     def train(self, mode: bool = True) -> Encoder:
-        """Keep the encoder in eval mode: no dropout, fixed BatchNorm statistics."""
+        """Keep the encoder in eval mode, without dropout and with fixed BatchNorm statistics."""
         super().train(mode)
         self.model.train(False)
         return self
@@ -275,7 +279,8 @@ class Encoder(nn.Module):
             handle.remove()
         if not outputs:
             raise ValueError(
-                f"The encoder does not call its module {self.output}. Choose another agent.output."
+                f"agent.output must name a module that the encoder calls, got {self.output}. "
+                "Choose another one."
             )
         return first(outputs[-1])
 
@@ -297,7 +302,9 @@ class Encoder(nn.Module):
         middle: int | None = None,
         gate: bool = False,
     ) -> None:
-        """Freeze the encoder and insert adapters; its output does not change yet."""
+        """Freeze the encoder and insert adapters, which do not change its output before
+        training.
+        """
         names = inserted.insert_adapters(
             self.model,
             self.targets(targets, sites),
@@ -318,8 +325,8 @@ class Encoder(nn.Module):
         return [re.escape(name) for name in chosen]
 
     def _probe(self, count: int) -> Any:
-        """Return the output for noise frames, because some normalisations give NaN for constant
-        frames.
+        """Return the output for random frames; for constant frames, some normalisations would give
+        NaN.
         """
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
@@ -327,7 +334,7 @@ class Encoder(nn.Module):
         return self.model(noise.to(like.device, like.dtype))
 
     def _item(self, output: Any) -> Tensor:
-        """Select the target features in the output of the model."""
+        """Select, in the output of the model, the features that ``output`` names."""
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
@@ -348,7 +355,7 @@ class Encoder(nn.Module):
 
     @torch.no_grad()
     def _check(self) -> None:
-        """Run the model once, so that errors appear before frames are rendered."""
+        """Run the model once, so that errors are raised before frames are rendered."""
         self.model.requires_grad_(False)
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(2, size, size, channels, generator=torch.Generator().manual_seed(0))
@@ -357,14 +364,15 @@ class Encoder(nn.Module):
             output = self.model(self.transform(frames))
         except Exception as error:  # the user's code may raise any error
             raise ValueError(
-                f"The encoder {self.given['model']} does not take {self.sensor} frames [2, "
+                f"The encoder {self.given['model']} failed for {self.sensor} frames [2, "
                 f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set "
-                "agent.transform.size to the size of its input and agent.sensor to rgb or depth. A "
-                "program traced or exported for one frame does not accept two: export it with a "
+                "agent.transform.size to the size of its input, and agent.sensor to rgb or depth. "
+                "A program that was traced or exported for one frame rejects two: export it with a "
                 "dynamic number of frames."
             ) from error
         if isinstance(output, Tensor) and self.output is not None:
-            self.output = str(self.output)  # a tensor has no items, so 3 is the name of a module
+            # a tensor has no items, so a number such as 3 must be the name of a module
+            self.output = str(self.output)
         features: Any = self(frames)
         result = type(features).__name__
         if isinstance(features, Tensor):
@@ -374,12 +382,12 @@ class Encoder(nn.Module):
                     return
                 result += " with NaN or infinity"
         raise ValueError(
-            f"agent.output={self.output} must give finite floats [n, C], [n, C, h, w] or "
-            f"[n, T, C], got {result} for two frames. Name another module or item."
+            f"agent.output={self.output} must select finite floats [n, C], [n, C, h, w] "
+            f"or [n, T, C], got {result} for two frames. Choose another module or item."
         )
 
     def far(self) -> DepthSensor:
-        """Return the sensor's range, which depth corruptions need."""
+        """Return the depth range of the encoder, which depth corruptions need."""
         far = self.transform.far
         return DepthSensor() if far is None else DepthSensor(z_max=float(far))
 
@@ -388,14 +396,15 @@ class Encoder(nn.Module):
         return folders.write(self, folder)
 
     def load(self, folder: str | Path) -> None:
-        """Load weights that :meth:`save` wrote; errors are as in ``folder.fill``."""
+        """Load weights that :meth:`save` wrote; the errors are those of ``folder.fill``."""
         folders.fill(self, folder)
 
 
 def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
-    """Raise ValueError if two calls of ``model`` return different weights.
+    """Raise ValueError if two calls of ``model`` give different weights.
 
-    Adapters fit only the weights that they were trained with, and random weights would be lost.
+    Adapters work only with the weights that they were trained with, and random weights would be
+    lost after training.
     """
     if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return
@@ -404,6 +413,6 @@ def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) ->
     random = [n for n, v in state.items() if n in other and not v.equal(other[n])]
     raise ValueError(
         f"agent.model={model} initialises {len(random)} of its weights at random "
-        f"({', '.join(random[:3])}), so the adapters would fit no later encoder. Save its "
-        "state_dict() once, or use trained weights, and name the file: agent.weights=FILE."
+        f"({', '.join(random[:3])}), so adapters could not be used with it later. Use "
+        "trained weights, or save its state_dict() once, and set agent.weights to the file."
     )

@@ -1,13 +1,13 @@
-"""Put the adapters of a folder into an encoder. Copy this one file into your project.
+"""Insert the adapters in a folder into an encoder. To use this module, copy it into your project.
 
     from plain_adapters import attach
 
     encoder.eval()
     encoder = attach(encoder, "runs/encoder/agent")  # the folder of `make train RECIPE=encoder`
 
-It needs only Python 3.6, torch 1.7 and numpy, or newer versions. The folder is data: The folder
-contains JSON with fixed entries, and safetensors. Both are compared with their sha256 and parsed in
-this file; nothing in the folder is run.
+It needs only Python 3.6, torch 1.7 and numpy, or newer versions. The folder contains only data:
+JSON with fixed entries, and safetensors. This module checks their sha256 and parses them; it runs
+no code from the folder.
 """
 
 import hashlib
@@ -22,8 +22,9 @@ import torch.nn.functional as F
 WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
 MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
-LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; adapters have 1e5 to 1e7)
-# numpy types of safetensors types; BF16, which numpy lacks, is read as half of a float32
+LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; usual sizes are 1e5 to 1e7)
+# maps safetensors types to numpy types; numpy lacks BF16, which is read as the upper half of a
+# float32
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}
 
@@ -51,29 +52,31 @@ def attach(model, folder, check=True):
     hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
     if any(isinstance(hook, _Adapter) for hook in hooks):
         raise ValueError(
-            f"This model has adapters already, and those in {folder} would be added to them. Build "
-            "the model and load its weights again first."
+            f"This model has adapters already, and those in {folder} would be added to them. "
+            "Construct the model and load its weights again first."
         )
     settings, tensors = read(folder)
     shapes = settings["adapters"]
     owners = tuple(name.replace(".", "/") + "." for name in shapes)
     surplus = [name for name in tensors if not name.startswith(owners)]
     if surplus:
-        raise ValueError(f"{WEIGHTS} in {folder} has tensors of no adapter: {surplus[0]!a:.60}.")
+        raise ValueError(
+            f"{WEIGHTS} in {folder} has a tensor that belongs to no adapter: {surplus[0]!a:.60}."
+        )
     modules = dict(model.named_modules())
     missing = sorted(set(shapes) - set(modules))
     if missing:
         raise ValueError(
-            "This model has no module called {}: the adapters in {} were trained for another "
-            "model. It has, for example, {}.".format(
+            "The model has no module called {}, so the adapters in {} were trained for another "
+            "model. Modules of this model are, for example, {}.".format(
                 ", ".join(missing[:4]), folder, ", ".join(list(modules)[1:9])
             )
         )
     if check and backbone_sha(model) != settings["backbone_sha256"]:
         raise ValueError(
-            "The adapters in {} were trained with weights of sha256 {}, but this model has {}. "
-            "Load those weights first. For a converted model with the same weights, call "
-            "attach(model, folder, check=False).".format(
+            "The adapters in {} were trained with weights of sha256 {}, but the weights of this "
+            "model have {}. Load weights with the first hash. If the model has them in another "
+            "precision, call attach(model, folder, check=False).".format(
                 folder, settings["backbone_sha256"], backbone_sha(model)
             )
         )
@@ -84,7 +87,7 @@ def attach(model, folder, check=True):
 
 
 class _Adapter:
-    """A forward hook: Adapter that computes ``x + gate * up(gelu(down(x)))``."""
+    """Forward hook with an adapter that computes ``x + gate * up(gelu(down(x)))``."""
 
     def __init__(self, folder, name, shape, tensors):
         prefix = name.replace(".", "/") + "."
@@ -109,7 +112,9 @@ class _Adapter:
         return self.adapt(output)
 
     def fingerprint(self):
-        """Return the behaviour of this hook as plain data, for mitigate's fingerprint of agents."""
+        """Return plain data that determine what this hook computes, for mitigate's fingerprint of
+        agents.
+        """
         return [self.tokens, self.batch, self.pad, tensors_sha(self.weights)]
 
     def adapt(self, x):
@@ -134,7 +139,7 @@ class _Adapter:
 
 
 def _shapes(shape):
-    """Compute the shapes of an adapter's tensors, by name, from its settings."""
+    """Return the shapes of an adapter's tensors, by name, as its settings determine them."""
     channels = shape["channels"]
     middle = shape.get("middle") or max(4, channels // shape["reduction"])
     kernel = () if shape.get("kind") == "tokens" else (shape["kernel"],) * 2
@@ -148,7 +153,9 @@ def _shapes(shape):
 
 
 def _sums(folder):
-    """Return the allowed sha256 values of a file, from the manifest or a file of older versions."""
+    """Return the allowed sha256 values of the weights, from the manifest or (in older folders) a
+    separate file.
+    """
     manifest = os.path.join(folder, MANIFEST)
     if not os.path.isfile(manifest):
         with open(os.path.join(folder, WEIGHTS + SUM), encoding="utf-8") as file:
@@ -164,11 +171,13 @@ def _sums(folder):
 
 
 def read(folder):
-    """Return the settings and tensors of a folder: (dict, {name: tensor}). Errors as ``attach``."""
+    """Return the settings (a dict) and the tensors (by name) of a folder. Raises the same errors as
+    ``attach``.
+    """
     folder = str(folder)
     path = os.path.join(folder, WEIGHTS)
     if os.path.getsize(path) > LARGEST:
-        raise ValueError(f"{path} must have at most {LARGEST} bytes. Fetch the folder again.")
+        raise ValueError(f"{path} must not be larger than {LARGEST} bytes. Fetch the folder again.")
     with open(path, "rb") as file:
         data = file.read()
     if hashlib.sha256(data).hexdigest() not in _sums(folder):
@@ -185,14 +194,14 @@ def read(folder):
         valid = False
     if not valid or not all(map(_known, settings["adapters"].values())):
         raise ValueError(
-            f"{SETTINGS} in {folder} is damaged, or has adapters that this file does not support "
-            "(for ring adapters use mitigate.agents.adapters.load_adapters)."
+            f"{SETTINGS} in {folder} is damaged, or has adapters that this module does not support "
+            "(load ring adapters with mitigate.agents.adapters.load_adapters)."
         )
     return settings, parse(data, path)
 
 
 def _known(shape):
-    """Return whether the settings of an adapter are valid and supported by this file."""
+    """Return whether the settings of an adapter are valid and supported by this module."""
     if not isinstance(shape, dict) or not {"channels", "reduction"} <= set(shape):
         return False
     rest = {name: value for name, value in shape.items() if name not in ("kind", "gate")}
@@ -208,7 +217,7 @@ def _known(shape):
 def parse(data, path="the file"):
     """Parse the bytes of a safetensors file, and return its tensors by name.
 
-    The format is the length of the header (8 bytes), the header (JSON), and the bytes of the
+    Such a file contains the length of the header (8 bytes), the header (JSON), and the bytes of the
     tensors. Raises ValueError if the data are damaged.
     """
     try:
@@ -235,12 +244,14 @@ def parse(data, path="the file"):
 
 
 def backbone_sha(model):
-    """Return 12 hex digits of the sha256 of names, types, shapes and bytes of the weights."""
+    """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes of the
+    weights.
+    """
     return tensors_sha(model.state_dict())
 
 
 def tensors_sha(tensors):
-    """Return the hash of ``backbone_sha`` for tensors by name."""
+    """Return the same hash as ``backbone_sha`` for named tensors."""
     sha = hashlib.sha256()
     for name, value in sorted(tensors.items()):
         if isinstance(value, torch.Tensor):

@@ -1,4 +1,5 @@
-"""Measure an encoder's features under corruptions with cosine, a linear probe and retrieval.
+"""Measure how corruptions change an encoder's features: by cosine similarity, retrieval and a
+linear probe.
 
 Each measure has a 95 % interval over scenes.
 """
@@ -18,16 +19,18 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import Frames, corrupted
 from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
-RESAMPLES = 1000  # bootstrap resamples of the scenes (heuristic)
-FEWEST = 10  # a label is used if it has this many positive and negative frames (heuristic)
-# candidates for the ridge, times the number of frames; chosen on training frames
+RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
+FEWEST = 10  # minimum numbers of positive and of negative frames for a label to be used (heuristic)
+# candidates for the ridge, as multiples of the number of frames; one is chosen on training frames
 RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)
-PROBE_SHARE = 0.25  # fraction of the training scenes on which the ridge is chosen (heuristic)
+PROBE_SHARE = 0.25  # fraction of the training scenes that is used to choose the ridge (heuristic)
 
 
 @dataclass
 class Score:
-    """One measure under one condition, for all frames and for each resample of the scenes."""
+    """Value of one measure under one condition, for all frames and for each resample of the
+    scenes.
+    """
 
     value: float
     samples: np.ndarray
@@ -37,7 +40,7 @@ class Score:
         return _estimate(self.value, self.samples)
 
     def minus(self, other: Score) -> Estimate:
-        """Return the paired difference."""
+        """Return the paired difference of two scores."""
         return _estimate(self.value - other.value, self.samples - other.samples)
 
 
@@ -57,7 +60,7 @@ def features(
     progress: Progress,
     batch: int = 32,
 ) -> np.ndarray:
-    """Return pooled features float32 [N, C] of every frame under ``corruption``."""
+    """Return the pooled features of all frames under ``corruption``, float32 [N, C]."""
     device = next(encoder.model.parameters(), torch.zeros(())).device
     batches = []
     for start in range(0, len(frames), batch):
@@ -74,10 +77,10 @@ def features(
 
 
 class Resamples:
-    """Scenes drawn with replacement.
+    """Bootstrap resamples: scenes that were drawn with replacement.
 
-    ``weights`` float32 [R, N] states how often each frame counts in each resample. With a single
-    scene, R is 0, because the differences between scenes are unknown.
+    ``weights`` (float32 [R, N]) contains how often each frame counts in each resample. With a
+    single scene, the number of resamples R is 0, because the variation between scenes is unknown.
     """
 
     def __init__(self, scene: np.ndarray, seed: int = 0, count: int = RESAMPLES) -> None:
@@ -89,24 +92,25 @@ class Resamples:
         self.weights = draws[:, scene_index].astype(np.float32)
 
     def mean(self, values: np.ndarray) -> Score:
-        """Return the mean of values [N], one per frame."""
+        """Return the mean of ``values`` [N], which has one entry per frame."""
         totals = self.weights.sum(1)
         return Score(float(values.mean()), self.weights @ values.astype(np.float32) / totals)
 
 
 def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return the cosine similarity [N] of corrupted and clean features [N, C].
+    """Return, for each frame, the cosine similarity of its corrupted and clean features: [N] from
+    [N, C].
 
-    ``centre`` [C] is subtracted from both: most encoders' features have a large common mean, which
-    makes all frames look similar.
+    ``centre`` [C] is subtracted from both, because the features of most encoders have a large
+    common mean, which makes all frames look similar.
     """
     a, b = _unit(corrupted - centre), _unit(clean - centre)
     return (a * b).sum(1)
 
 
 def retrieval(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return for each frame [N] whether the nearest clean frame (centred cosine) is the same
-    frame.
+    """Return, for each corrupted frame, whether the most similar clean frame (by centred cosine) is
+    the same frame.
     """
     similarity = _unit(corrupted - centre) @ _unit(clean - centre).T
     return (similarity.argmax(1) == np.arange(len(corrupted))).astype(np.float32)
@@ -119,8 +123,8 @@ def _unit(x: np.ndarray) -> np.ndarray:
 class LinearProbe:
     """Ridge regression from clean features [N, C] to labels [N, L] in {0, 1}.
 
-    The ridge is the value in ``RIDGES`` with the highest mean average precision on a quarter of the
-    training scenes. ``used`` contains the labels with enough training frames.
+    The ridge is the value in ``RIDGES`` that gives the highest mean average precision on a quarter
+    of the training scenes. The attribute ``used`` contains the labels with enough training frames.
     """
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:
@@ -130,7 +134,7 @@ class LinearProbe:
         validation = np.isin(scene, np.unique(scene)[:: round(1 / PROBE_SHARE)])
         usable = frequent_labels(y[validation])
         scores = []
-        # a single scene has no validation part
+        # with a single scene, there is no validation part
         for ridge in RIDGES if not validation.all() else ():
             weights = _ridge(x[~validation], y[~validation], ridge)
             guess = x[validation] @ weights
@@ -145,7 +149,7 @@ class LinearProbe:
         return np.concatenate([x, np.ones((len(x), 1))], 1)
 
     def score(self, features: np.ndarray, labels: np.ndarray, resamples: Resamples) -> Score:
-        """Return the mean average precision over the labels that have enough frames."""
+        """Return the mean average precision over all labels that have enough frames."""
         guess, labels = self._scaled(features) @ self.weights, labels[:, self.used]
         usable = frequent_labels(labels)
         ones = np.ones((1, len(features)), np.float32)
@@ -156,7 +160,7 @@ class LinearProbe:
 
 
 def frequent_labels(labels: np.ndarray) -> np.ndarray:
-    """Return the columns of labels [N, L] with enough positive and negative frames."""
+    """Return the columns of ``labels`` [N, L] that have enough positive and negative frames."""
     positive = labels.sum(0)
     return np.flatnonzero((positive >= FEWEST) & (len(labels) - positive >= FEWEST))
 
@@ -168,9 +172,10 @@ def _ridge(x: np.ndarray, y: np.ndarray, ridge: float) -> np.ndarray:
 
 
 def average_precision(guess: np.ndarray, label: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return the average precision [R] of scores [N] for labels [N] with frame weights [R, N].
+    """Return the average precision [R] of the scores ``guess`` [N] for ``label`` [N], under each
+    row of frame weights [R, N].
 
-    The result is NaN if no frame with a weight has the label.
+    The result is NaN if no frame with a nonzero weight has the label.
     """
     order = np.argsort(-guess, kind="stable")
     w = weights[:, order]
@@ -190,7 +195,7 @@ def measure(
 ) -> dict[tuple[str, str, str], Score]:
     """Return the score for every (encoder, condition, measure).
 
-    The clean features of the first encoder are the reference for all encoders, and the probe is
+    The clean features of the first encoder are the reference for all encoders; the probe is also
     fitted to them.
     """
     original = next(iter(encoders.values()))
@@ -221,7 +226,7 @@ def measure(
 
 
 def average(scores: Iterable[Score]) -> Score:
-    """Return the mean over conditions, which are resampled together."""
+    """Return the mean over conditions; all conditions use the same resamples."""
     listed = list(scores)
     return Score(
         float(np.mean([s.value for s in listed])), np.mean([s.samples for s in listed], axis=0)

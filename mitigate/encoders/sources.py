@@ -1,6 +1,6 @@
-"""Read frames from a world that renders from any pose, or from a folder of files.
+"""Read frames from a world that can render from arbitrary poses, or from a folder of files.
 
-A source has scenes in two disjoint splits, ``TRAIN`` and ``UNSEEN``, and reads a given number of
+A source has two disjoint sets of scenes, ``TRAIN`` and ``UNSEEN``, and reads a given number of
 frames from each scene.
 """
 
@@ -30,10 +30,12 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-# number of held-out blocks of a single folder; they replace scenes in intervals (heuristic)
+# minimum number of held-out blocks if all frames are in one folder (heuristic); the blocks replace
+# scenes in confidence intervals
 FEWEST_UNSEEN = 5
-NEAR = 0.05  # minimum fraction of depth that must be closer than ``FARTHEST`` metres (heuristic)
-NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth is farther (heuristic)
+# minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
+NEAR = 0.05
+NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth must be farther (heuristic)
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
@@ -54,32 +56,31 @@ class Shot:
 
 @runtime_checkable
 class Source(Protocol):
-    """A source of frames; ``files`` states whether these are files, which may be damaged or
-    change.
-    """
+    """A source of frames; ``files`` is true if it reads files, which may be damaged or change."""
 
     files: bool
 
     def scenes(self, split: str) -> Sequence[str]:
-        """Return the names of the scenes of a split."""
+        """Return the names of the scenes in a split."""
 
     def shots(self, scene: str, count: int, seed: int) -> Iterator[Shot]:
-        """Yield up to ``count`` frames of a scene; equal arguments give equal frames."""
+        """Yield up to ``count`` frames of a scene; the same arguments give the same frames."""
 
 
 class WorldFrames:
-    """Source of single views from random poses in a world, with labels from its truth.
+    """Source of single views from random poses in a world, which also returns ground-truth labels.
 
     Args:
-        world: a ``Placeable`` world (``worlds/world.py``), whose ``scenes`` are for training.
+        world: a ``Placeable`` world (``worlds/world.py``); its ``scenes`` are used for training.
         sensor: "rgb" or "depth".
-        unseen: an episode list whose scenes are the unseen ones.
-        label: the entry of the truth, [views, L] or [L] in {0, 1}, or None for no labels.
-        every: use every n-th view of a panorama.
+        unseen: an episode list, whose scenes are the unseen scenes.
+        label: name of an entry of the ground truth ([views, L] or [L], with values 0 and 1), or
+            None for no labels.
+        every: step between the views of a panorama that are used.
 
     Raises:
-        ValueError: The world cannot render from any pose, it lacks the sensor, or a scene is in
-            both splits.
+        ValueError: The world cannot render from arbitrary poses, it lacks the sensor, or a scene is
+            in both splits.
     """
 
     files = False
@@ -89,14 +90,14 @@ class WorldFrames:
     ) -> None:
         if not isinstance(world, Placeable):
             raise ValueError(
-                f"{type(world).__name__} cannot render from any pose: it needs scenes, enter, "
-                "point and put. Save its frames as PNG and use env=frames env.path=FOLDER, or add "
-                "these to the world (docs/bring-your-own.md)."
+                f"{type(world).__name__} must render from arbitrary poses, which needs scenes, "
+                "enter, point and put. Add these to the world (docs/bring-your-own.md), or save "
+                "its frames as PNG and use env=frames env.path=FOLDER."
             )
         if sensor not in world.sensors:
             raise ValueError(
-                f"{type(world).__name__} has no {sensor}, only {', '.join(world.sensors)}. Set "
-                "agent.sensor, or choose another world (env=...)."
+                f"{type(world).__name__} has no sensor {sensor}, only {', '.join(world.sensors)}. "
+                "Set agent.sensor, or choose another world (env=...)."
             )
         self.world, self.sensor, self.label, self.every = world, sensor, label, every
         train = list(world.scenes)
@@ -104,8 +105,9 @@ class WorldFrames:
         both = sorted(set(train) & set(unseen_scenes))
         if both:
             raise ValueError(
-                f"The scenes {', '.join(both[:3])} are used for training and listed in {unseen}, "
-                "but the report needs unseen scenes. Name another list (evaluation.split=...)."
+                f"The scenes {', '.join(both[:3])} are used for training, but {unseen} also lists "
+                "them, and the report needs unseen scenes. Name another list "
+                "(evaluation.split=...)."
             )
         self._scenes = {TRAIN: train, UNSEEN: unseen_scenes}
 
@@ -135,25 +137,26 @@ class WorldFrames:
 class FolderFrames:
     """Source of frames from the PNG, JPEG and NPY files of a folder and its subfolders.
 
-    Each folder with frames is a scene. In a recording by ``mitigate run``, the recorded scenes are
-    used. A single folder is split into blocks of consecutive frames. Files that cannot be used are
-    reported. Depth that is not a positive number becomes 0.
+    Each folder with frames is a scene. If ``mitigate run`` recorded the folder, the recorded scenes
+    are used instead. If all frames are in one folder, they are split into blocks of consecutive
+    frames, which replace scenes. Files that cannot be used are reported. Depth that is not a
+    positive number becomes 0.
 
     Args:
         path: the folder.
         sensor: "rgb" or "depth".
-        size: side in pixels to which frames are resized; None keeps the size, which must then be
+        size: side in pixels to which frames are resized. None keeps their size, which must then be
             the same for all frames.
-        held_out: fraction of the scenes that are unseen. If the paths of some scenes begin with
-            "val" or "test", exactly these scenes are unseen.
-        block: maximum number of frames per block of a single folder; blocks are smaller if needed,
-            so that five of them can be held out.
+        held_out: fraction of the scenes that are unseen. It has no effect if the paths of some
+            scenes begin with "val" or "test": then exactly these scenes are unseen.
+        block: maximum frames per block if all frames are in one folder. Blocks are smaller if five
+            blocks could not be held out otherwise.
         unit: metres per count of a 16-bit PNG.
 
     Raises:
         FileNotFoundError: The folder does not exist or contains no frame.
-        ValueError: An argument is out of range, there are too few frames, or a file cannot be read,
-            is not depth in metres, or differs in size from the first file.
+        ValueError: An argument is out of range, there are too few frames, or a file is unreadable,
+            is not depth in metres, or has a different size than the first file.
     """
 
     files = True
@@ -172,7 +175,7 @@ class FolderFrames:
         check_options(size, held_out, block, unit)
         self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
         self.held_out, self.block = held_out, block
-        self._first: tuple[Path, tuple[int, ...]] | None = None  # the first file and its shape
+        self._first: tuple[Path, tuple[int, ...]] | None = None  # path and shape of the first frame
         if not self.path.is_dir():
             raise FileNotFoundError(
                 f"There is no folder {path}. Name the folder of the frames: env.path=FOLDER."
@@ -191,9 +194,9 @@ class FolderFrames:
         if not unseen or not train:
             raise ValueError(
                 f"{self.path} has {len(files)} scenes (frames: {sum(map(len, files.values()))}, "
-                f"{self.left_out}), but training and unseen frames must come from different "
-                "scenes. Make one subfolder per scene (names that begin with val or test are "
-                "unseen), or add more frames."
+                f"{self.left_out}), but training frames and unseen frames must come from different "
+                "scenes. Make one subfolder per scene (a name that begins with val or test marks "
+                "an unseen scene), or add more frames."
             )
         return train if split == TRAIN else unseen
 
@@ -217,9 +220,10 @@ class FolderFrames:
         if not scenes:
             other = count_suffixes(plan.other_files) or "none"
             raise FileNotFoundError(
-                f"{self.path} holds no {self.sensor} frames: {plan.other_modality} of the other "
-                f"sensor, {self.left_out}, other files {other}. RGB must be 8-bit RGB in PNG or "
-                "JPEG; depth 16-bit grey PNG or NPY metres (agent.sensor=depth)."
+                f"{self.path} contains no {self.sensor} frames, but {plan.other_modality} frames "
+                f"of the other sensor, {self.left_out}, and other files: {other}. RGB frames must "
+                "be 8-bit RGB in PNG or JPEG. Depth frames must be 16-bit grey PNG, or NPY in "
+                "metres (agent.sensor=depth)."
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")
@@ -247,7 +251,9 @@ Item = TypeVar("Item")
 
 
 def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
-    """Return the last scenes, a share ``held_out`` of all, at least one; empty for one scene."""
+    """Return the last scenes: a fraction ``held_out`` of all scenes, but at least one. If there is
+    only one scene, the list is empty.
+    """
     count = max(1, round(held_out * len(names)))
     return list(names)[-count:] if len(names) > 1 else []
 
@@ -255,11 +261,13 @@ def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
 def split_single(
     scenes: Mapping[str, list[Item]], block: int, held_out: float
 ) -> dict[str, list[Item]]:
-    """Split a single scene into blocks of consecutive frames; several scenes stay unchanged.
+    """If there is only one scene, split it into blocks of consecutive frames; return several scenes
+    unchanged.
 
     Args:
         scenes: frames of each scene.
-        block: frames per block; reduced if fewer than ``FEWEST_UNSEEN`` blocks would be unseen.
+        block: maximum frames per block; it is reduced if fewer than ``FEWEST_UNSEEN`` blocks would
+            be held out.
         held_out: fraction of the blocks that are held out.
     """
     if len(scenes) > 1:
@@ -271,7 +279,7 @@ def split_single(
 
 
 def resized(frame: np.ndarray, size: int | None) -> np.ndarray:
-    """Return a frame with ``size`` pixels on each side, [size, size, C]; None: unchanged."""
+    """Resize a frame to [size, size, C]; if ``size`` is None, keep its size."""
     if size is not None and frame.shape[:2] != (size, size):
         shrinks = size < max(frame.shape[:2])
         kind = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
@@ -301,9 +309,10 @@ def _is_between(value: object, below: float) -> bool:
 
 
 def _metres(depth: np.ndarray) -> np.ndarray:
-    """Return depth with invalid pixels set to 0.
+    """Set invalid depth to 0, and check that the values can be metres.
 
-    If the values cannot be metres, a ValueError is raised whose text is the end of a sentence.
+    If the values cannot be metres, this raises a ValueError; its message is a predicate without a
+    subject.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]
@@ -312,15 +321,15 @@ def _metres(depth: np.ndarray) -> np.ndarray:
         if low > FARTHEST or high < NEAREST:
             side = f"farther than {FARTHEST:g}" if low > FARTHEST else f"nearer than {NEAREST:g}"
             raise ValueError(
-                f"must hold depth in metres, but most of it is {side} (median "
-                f"{np.median(known):g}). For PNG set env.unit to the metres per count (0.001 for "
-                "millimetres), convert NPY to metres"
+                f"must contain depth in metres, but most of it is {side} (median "
+                f"{np.median(known):g}). For PNG, set env.unit to the metres per count (0.001 for "
+                "millimetres). Convert NPY to metres"
             )
     return metres
 
 
 def _left_out(files: Mapping[str, str]) -> str:
-    """Describe how many files are skipped, with one example per reason."""
+    """Return a text with the number of skipped files and one example per reason."""
     first = {why: name for name, why in reversed([*files.items()])}
     counted = Counter(files.values()).most_common(3)
     reasons = [f"{count} as {first[why]}, which {why}" for why, count in counted]
@@ -334,14 +343,14 @@ def source_of(
     split: str,
     label: str | None,
 ) -> Source:
-    """Return the source of frames of an ``env`` config.
+    """Return the source of frames that an ``env`` config describes.
 
-    If the result of ``world`` is already a source (a folder of frames), it is returned. Otherwise
-    frames come from random poses of that world, and the scenes of the list ``split`` are the unseen
-    ones.
+    If ``world()`` returns a source, such as a folder of frames, it is used. If it returns a world,
+    frames are rendered from random poses in this world, and the scenes of the episode list
+    ``split`` are the unseen scenes.
 
     Raises:
-        ValueError: The list does not exist, or the source cannot be used.
+        ValueError: The episode list does not exist, or the source cannot be used.
     """
     result = world()
     if isinstance(result, Source):
@@ -356,13 +365,13 @@ MOST_BYTES = 6 << 30  # maximum size of frames in memory (heuristic)
 
 @dataclass
 class Frames:
-    """The frames of a split, in memory.
+    """All frames of a split, which are kept in memory.
 
     Attributes:
         frames: uint8 [N, H, W, 3] or float32 metres [N, H, W, 1].
         headings: direction of each frame in radians, or None.
         labels: [N, L] in {0, 1}, or None.
-        scene: index of each frame's scene.
+        scene: for each frame, the index of its scene.
         names: names of the scenes.
     """
 
@@ -389,7 +398,7 @@ class Frames:
 def corrupted(
     frames: Frames, index: int, corruption: Corruption, key: Key, sensor: DepthSensor
 ) -> np.ndarray:
-    """Return frame ``index`` under a corruption, as a single observation."""
+    """Corrupt frame number ``index`` as if it were a single observation."""
     name = "depth" if frames.frames.dtype == np.float32 else "rgb"
     heading = frames.headings[index]
     pose = {} if heading is None else {POSE: np.array([0, 0, heading], np.float32)}
@@ -398,12 +407,12 @@ def corrupted(
 
 
 def collect(source: Source, split: str, count: int, seed: int) -> Frames:
-    """Return about ``count`` frames of a split, equally many from each scene.
+    """Return about ``count`` frames of a split, with the same number from each scene.
 
-    A smaller count selects a subset of these frames.
+    A smaller ``count`` gives a subset of these frames.
 
     Raises:
-        ValueError: Frames have several sizes, need too much memory, or are all black.
+        ValueError: The frames differ in size, need too much memory, or are all black.
     """
     scenes = list(source.scenes(split))
     order = generator(seed, "encoder scenes", split).permutation(len(scenes))
@@ -419,8 +428,8 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
             progress.advance()
     if not any(shot.frame.any() for shot in shots):
         raise ValueError(
-            f"All {len(shots)} {split} frames are 0 everywhere: black, or depth without a valid "
-            "pixel. Check the files, or the world's sensors."
+            f"All {len(shots)} {split} frames are 0 in all pixels: they are black, or depth "
+            "without valid pixels. Check the files, or the world's sensors."
         )
     labels = None if shots[0].labels is None else np.stack([s.labels for s in shots])  # type: ignore[misc]
     return Frames(
@@ -433,7 +442,7 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
 
 
 def _check_sizes(shots: list[Shot], count: int) -> None:
-    """Raise ValueError for frames of several sizes, or too many for the memory."""
+    """Raise ValueError if frames differ in size, or if they need too much memory."""
     sizes = {shot.frame.shape for shot in shots}
     if len(sizes) > 1:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""``mitigate.benchmark(agent)``: evaluate an agent under the suite in one call."""
+"""Define ``mitigate.benchmark(agent)``, which evaluates an agent under the suite in one call."""
 
 from __future__ import annotations
 
@@ -48,12 +48,13 @@ from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import RETURN
 from mitigate.worlds.world import Corrupted, World
 
-# default number of episodes (heuristic), for which an SR has an error of about 17 points
+# default number of episodes (heuristic); a success rate then has an error of about 17 points
 EPISODES = 20
 OUT = Path("runs/benchmark")
-# number of clean episodes that are run first; the last one gives the time estimate (heuristic)
+# number of clean episodes that are run first (heuristic); the last one is timed for the estimate
 TIMED = 2
-OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")  # options that ``options=`` may contain
+# options that the argument ``options`` may contain
+OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")
 
 
 def benchmark(
@@ -78,50 +79,55 @@ def benchmark(
     link: str = "",
     out: Path | str | None = None,
 ) -> LeaderboardEntry | Comparison:
-    """Evaluate ``agent`` clean and under a suite of corruptions, and return its entry.
+    """Evaluate ``agent`` on clean frames and under a suite of corruptions; return its leaderboard
+    entry.
 
-    The function first prints how long the evaluation will take. The rows are in ``out``; the same
-    call continues from them.
+    The function first prints how long the evaluation will take. It writes the result rows to
+    ``out``; if it is interrupted, the same call continues from these rows.
 
     Args:
-        agent: any object with the interface in ``mitigate/agents/agent.py``, a path of weights, or
-            a policy of a supported library (``mitigate/agents/policies/``).
-        name: heading of the entry; the default is the folder of the weights or the class of the
-            agent.
-        version: string that identifies state of the agent that cannot be read, such as hooks;
-            without it, rows of such an agent are not reused.
-        split: episode list of the world; None means the default list, or the name of your world.
-        episodes: number of episodes, spread over the list; None means all, as for the leaderboard.
-            The default is 20 episodes of a split, or all of ``listed``.
+        agent: an object with the interface in ``mitigate/agents/agent.py``, a path of weights, or a
+            policy of a supported library (``mitigate/agents/policies/``).
+        name: heading of the entry; the default is the name of the folder with the weights, or of
+            the agent's class.
+        version: string that identifies state of the agent that mitigate cannot read, such as hooks.
+            Without a version, rows of such an agent are not reused.
+        split: name of an episode list of the world. None means the default list, or the name of
+            your world.
+        episodes: number of episodes, which are spread evenly over the list. None means all
+            episodes, as for the leaderboard. The default is 20 episodes of a split, or all episodes
+            in ``listed``.
         suite: a name in ``conf/suite`` or a list of corruptions.
-        severity: from 0 to 1.
-        critical: fractions of the clean success, such as (0.1, 0.5). The call then also searches
-            for the severities at which these are lost, prints them and writes them to
-            ``critical.md`` in ``out``. The search needs more episodes than the printed estimate.
+        severity: severity of the corruptions, from 0 to 1.
+        critical: fractions of the clean success rate, such as (0.1, 0.5). The call then also
+            searches for the severities at which these fractions are lost. It prints the severities
+            and writes them to ``critical.md`` in ``out``. The search needs more episodes than the
+            printed estimate says.
         seed: corruption seed.
-        safeguard: guard for instructions, such as "rules" or "module:callable".
-        restore: guard for frames, such as "checkpoints/restorer".
-        adapt: test-time adaptation: "norm", "tent", "recentre", with ":never" to keep what was
-            learned from episode to episode; or a guard (``mitigate/guards/adaptation``).
-        workers: number of processes; None means one per core if there is enough work. With more
-            than one worker, the call must be under ``if __name__ == "__main__":``, because
-            processes import the script.
-        options: options of the agent and the world: "agent=recurrent", "env.views=1",
+        safeguard: input guard for instructions, such as "rules" or "module:callable".
+        restore: input guard for frames, such as "checkpoints/restorer".
+        adapt: test-time adaptation: "norm", "tent" or "recentre", or a guard
+            (``mitigate/guards/adaptation``). With the suffix ":never", the adaptation is never
+            reset between episodes.
+        workers: number of processes. None means one per core if there is enough work. With more
+            than one worker, the call must be under ``if __name__ == "__main__":``, because each
+            process imports the script.
+        options: options of the agent and the world, such as "agent=recurrent", "env.views=1" and
             "--config-dir=mine".
-        world: function that creates your world; it replaces the world of ``options``. A world of a
-            different class requires ``listed``.
-        listed: the episodes, or an episode file.
+        world: function that creates your world, which replaces the world in ``options``. If your
+            world has a different class, ``listed`` is required.
+        listed: the episodes, or the path of an episode file.
         training_data: description of the training data in the entry.
         link: link in the entry.
-        out: folder of the rows; None means a folder in runs/benchmark.
+        out: folder for the rows; None means a folder in runs/benchmark.
 
     Returns:
-        The leaderboard entry. If the score of the world is "return": the returns, and the fraction
-        of the clean return that is kept.
+        The leaderboard entry. If the score of the world is "return", a comparison with the returns
+        and the fraction of the clean return that is kept.
 
     Raises:
-        ValueError: The agent, an option or a text of the entry is invalid, or ``out`` contains rows
-            of a different world.
+        ValueError: The agent, an option or a text for the entry is invalid, or ``out`` contains
+            rows of a different world.
         FileNotFoundError: Weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
@@ -165,9 +171,10 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite, starting with clean.
+    """Return the config of an evaluation and the conditions of the suite, of which the first is
+    "clean".
 
-    If ``agent`` is a path of weights, the config contains the kind of agent to which they belong.
+    If ``agent`` is a path of weights, the config selects the kind of agent that they belong to.
     """
     seeding.check(seed)
     if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
@@ -182,8 +189,8 @@ def _conditions(
         if not OPTION.match(option):
             raise ValueError(
                 f"{option} has no effect here: options= sets only the agent and its world "
-                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). Everything "
-                'else is an argument of benchmark, such as severity=0.3, suite="quick" or '
+                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). All other "
+                'settings are arguments of benchmark, such as severity=0.3, suite="quick" or '
                 'restore="checkpoints/restorer".'
             )
     if isinstance(agent, (str, Path)):
@@ -203,7 +210,9 @@ def _conditions(
 def _agent(
     agent: Any, name: str | None, config: EvaluateConfig, seed: int, guards: Sequence[str]
 ) -> tuple[Any, str]:
-    """Return the agent (loaded if it is a path), and its heading with the labels of ``guards``."""
+    """Return the agent, which is loaded if it is a path, and its heading, to which ``guards`` are
+    added.
+    """
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
         usual = evaluation.name_of(str(agent))
@@ -213,17 +222,18 @@ def _agent(
 
 
 def _random_policy(world: World, seed: int) -> RandomPolicy:
-    """Return the policy with random actions, whose return the retention needs."""
+    """Return a policy with random actions; the retention of returns needs its return."""
     if world.action_space is None:
         raise ValueError(
-            f"{type(world).__name__} must have action_space (mitigate.core.spaces), from which "
-            "random actions are drawn. The retention of a return is measured against them."
+            f"{type(world).__name__} must have the attribute action_space (mitigate.core.spaces): "
+            "the retention of a return is measured against random actions, which are sampled from "
+            "this space."
         )
     return RandomPolicy(world.action_space, seed)
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
-    """Return the conditions of a suite, except corruptions of frames that the world lacks."""
+    """Return the conditions of a suite without corruptions of sensors that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
     left_out = [
         one.name
@@ -244,19 +254,20 @@ def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corrup
 def checked_world(
     make_world: Any, met: Sequence[Corruption], version: str | None = None
 ) -> tuple[World, dict[str, str]]:
-    """Construct a world and describe how it was constructed (``provenance.first_world``).
+    """Construct a world; return it with a description of how it was constructed
+    (``provenance.first_world``).
 
     Raises:
-        ValueError: ``make_world`` does not return a world, or the world lacks sensors of the agent
-            or of the conditions, or has a different number of views.
+        ValueError: ``make_world`` does not return a world, or the world lacks a sensor that a
+            condition corrupts.
     """
     if not callable(make_world):
         raise ValueError(
-            f"world must be a function that makes a world, got a {type(make_world).__name__}. "
-            "Each process makes its own world."
+            f"world must be a function that creates a world, got a {type(make_world).__name__}. "
+            "Each process creates its own world."
         )
     world, made_by = provenance.first_world(make_world, version)
-    if not hasattr(world, "sensors"):  # the user may pass any object by mistake
+    if not hasattr(world, "sensors"):  # the user may have passed any object by mistake
         kind = type(world).__name__
         raise ValueError(
             f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). For a "
@@ -269,13 +280,13 @@ def checked_world(
 
 
 def _is_own(world: World, config: EvaluateConfig) -> bool:
-    """Return whether the class of the world differs from the config.
+    """Return whether the class of the world differs from that in the config.
 
-    In that case, the episode lists in the config do not apply.
+    If it differs, the episode lists in the config do not apply.
     """
     node = config.env.world
     target = locate(node["_target_"])
-    # the target may be a function
+    # the target may be a function instead of a class
     kind = target if isinstance(target, type) else type(maker(node)())
     return not isinstance(world, kind)
 
@@ -291,28 +302,31 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: There are no episodes, or the user's (``custom``) world has a different class
-            than in the config and no episode list.
+        ValueError: There are no episodes, or the user's world (``custom``) has a different class
+            than the world in the config but no episode list.
     """
     other_class = custom and _is_own(world, config)
     split = split or (provenance.name_of(world) if other_class else config.split)
     if listed is None and other_class:
         raise ValueError(
-            f"The episodes of {config.env.name} cannot run in {provenance.name_of(world)}. Give "
-            'its episodes: listed="mine.json", or a list of Episode (mitigate.worlds.episodes, '
-            "docs/bring-your-own.md). For a gymnasium or torchrl environment they are seeds: "
-            "listed=seeded_episodes(range(20)) (mitigate.worlds.seeded)."
+            f"The episodes of {config.env.name} cannot run in {provenance.name_of(world)}. Pass "
+            'episodes of your world: listed="mine.json", or a list of Episode '
+            "(mitigate.worlds.episodes, docs/bring-your-own.md). For a gymnasium or torchrl "
+            "environment, episodes are seeds: listed=seeded_episodes(range(20)) "
+            "(mitigate.worlds.seeded)."
         )
     if listed is None:
         return split, evaluation.episodes(config.env, split, EPISODES if count is ... else count)
     check_count(None if count is ... else count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
-        raise ValueError(f"listed must be a list of episodes or its file, got {listed!r:.80}.")
+        raise ValueError(
+            f"listed must be a list of episodes or an episode file, got {listed!r:.80}."
+        )
     entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
     for entry in entries:
         if not isinstance(entry, Episode):
             raise ValueError(
-                f"listed must hold only objects of Episode, got {entry!r:.80}. For seeds give "
+                f"listed must contain only Episode objects, got {entry!r:.80}. For seeds, pass "
                 "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
             )
     check_episodes("listed", entries)
@@ -320,8 +334,8 @@ def _episodes(
 
 
 def seconds_per_episode(agent: Any, world: World, episodes: Sequence[Episode]) -> float:
-    """Return the seconds of the last of ``TIMED`` clean episodes, since the first also loads
-    libraries.
+    """Run ``TIMED`` clean episodes and return the seconds of the last one, because the first one
+    also loads libraries.
     """
     with in_eval_mode(agent):
         for episode in episodes[:TIMED]:
@@ -340,10 +354,10 @@ def _print_estimate(
     """Print the number of rollouts and a time estimate, measured on a few clean episodes."""
     total = len(episodes) * len(conditions)
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
-    if processes > 1:  # checked now rather than after the timed episodes
+    if processes > 1:  # checked here, so that an error is raised before the timed episodes
         packed((agent, make_world), "The agent or its world", ALONE)
     world = make_world()
-    for condition in conditions:  # compiles the corruptions
+    for condition in conditions:  # this compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
     each = seconds_per_episode(agent, world, episodes)
     grid = f"{counted(len(episodes), 'episode')} x {counted(len(conditions), 'condition')}"

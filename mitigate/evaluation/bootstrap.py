@@ -1,10 +1,12 @@
 """Compute intervals for SR, SPL, PRS and PRS differences by a paired bootstrap over episodes.
 
 Values have the shape ``[..., N]``, with one column per episode. All conditions and agents use the
-same resamples of the episodes, so that the difficulty of an episode cancels. If an episode has
-several seeds, their mean must be computed first, because episodes are the units that are resampled.
-Episodes in one scene are similar, so intervals for new scenes are wider: episodes with equal
-``units`` [N] are resampled together (cluster bootstrap: Davison and Hinkley 1997, section 3.8).
+same resamples of the episodes, so that the difficulty of an episode cancels in differences. If an
+episode was run with several seeds, the caller must average over the seeds, because episodes are the
+units that are resampled. Episodes in one scene are similar, so intervals that also hold for new
+scenes are wider. For such intervals, ``units`` [N] contains the number of each episode's scene, and
+the episodes of a scene are resampled together (cluster bootstrap: Davison and Hinkley 1997, section
+3.8).
 """
 
 from __future__ import annotations
@@ -23,11 +25,11 @@ RESAMPLES = 10_000
 LEVEL = 0.95
 Z = 1.959964  # quantile of the normal distribution at LEVEL
 _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
-ROUNDING = 1e-9  # tolerance within which resamples are equal (heuristic)
+ROUNDING = 1e-9  # tolerance for the equality of resamples (heuristic)
 NO_INTERVAL = "[–]"
 NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (only one episode, or all equal)."
-CHUNK = 1 << 20  # number of resamples per block (heuristic): 8 MiB of indices
-# number of resamples per matrix product (heuristic): 128 KiB of float64 fit into a core's cache
+CHUNK = 1 << 20  # number of indices per block of resamples (heuristic): 8 MiB
+# number of entries per matrix product (heuristic): 128 KiB of float64 fit into a core's cache
 PART = 1 << 14
 
 
@@ -35,8 +37,8 @@ PART = 1 << 14
 class Estimate:
     """A value with its percentile interval.
 
-    The interval is undefined if its bounds are NaN or equal, as for a single episode or if all
-    resamples are equal.
+    The interval is undefined if its bounds are NaN or equal. This happens with a single episode, or
+    if all resamples are equal.
     """
 
     value: float
@@ -45,7 +47,7 @@ class Estimate:
 
     @property
     def excludes_zero(self) -> bool:
-        """Whether the interval lies on one side of zero."""
+        """Whether the interval is entirely above or below zero."""
         return self.has_width and (self.low > 0 or self.high < 0)
 
     @property
@@ -54,11 +56,11 @@ class Estimate:
         return self.high - self.low > ROUNDING
 
     def text(self, form: str, scale: float = 1.0) -> str:
-        """Return the value and its :meth:`interval` as text."""
+        """Return the value and its interval as text."""
         return f"{scale * self.value:{form}} {self.interval(form, scale)}"
 
     def interval(self, form: str, scale: float = 1.0) -> str:
-        """Return the interval as text, with each bound multiplied by ``scale`` and formatted by
+        """Return the interval as text; its bounds are multiplied by ``scale`` and formatted with
         ``form``.
 
         If the interval is undefined, the text is ``NO_INTERVAL``.
@@ -75,17 +77,18 @@ def resampled_means(
     seed: int = 0,
     units: ArrayLike | None = None,
 ) -> np.ndarray:
-    """Return the means of ``values`` [C, N] over resampled episodes, float64 [resamples, C].
+    """Return, for each resample of the episodes, the mean of each row of ``values`` [C, N]: float64
+    [resamples, C].
 
-    The resamples depend only on the number of units and on ``seed``, so calls on the same episodes
-    are paired.
+    The resamples depend only on the number of units and on ``seed``, so calls with the same
+    episodes use the same resamples.
 
     Args:
-        values: [C, N] or [N].
+        values: array [C, N] or [N].
         resamples: number of resamples.
         seed: seed of the resampling.
-        units: numbers [N]; episodes with equal numbers are resampled together. None: each
-            separately.
+        units: one number per episode [N]; episodes with the same number form one unit, which is
+            resampled as a whole. None makes each episode a unit.
 
     Raises:
         ValueError: There are no values, or some values are not finite.
@@ -93,8 +96,8 @@ def resampled_means(
     table = np.atleast_2d(np.asarray(values, float))
     if table.ndim != 2 or not table.size or not np.isfinite(table).all():
         raise ValueError(
-            f"values must be finite [conditions, episodes], got {table.shape} with "
-            f"{int(np.isnan(table).sum())} NaN. Leave out the episodes that lack a result."
+            f"values must be a finite array [conditions, episodes], got the shape {table.shape} "
+            f"with {int(np.isnan(table).sum())} NaN. Leave out the episodes that lack a result."
         )
     unit = np.arange(table.shape[1]) if units is None else np.unique(units, return_inverse=True)[1]
     times = _times_drawn(int(unit.max()) + 1, resamples, seed)
@@ -106,7 +109,7 @@ def resampled_means(
 
 @lru_cache(maxsize=4)
 def _times_drawn(units: int, resamples: int, seed: int) -> np.ndarray:
-    """Return how often each resample contains each unit, uint16 [resamples, units]."""
+    """Return, for each resample, how often it contains each unit, uint16 [resamples, units]."""
     generator = np.random.Generator(np.random.PCG64(seed))
     times = np.empty((resamples, units), np.uint16)
     for part in np.array_split(times, math.ceil(times.size / CHUNK)):
@@ -125,9 +128,11 @@ def mean(values: ArrayLike, **options: Any) -> Estimate:
 
 
 def share(values: ArrayLike, **options: Any) -> Estimate:
-    """Return the mean of ``values`` [N] between 0 and 1 (successes, SPLs) with its interval.
+    """Return the mean, with its interval, of ``values`` [N] that are between 0 and 1, such as
+    successes and SPLs.
 
-    If all values are 0 or all are 1, all resamples are equal, and Wilson's score interval is used.
+    If all values are 0 or all are 1, all resamples are equal. Then Wilson's score interval is used
+    instead.
     """
     estimate, known = mean(values, **options), np.asarray(values, float)
     units = options.get("units")
@@ -139,10 +144,11 @@ def share(values: ArrayLike, **options: Any) -> Estimate:
 
 
 def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:
-    """Return the mean of each row of ``table`` [K, N] with its interval, or None for a row of NaN.
+    """Return, for each row of ``table`` [K, N], the mean with its interval, or None if all entries
+    are NaN.
 
-    Each mean is computed over the row's episodes that are not NaN, with :func:`mean`, or with
-    :func:`share` if ``shares`` is true. Rows with the same episodes are resampled together.
+    Entries that are NaN are left out. The mean is computed with :func:`mean`, or with :func:`share`
+    if ``shares`` is true. Rows with the same episodes use the same resamples.
     """
     values = np.asarray(table, float)
     groups: dict[bytes, list[int]] = {}
@@ -162,29 +168,29 @@ def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Est
 
 
 def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
-    """Return PRS with its interval, for ``clean`` [N] and ``corrupted`` [K, N] on the same
-    episodes.
+    """Return PRS with its interval, from the values ``clean`` [N] and ``corrupted`` [K, N] of the
+    same episodes.
     """
     value, samples = _prs(clean, corrupted, options)
     return with_interval(value, samples)
 
 
 def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
-    """Return sum(``parts``) / sum(``wholes``), both [N], with its interval."""
+    """Return the ratio sum(parts) / sum(wholes) with its interval; both arrays are [N]."""
     return prs(wholes, parts, **options)
 
 
 def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
-    """Return the paired difference PRS(first) - PRS(second) of two (clean [N], corrupted [K,
-    N]).
+    """Return the paired difference PRS(first) - PRS(second); each argument is a pair (clean [N],
+    corrupted [K, N]).
     """
     counts = {np.shape(part)[-1] for pair in (first, second) for part in pair}
     if len(counts) > 1:
         raise ValueError(
-            "A paired difference needs the same episodes for both, got counts of "
-            f"{', '.join(map(str, sorted(counts)))}."
+            "A paired difference needs the same episodes in both arguments, got "
+            f"{' and '.join(map(str, sorted(counts)))} episodes."
         )
     (a, samples_a), (b, samples_b) = _prs(*first, options), _prs(*second, options)
     return with_interval(a - b, samples_a - samples_b)
@@ -193,7 +199,7 @@ def prs_difference(
 def _prs(
     clean: ArrayLike, corrupted: ArrayLike, options: dict[str, Any]
 ) -> tuple[float, np.ndarray]:
-    """Return the PRS (``metrics.prs``), and the PRS of each resample."""
+    """Return the PRS (``metrics.prs``) of all episodes, and the PRS of each resample."""
     clean, corrupted = np.asarray(clean, float), np.atleast_2d(np.asarray(corrupted, float))
     means = resampled_means(np.stack([clean, corrupted.mean(axis=0)]), **options)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -202,8 +208,8 @@ def _prs(
 
 
 def with_interval(value: float, samples: np.ndarray) -> Estimate:
-    """Return ``value`` with percentiles of ``samples``; undefined ones, whose clean value is 0, are
-    left out.
+    """Return ``value`` with the percentiles of ``samples``, except samples that are undefined
+    because their clean value is 0.
     """
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):

@@ -1,8 +1,8 @@
-"""Compare success, return and retention of a few agents on the same episodes, with paired
+"""Compare the success, return and retention of several agents on the same episodes, with paired
 intervals.
 
-``mitigate.harden`` uses this report, and so does ``mitigate.benchmark`` for tasks without a success
-criterion. ``report.py`` writes the tables of recipes.
+``mitigate.harden`` uses this comparison; ``mitigate.benchmark`` uses it for tasks without a success
+criterion. The tables of recipes are written by ``report.py`` instead.
 """
 
 from __future__ import annotations
@@ -34,12 +34,13 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
 CLEAN = "clean"
-RANDOM = "random"  # name in the rows of random actions
+RANDOM = "random"  # agent name in the rows of random actions
 LABELS = {"rgb": "RGB", "depth": "Depth", "instruction": "Instruction"}
 
 
 class RandomPolicy(Agent):
-    """Agent with uniformly random actions, keyed by a seed and the first observation.
+    """Agent with uniformly random actions, which are determined by a seed and the first
+    observation.
 
     Args:
         space: action space of the world.
@@ -75,9 +76,9 @@ class Line:
 
     Attributes:
         title: name of the measure, such as "SR (%): Clean".
-        values: the value of each agent, by name.
-        changes: the paired difference of each other agent from the first agent, by name.
-        digits: decimal places.
+        values: for each agent, its value.
+        changes: for each agent except the first, the paired difference from the first agent.
+        digits: number of decimal places.
     """
 
     title: str
@@ -88,12 +89,12 @@ class Line:
 
 @dataclass(frozen=True)
 class Comparison:
-    """A comparison of agents; its text is a Markdown table.
+    """A comparison of agents; ``str()`` gives a Markdown table.
 
     Attributes:
-        lines: the lines.
+        lines: the lines of the table.
         agents: names of the agents.
-        about: text on how the agents were measured.
+        about: text that says how the agents were evaluated.
     """
 
     lines: tuple[Line, ...]
@@ -122,16 +123,17 @@ class Comparison:
 
 
 def compare(rows: Iterable[Row]) -> Comparison:
-    """Compare the agents in ``rows``, which must have the same list, severity and success rule.
+    """Compare the agents in ``rows``, which must have the same episode list, severity and success
+    rule.
 
-    If an episode was run under several seeds, the mean over the seeds is used.
+    If an episode was run with several seeds, the mean over the seeds is used.
 
-    Rows with the name ``RANDOM`` do not belong to an agent. They are needed for the retention of
-    returns, (R_corrupted - R_random) / (R_clean - R_random).
+    Rows with the name ``RANDOM`` do not belong to an agent but to random actions. The retention of
+    returns needs them: (R_corrupted - R_random) / (R_clean - R_random).
 
     Raises:
-        ValueError: The agents have no episodes in common, or the first one is no better than random
-            actions.
+        ValueError: The agents have no episodes in common, or the first agent is no better than
+            random actions.
     """
     rows = list(rows)
     if not rows:
@@ -141,7 +143,9 @@ def compare(rows: Iterable[Row]) -> Comparison:
         cells[row["name"], row["corruption"]][row["episode_id"]].append(row)
     episodes = sorted(set.intersection(*(set(by_episode) for by_episode in cells.values())))
     if not episodes:
-        raise ValueError("The agents must share episodes. Evaluate all of them on the same list.")
+        raise ValueError(
+            "The agents must have episodes in common. Evaluate all agents on the same list."
+        )
     agents = tuple(dict.fromkeys(name for name, _ in cells if name != RANDOM))
     names = [name for name in dict.fromkeys(name for _, name in cells) if name != CLEAN]
     scores = _Scores(cells, episodes, agents)
@@ -176,19 +180,21 @@ def compare(rows: Iterable[Row]) -> Comparison:
 
 @dataclass(frozen=True)
 class _Scores:
-    """The measures of agents by (agent, corruption), over the same episodes."""
+    """The result rows by (agent, corruption) and episode, from which measures are computed."""
 
     cells: Mapping[tuple[str, str], Mapping[str, Sequence[Row]]]
     episodes: Sequence[str]
     agents: Sequence[str]
 
     def values(self, agent: str, corruption: str, measure: str) -> np.ndarray:
-        """Return the values [N] of the episodes, each as the mean over its seeds."""
+        """Return one value per episode [N], which is the mean over its seeds."""
         by_episode = self.cells[agent, corruption]
         return np.array([np.mean([row[measure] for row in by_episode[e]]) for e in self.episodes])
 
     def lines(self, measure: str, label: str, names: Sequence[str], scale: float) -> list[Line]:
-        """Return the lines of a measure: the mean over corruptions, clean, and each corruption."""
+        """Return the lines of a measure: its mean over corruptions, its clean value, and its value
+        for each corruption.
+        """
         by_condition = {
             name: {agent: scale * self.values(agent, name, measure) for agent in self.agents}
             for name in (CLEAN, *names)
@@ -203,13 +209,14 @@ class _Scores:
         for name, values in by_condition.items():
             lines.append(self._line(f"{label}: {title(name)}", values, scale * (scale > 1)))
         largest = max(np.abs(values).max() for v in by_condition.values() for values in v.values())
-        digits = 1 if largest >= 10 else 2  # returns of 0 to 1 need more than one decimal place
+        # returns between 0 and 1 need more than one decimal place
+        digits = 1 if largest >= 10 else 2
         return [replace(line, digits=digits) for line in lines]
 
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
         """Return one line.
 
-        ``most`` is the value of a success in a measure with Wilson's interval, otherwise 0.
+        If the measure has Wilson's interval, ``most`` is the value of a success; otherwise it is 0.
         """
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
@@ -217,7 +224,9 @@ class _Scores:
         return Line(heading, estimates, changes)
 
     def retention(self, names: Sequence[str]) -> list[Line]:
-        """Return the lines of the retention of returns, for all corruptions and for each one."""
+        """Return the lines with the retention of returns: for all corruptions together, and for
+        each one.
+        """
         random = self.values(RANDOM, CLEAN, RETURN)
         self.check_skill(RETURN, "returns")
         groups = (
@@ -233,13 +242,13 @@ class _Scores:
         if value <= random:
             raise ValueError(
                 f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than "
-                f"random actions ({random:.2f}), so there is no performance to preserve. Train it "
-                "further, or check that it gets the observations that it was trained on."
+                f"random actions ({random:.2f}), so there is no performance to preserve. Train the "
+                "policy further, or check that it gets the observations that it was trained on."
             )
 
     def prs(self, names: Sequence[str]) -> list[Line]:
-        """Return the lines of PRS-SR by sensor, or no lines if an agent never succeeds on clean
-        frames.
+        """Return the lines with PRS-SR, one per modality, or no lines if an agent never succeeds on
+        clean frames.
         """
         if not all(self.values(agent, CLEAN, "success").any() for agent in self.agents):
             return []
@@ -252,11 +261,12 @@ class _Scores:
     def _ratio(
         self, heading: str, measure: str, names: Sequence[str], base: np.ndarray | float = 0.0
     ) -> Line:
-        """Return the mean over ``names`` of (corrupted - base) / (clean - base).
+        """Return the line with the mean of (corrupted - base) / (clean - base) over the corruptions
+        ``names``.
 
         PRS divides by the clean success of the same agent, as the paper does. Retention divides by
-        the clean return of the first agent, so an agent cannot raise its retention by a lower
-        clean return.
+        the clean return of the first agent, so that an agent cannot get a higher retention by a
+        lower clean return.
         """
         values: dict[str, tuple[float, np.ndarray]] = {}
         for agent in self.agents:

@@ -1,4 +1,4 @@
-"""Convert the names in a suite to the conditions of an evaluation."""
+"""Convert the names of corruptions in a suite to the conditions of an evaluation."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ if TYPE_CHECKING:
 
 
 def suite_of(*modalities: str) -> list[str]:
-    """Resolve ``${suite:rgb,depth}`` in a config to clean and the suite's corruptions of these
-    sensors.
+    """Resolve ``${suite:rgb,depth}`` in a config to "clean" and all corruptions of these sensors in
+    the standard suite.
     """
     from mitigate.corruptions.registry import names
 
@@ -24,10 +24,10 @@ def suite_of(*modalities: str) -> list[str]:
 
 
 def unseen_of(half: str, *modalities: str) -> list[str]:
-    """Resolve ``${unseen:test,rgb,depth}`` in a config to clean and unseen corruptions of these
-    sensors.
+    """Resolve ``${unseen:test,rgb,depth}`` in a config to "clean" and the unseen corruptions of
+    these sensors.
 
-    ``half``: "validation", "test" or "both".
+    ``half`` selects the set of unseen corruptions: "validation", "test" or "both".
     """
     from mitigate.corruptions.registry import unseen_names
 
@@ -39,19 +39,21 @@ OmegaConf.register_new_resolver("unseen", unseen_of, replace=True)
 
 
 def suite_conditions(suite: Mapping[str, Any]) -> list[str]:
-    """Return the names of a suite's conditions. Raises ValueError for a suite without
-    conditions.
-    """
+    """Return the names of a suite's conditions; raise ValueError if the suite has no conditions."""
     if "conditions" not in suite:
-        raise ValueError("suite has no conditions. List them in its file: conditions: [clean, ...]")
+        raise ValueError(
+            "suite has no conditions. Add a list to its file, such as conditions: [clean, spatter]"
+        )
     return list(suite["conditions"])
 
 
 def conditions(names: list[str], severity: float, severity_depth: float | None) -> list:
-    """Return one Corruption per name or pair of names, without repeats; ``clean`` has severity 0.
+    """Return one Corruption per name, without repetitions; a name may be a pair, and "clean" gets
+    severity 0.
 
     Raises:
-        ValueError: There are no names, a name is unknown, or a pair has two severities.
+        ValueError: There are no names, a name is unknown, or the corruptions of a pair would have
+            different severities.
     """
     from mitigate.corruptions import CLEAN, Corruption
     from mitigate.corruptions.registry import AND, FAULTS, known, parts
@@ -60,13 +62,13 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     allowed = ("clean", *known("rgb", "depth", "instruction"), *FAULTS)
     if not names:
         raise ValueError(
-            "conditions must not be empty. Name some, such as [clean,spatter], or give null for "
-            "the conditions of the suite."
+            "conditions must not be empty. Give a list, such as [clean,spatter], or null for the "
+            "conditions of the suite."
         )
     for part in (part for name in names for part in parts(name)):
         if part not in allowed:
             raise ValueError(unknown("condition", part, allowed))
-    severity = check_severity(severity)  # checked even if all conditions are clean
+    severity = check_severity(severity)  # the check is needed even if all conditions are clean
     depth = severity if severity_depth is None else check_severity(severity_depth)
     corruptions = [
         CLEAN if name == "clean" else check_gate(Corruption(name, severity))
@@ -77,16 +79,18 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
             corruptions[place] = Corruption(corruption.name, depth)
         elif AND in corruption.name and "depth" in corruption.modalities and depth != severity:
             raise ValueError(
-                f"The pair {corruption.name} has one severity, but severity is {severity:g} and "
-                f"severity_depth {depth:g}. Leave out severity_depth or the pair."
+                f"Both corruptions of the pair {corruption.name} have the same severity, but "
+                f"severity is {severity:g} and severity_depth is {depth:g}. Leave out "
+                "severity_depth or the pair."
             )
     return corruptions
 
 
 def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str) -> None:
-    """Raise ValueError for corruptions of sensors that the world named ``world`` lacks.
+    """Raise ValueError if ``met`` contains corruptions of sensors that the world lacks; ``world``
+    is its name.
 
-    A fault that affects both sensors also applies to an agent with only one of them.
+    A fault that affects both sensors may also be used if only one of them exists.
     """
     from mitigate.corruptions.record import ACTION
     from mitigate.corruptions.registry import record
@@ -101,12 +105,12 @@ def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str)
     if missing:
         usable = [name for name in (RGB, DEPTH) if name in available]
         solution = (
-            f"Choose another, such as suite={usable[0]}."
+            f"Choose another suite, such as suite={usable[0]}."
             if usable
             else f"Only frames named {RGB} and {DEPTH} are corrupted: use these names for the "
             "world's sensors (entries= of GymWorld)."
         )
         raise ValueError(
-            f"The suite has {', '.join(missing)}, but the world {world} has only "
+            f"The suite contains {', '.join(missing)}, but the world {world} has only the sensors "
             f"{', '.join(available)}. {solution}"
         )

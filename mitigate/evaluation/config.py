@@ -1,6 +1,7 @@
-"""Define the options of ``conf/evaluate.yaml``, and column and folder names that depend on them.
+"""Define the types of the options in ``conf/evaluate.yaml``, and the names of table columns and
+output folders that depend on them.
 
-Training uses parts of these options. Table columns and output folders have these names.
+Training also uses some of these options.
 """
 
 from __future__ import annotations
@@ -19,10 +20,10 @@ from mitigate.core.addresses import check_choice
 from mitigate.core.conf import CONF
 from mitigate.evaluation import conditions  # noqa: F401 - registers ${suite:...} of conf/suite
 
-# name of the report at the end of an agent's training
+# import path of the report at the end of an agent's training
 REPORT = "mitigate.training.reports.before_after.report_before_after"
-TRAINING_OPTIONS = ("finetune.", "cost.")  # agent options that affect only training
-# maximum number of workers on all machines of a launcher together (heuristic)
+TRAINING_OPTIONS = ("finetune.", "cost.")  # prefixes of agent options that affect only training
+# maximum total number of workers on all machines of a launcher (heuristic)
 MOST_WORKERS = 100_000
 
 Entries = TypeVar("Entries")
@@ -30,7 +31,7 @@ Entries = TypeVar("Entries")
 
 @dataclass
 class EvaluationConfig:
-    """The evaluation that follows a training."""
+    """Options of the evaluation at the end of a training."""
 
     enabled: bool = True
     split: str = "val_unseen"
@@ -40,7 +41,7 @@ class EvaluationConfig:
 
 @dataclass
 class WeightsConfig:
-    """Paths of the shipped weights for the chosen kind of agent, if there are any."""
+    """Paths of the shipped weights for the chosen kind of agent, or None if there are none."""
 
     base: str | None = None
     teacher: str | None = None
@@ -48,7 +49,7 @@ class WeightsConfig:
 
 @dataclass
 class FinetuneConfig:
-    """How recipes fine-tune a trained policy of the chosen kind of agent."""
+    """Options with which recipes fine-tune a trained policy of the chosen kind of agent."""
 
     lr: float = 4e-4
     follow_oracle: float = 0.25
@@ -56,10 +57,11 @@ class FinetuneConfig:
 
 @dataclass
 class CostConfig:
-    """Cost of the chosen kind of agent, relative to the topological agent; None if unknown.
+    """Computing time of the chosen kind of agent, relative to the topological agent; None means
+    unknown.
 
-    The estimate at the start of training uses the costs of a step on random views, a step on
-    rollouts and an evaluated episode.
+    The time estimate at the start of training uses three costs: of a training step on random views,
+    of a training step on rollouts, and of an evaluated episode.
     """
 
     views: float | None = None
@@ -68,8 +70,8 @@ class CostConfig:
 
 
 def times(cost: float, factor: float | None) -> float | None:
-    """Resolve ``${times:2.7,${cost.episodes}}`` in a config to the product, or None if a factor is
-    unknown.
+    """Resolve ``${times:2.7,${cost.episodes}}`` in a config to the product of the numbers, or to
+    None if ``factor`` is unknown.
     """
     return None if factor is None else cost * factor
 
@@ -79,7 +81,7 @@ OmegaConf.register_new_resolver("times", times, replace=True)
 
 @dataclass
 class EnvConfig:
-    """Options in a file of ``conf/env``; entries without a field also become attributes."""
+    """Options in a file of ``conf/env``; other entries of the file also become attributes."""
 
     name: str = ""
     world: dict[str, Any] = field(default_factory=dict)
@@ -90,13 +92,15 @@ class EnvConfig:
 
 @dataclass
 class SuiteConfig:
-    """Options in a file of ``conf/suite``; entries without a field also become attributes."""
+    """Options in a file of ``conf/suite``; other entries of the file also become attributes."""
 
     conditions: list[str] = field(default_factory=list)
 
 
 def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
-    """Construct a ``kind`` from ``entries``; entries without a field also become attributes."""
+    """Construct a dataclass ``kind`` from ``entries``; entries for which it has no field also
+    become attributes.
+    """
     declared = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     config = kind(**{name: value for name, value in entries.items() if name in declared})
     vars(config).update(entries)
@@ -105,12 +109,11 @@ def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
 
 @dataclass
 class EvaluateConfig:
-    """Types of the options in ``conf/evaluate.yaml``, which documents each of them."""
+    """The options in ``conf/evaluate.yaml`` with their types; the file documents each option."""
 
     runs: str = "runs"
     checkpoint: str | None = None
-    # text, not an enum: check_choice checks it, because Hydra's error would print an invalid
-    # value
+    # not an enum: check_choice checks the value, because Hydra's error would print an invalid value
     safeguard: Any = "none"
     restore: str | None = None
     adapt: str | None = None
@@ -143,7 +146,7 @@ conf.register("evaluate", EvaluateConfig)
 
 
 def read(cfg: DictConfig) -> EvaluateConfig:
-    """Return the composed options of an evaluation as typed data.
+    """Convert the composed config of an evaluation to typed options.
 
     Raises:
         ValueError: an entry refers to a missing entry.
@@ -155,12 +158,12 @@ def read(cfg: DictConfig) -> EvaluateConfig:
 
 
 def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
-    """Raise ValueError for settings that have the right type but an invalid value."""
+    """Raise ValueError for options that have the right type but an invalid value."""
     unused = [option for option in overrides if option.lstrip("+").startswith(TRAINING_OPTIONS)]
     if unused:
         raise ValueError(
-            f"{unused[0]} has no effect: it is an option of trainings, and an evaluation changes "
-            "no weights. Leave it out."
+            f"{unused[0]} must be left out: it is an option for trainings, and an "
+            "evaluation does not train."
         )
     check_choice(config.safeguard)
     seeding.check(config.seed)
@@ -170,22 +173,23 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
         check_losses(config.critical)
     if config.workers is not None and not 1 <= config.workers <= MOST_WORKERS:
         raise ValueError(
-            f"workers must be a number of processes from 1 to {MOST_WORKERS}, or null for one per "
-            f"core, got {config.workers}."
+            f"workers must be between 1 and {MOST_WORKERS} processes, or null (one per core), got "
+            f"{config.workers}."
         )
 
 
 def changed(overrides: Sequence[str]) -> list[str]:
-    """Return the options that change the agent or its input, as parts of a column name."""
+    """Return the options that change the agent or its input, as text for a column name."""
     stripped = [option.lstrip("+") for option in overrides]
     relevant = [option for option in stripped if option.startswith(("agent.", "env.size="))]
     return [_plain(option.removeprefix("agent.")).strip("-") for option in relevant]
 
 
 def column_of(name: str, seed: int, folder: Path) -> str:
-    """Return the column name of a training run: its recipe and the options in its folder name.
+    """Return the column name of a training run: ``name`` and the options in the name of its folder.
 
-    Otherwise runs with different settings would be treated as different seeds of the same column.
+    Without the options, runs with different settings would be treated as different seeds of one
+    column.
     """
     options = folder.name.partition(f"-seed{seed}-")[2]
     return f"{name}+{options}" if options else name
@@ -194,7 +198,8 @@ def column_of(name: str, seed: int, folder: Path) -> str:
 def default_folder(config: EvaluateConfig, name: str) -> str:
     """Return ``runs/evaluate/<name>-[<world>-]<split>-s<severity>``.
 
-    Worlds of this project are omitted, because their split names are unique.
+    The name of the world is left out for worlds of this project, because the names of their splits
+    are unique.
     """
     custom = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
     split = f"{config.env.name}-{config.split}" if custom else config.split
@@ -208,5 +213,5 @@ def _severities(config: EvaluateConfig) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return ``text`` with dashes for characters that a file name should not contain."""
+    """Replace characters that a file name should not contain by dashes."""
     return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)

@@ -1,4 +1,6 @@
-"""Run the shortest-path oracle and the random agent for ``mitigate controls``."""
+"""Run the two control agents of ``mitigate controls``: a shortest-path oracle and a random
+agent.
+"""
 
 from __future__ import annotations
 
@@ -18,12 +20,12 @@ from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluator import EpisodeTask, Job, jobs_of, run_missing
 from mitigate.worlds.world import World, expert_of
 
-# probability of STOP in random actions, which gives about 100 actions per episode
+# probability that a random action is STOP; episodes then have about 100 actions
 _STOP_SHARE = 0.01
 
 
 class OracleAgent:
-    """Agent that takes the actions of the world's expert and reads no frames."""
+    """Agent that takes the actions of the world's expert and does not read frames."""
 
     def __init__(self, world: World) -> None:
         self.world = world
@@ -36,9 +38,10 @@ class OracleAgent:
 
 
 class RandomAgent:
-    """Agent with random forward, left and right actions and a small probability of STOP.
+    """Agent that takes random actions: forward, left or right, and with a small probability STOP.
 
-    The random generator is keyed by the id ``episode``, because episodes may have equal texts.
+    The random generator depends on the id in ``episode``, because several episodes may have the
+    same text.
     """
 
     episode = ""
@@ -53,7 +56,7 @@ class RandomAgent:
 
 
 class ControlTask(EpisodeTask):
-    """Task that runs episodes of a control agent, one per group."""
+    """Worker task that runs the episodes of a control agent, with one episode per group."""
 
     def work(self, jobs: Sequence[Job]) -> Iterator[rows.Row]:
         if isinstance(self.agent, RandomAgent):
@@ -64,7 +67,8 @@ class ControlTask(EpisodeTask):
 def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
     """Run both control agents on the episodes of ``config`` and return their rows.
 
-    The rows are also written to the folder ``out``; rows that are already there are reused.
+    The rows are also written to the folder ``out``. Rows that this folder already contains are
+    reused.
     """
     env, split = config.env, config.split
     chosen = episodes(env, split, config.episodes)

@@ -1,9 +1,10 @@
 """Evaluate the shortest-path oracle and a random agent: ``mitigate controls split=val_unseen``.
 
-They bound every result: the oracle shows that the episodes of a world can be solved with the
-low-level actions, and the random agent shows how often chance succeeds. Both run without
-corruption, on the episodes of split=, episodes= and env= (as for mitigate evaluate). out= names the
-folder of the rows (runs/controls). If the command is run again, it runs only missing episodes.
+The two agents are the upper and the lower reference for every result. The oracle shows that the
+episodes of a world can be solved with the low-level actions, and the random agent shows how often
+random actions succeed. Both agents run without corruption. As in mitigate evaluate, split=,
+episodes= and env= choose the episodes. out= names the folder for the rows; the default is
+runs/controls. If the command is run again, it runs only missing episodes.
 """
 
 from __future__ import annotations
@@ -21,7 +22,7 @@ from mitigate.evaluation.bootstrap import share
 from mitigate.evaluation.config import read
 
 OUT = "runs/controls"
-# options of an evaluation that also apply to this command
+# options of ``mitigate evaluate`` that this command also accepts
 OPTIONS = ("env", "split", "episodes", "out")
 
 
@@ -51,7 +52,7 @@ def main() -> int:
 
 
 def _check(options: Sequence[str]) -> None:
-    """Raise ValueError for an option of an evaluation that would have no effect."""
+    """Raise ValueError for an option of ``mitigate evaluate`` that has no effect here."""
     for option in options:
         name = re.split(r"[.=]", option.lstrip("+~"))[0]
         if not option.startswith("-") and name not in OPTIONS:

@@ -1,10 +1,11 @@
-"""Search for critical severities, and compute them and areas under retention curves.
+"""Search for critical severities, and compute areas under retention curves.
 
 The critical severity of a corruption is the severity at which an agent has lost a fraction ``loss``
 of its clean success rate. SR is noisy and not strictly monotone in severity, so the value is read
-from a decreasing (isotonic) fit of SR over all measured severities. An agent that has lost less at
-severity 1 has a critical severity above 1 (it is censored), which is ``inf`` here. The area is the
-mean retention over severities from 0 to 1. Definitions: ``docs/reference/metrics.md``.
+from a decreasing (isotonic) fit of SR over all measured severities. If an agent has lost less than
+the fraction ``loss`` at severity 1, its critical severity is above 1 (censored), and is ``inf``
+here. The area is the mean retention over severities from 0 to 1. Definitions:
+``docs/reference/metrics.md``.
 """
 
 from __future__ import annotations
@@ -24,19 +25,19 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import references
 from mitigate.worlds.seeded import RETURN
 
-# The search stops when a crossing lies between two measured severities that are this close. In a
-# simulation with 100 episodes, the error is then similar to that of a grid with step 0.05
+# The search stops when the two measured severities around a crossing are at most this far apart. In
+# a simulation with 100 episodes, the error was then similar to the error of a grid with step 0.05
 # (docs/results/critical-severity.md#simulation).
 WIDTH = 0.1
 
-Curve = dict[float, np.ndarray]  # maps severities to the success [N] of the episodes of one seed
+Curve = dict[float, np.ndarray]  # maps each severity to the success of the N episodes of one seed
 
 
 def check_losses(losses: Sequence[float]) -> list[float]:
     """Return ``losses`` in ascending order, without repeats.
 
     Raises:
-        ValueError: There are no losses, or one is not between 0 and 1.
+        ValueError: The list is empty, or a loss is not between 0 and 1.
     """
     if not losses or not all(0 < loss < 1 for loss in losses):
         raise ValueError(
@@ -49,8 +50,8 @@ def check_losses(losses: Sequence[float]) -> list[float]:
 def decreasing(values: ArrayLike) -> np.ndarray:
     """Return the least-squares decreasing fit of ``values`` [..., K] (isotonic regression).
 
-    Uses the min-max formula of Barlow et al. (1972): the fit at k is the minimum over a <= k of the
-    maximum over b >= k of the mean of values a to b.
+    Uses the min-max formula of Barlow et al. (1972): fit[k] is the minimum over a <= k of the
+    maximum over b >= k of mean(values[a], ..., values[b]).
     """
     values = np.asarray(values, float)
     count = values.shape[-1]
@@ -64,7 +65,7 @@ def decreasing(values: ArrayLike) -> np.ndarray:
 
 
 def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.ndarray:
-    """Return the severity [...] at which the fit of ``rates`` has lost ``loss`` of its first value.
+    """Return the lowest severity at which the fit of ``rates`` has lost a fraction ``loss``.
 
     Between measured severities, the fit is interpolated linearly.
 
@@ -74,14 +75,15 @@ def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.n
         loss: fraction of the clean success rate, between 0 and 1.
 
     Returns:
-        The critical severities: ``inf`` if less is lost at all severities, NaN if the clean rate
-        is 0.
+        The critical severities. A value is ``inf`` if the loss is smaller at every severity, and
+        NaN if the clean rate is 0.
     """
     rates, at = np.asarray(rates, float), np.asarray(severities, float)
     fit = decreasing(rates)
     target = (1 - loss) * rates[..., :1]
     lost = fit <= target + ROUNDING
-    after = np.maximum(lost.argmax(axis=-1), 1)  # the clean fit is not below the clean rate
+    # index 0 is excluded, because the fit at severity 0 is never below the clean rate
+    after = np.maximum(lost.argmax(axis=-1), 1)
     high = np.take_along_axis(fit, after[..., None] - 1, axis=-1)[..., 0]
     low = np.take_along_axis(fit, after[..., None], axis=-1)[..., 0]
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -91,11 +93,11 @@ def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.n
 
 
 def area(severities: Sequence[float], rates: ArrayLike) -> np.ndarray:
-    """Return the mean retention [...] over severities from 0 to 1 (trapezoidal rule).
+    """Return the mean retention over the severities from 0 to 1, by the trapezoidal rule.
 
     Args:
         severities: K severities in ascending order, from 0 (clean) to 1.
-        rates: success rates [..., K]. Their measured values are used, not the decreasing fit.
+        rates: success rates [..., K], as measured and not as fitted.
     """
     rates = np.asarray(rates, float)
     steps = np.diff(np.asarray(severities, float))
@@ -104,11 +106,13 @@ def area(severities: Sequence[float], rates: ArrayLike) -> np.ndarray:
 
 
 def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[float]:
-    """Return the severities to measure next, given SR by measured severity (0, 1 and others).
+    """Return the severities to measure next.
 
-    For each loss, this is the middle of the two measured severities between which the fit crosses.
-    The list is empty if the bounds are at most :data:`WIDTH` apart, or if no curve crosses the
-    level.
+    ``rates`` maps each measured severity, including 0 and 1, to the success rate.
+
+    For each loss, the next severity lies midway between the two measured severities where the fit
+    falls to ``1 - loss`` of the clean rate. A loss is skipped if the two measured severities are at
+    most :data:`WIDTH` apart, or if the fit stays above ``1 - loss`` of the clean rate.
     """
     severities = sorted(rates)
     fit = decreasing([rates[at] for at in severities])
@@ -117,17 +121,20 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
         lost = fit <= (1 - loss) * rates[0.0] + ROUNDING
         after = int(lost.argmax())
         if lost.any() and severities[after] - severities[after - 1] > WIDTH + ROUNDING:
-            # rounded, so that rows have the same severity on every computer
+            # rounding makes the severity in the rows the same on every computer
             chosen.add(round((severities[after - 1] + severities[after]) / 2, 6))
     return sorted(chosen)
 
 
 def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corruption]:
-    """Return the conditions with which a search starts: clean, ``conditions``, and each at
-    severity 1.
+    """Return the conditions with which a search starts.
+
+    The search starts with the clean condition, the given ``conditions``, and each of their
+    corruptions at severity 1.
 
     Raises:
-        ValueError: There is nothing to search for, or the world has no success.
+        ValueError: ``conditions`` contains no corruption or a severity of 0, or the world has no
+            success criterion.
     """
     corrupted = [one for one in conditions if one.name != "clean"]
     if rule == RETURN:
@@ -147,13 +154,14 @@ def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corrup
 def search(
     measure: Callable[..., list[Row]], conditions: Sequence[Corruption], losses: Sequence[float]
 ) -> list[Row]:
-    """Measure ``conditions``, and bisect severities until all crossings are located.
+    """Measure ``conditions``, and bisect severities until all critical severities are located.
 
-    All severities have the same episodes and keys. A decision depends only on rows that the search
-    requested earlier, so an interrupted search continues with the same severities.
+    All severities use the same episodes and random keys. The next severities depend only on rows
+    that the search requested earlier, so an interrupted search continues with the same severities.
 
     Args:
-        measure: function of ``conditions`` that runs the episodes under these and returns the rows.
+        measure: function that runs the episodes under its argument ``conditions`` and returns the
+            rows.
         conditions: the conditions from :func:`first_conditions`.
         losses: fractions of the clean success.
 
@@ -184,14 +192,16 @@ def search(
 
 @dataclass(frozen=True)
 class Score:
-    """A critical severity or an area, a mean of several, or a difference of two columns.
+    """A critical severity or an area.
+
+    The score may be a mean over corruptions and seeds, or a difference between two columns.
 
     Attributes:
         estimate: value and interval; ``inf`` means above 1.
-        episodes: number of episodes, which are the same for all severities, columns and seeds.
-        bound: "" for an exact value. Means and differences count values above 1 as 1. So the true
-            value is at least ("lower") or at most ("upper") this one, or, if both columns have
-            values above 1, either ("unknown").
+        episodes: number of episodes. All severities, columns and seeds use the same episodes.
+        bound: "" if the value is exact. Means and differences count values above 1 as 1. The bound
+            is "lower" if the true value may be larger than ``estimate``, "upper" if it may be
+            smaller, and "unknown" if both columns of a difference have values above 1.
     """
 
     estimate: Estimate
@@ -207,7 +217,8 @@ class Scores:
         grid: the results.
         losses: fractions of the clean success.
         columns: labels of the columns; the first one is the reference of differences.
-        corruptions: corruptions that at least one column has measured clean and at severity 1.
+        corruptions: corruptions for which at least one column has clean results and results at
+            severity 1.
     """
 
     grid: Grid
@@ -217,15 +228,15 @@ class Scores:
 
     @property
     def measures(self) -> tuple[float | None, ...]:
-        """The losses, followed by None, which stands for the area."""
+        """The losses, followed by None, which represents the area."""
         return (*self.losses, None)
 
     @property
     def groups(self) -> list[tuple[str, ...]]:
-        """Each corruption by itself. If all columns share several corruptions, these follow
-        together.
+        """The groups of corruptions that have scores.
 
-        The scores of the last group are means over its corruptions.
+        Each corruption is a group. If all columns share two or more corruptions, the last group
+        contains all of them, and its scores are means over them.
         """
         every = tuple(
             n for n in self.corruptions if all(self.seeds((c,), (n,)) for c in self.columns)
@@ -234,12 +245,12 @@ class Scores:
 
     @property
     def comparisons(self) -> list[tuple[str, ...]]:
-        """Each column, followed by pairs of each other column and the reference."""
+        """The single columns, and the pairs (column, reference) of each other column."""
         first, *others = self.columns
         return [(first,), *((c,) for c in others), *((c, first) for c in others)]
 
     def seeds(self, columns: Sequence[str], names: Sequence[str]) -> list[int]:
-        """Return the seeds with curves of all ``columns`` under all corruptions ``names``."""
+        """Return the seeds for which all ``columns`` have a curve per corruption in ``names``."""
         runs = [set(self.grid.runs[column]) for column in columns]
         return [
             seed
@@ -248,10 +259,11 @@ class Scores:
         ]
 
     def curve(self, column: str, name: str, seed: int) -> Curve:
-        """Return the curve of a seed, or an empty dict if there are no clean successes or severity
-        1 was not measured.
+        """Return the curve of a seed.
 
-        Severities that have less than a fraction :data:`COVERAGE` of the episodes are left out.
+        The curve is empty if there are no clean successes or if severity 1 was not measured. The
+        curve omits severities with results for less than a fraction :data:`COVERAGE` of the
+        episodes.
         """
         curve = {
             at: values
@@ -268,7 +280,10 @@ class Scores:
 
     @cached_property
     def results(self) -> dict[tuple[tuple[str, ...], tuple[str, ...], float | None], Score]:
-        """All scores by (columns, corruptions, loss); a pair of columns has a difference."""
+        """All scores by (columns, corruptions, loss).
+
+        The score of a pair of columns is a difference.
+        """
         return {
             (columns, names, loss): self.score(columns, names, loss)
             for columns in self.comparisons
@@ -277,8 +292,10 @@ class Scores:
         }
 
     def score(self, columns: Sequence[str], names: Sequence[str], loss: float | None) -> Score:
-        """Return the mean score of a column over corruptions and seeds, or for two columns the
-        first one's minus the second's, over the same seeds, episodes and resamples.
+        """Return the mean score over corruptions and seeds of one column, or the difference of two.
+
+        The difference is the first column's mean minus the second column's mean. Both means use the
+        same seeds, episodes and bootstrap resamples.
 
         Args:
             columns: one or two labels, which must have seeds in common.
@@ -304,7 +321,10 @@ class Scores:
 def _scored(
     curves: list[Curve], common: np.ndarray, units: np.ndarray, loss: float | None
 ) -> np.ndarray:
-    """Return the critical severity or area of C curves [C, 1 + resamples], first of the data."""
+    """Return the critical severities or areas of C curves, shape [C, 1 + resamples].
+
+    Column 0 holds the values of the data. The other columns hold the values of the resamples.
+    """
     tables = [np.stack([values[common] for values in curve.values()]) for curve in curves]
     table = np.concatenate(tables)
     means = np.concatenate([table.mean(axis=1)[None], resampled_means(table, units=units)])
@@ -318,14 +338,14 @@ def _scored(
 
 
 def _restricted(values: np.ndarray, loss: float | None) -> np.ndarray:
-    """Return critical severities of at most 1, or areas, which have no upper limit."""
+    """Return critical severities clipped to at most 1; return areas unchanged."""
     return values if loss is None else np.minimum(values, 1)
 
 
 def _estimate(values: np.ndarray) -> Estimate:
-    """Return the first value with the percentile interval of the others.
+    """Return the first value with the percentile interval of the other values.
 
-    The bounds are samples, because they may be infinite.
+    Each bound is one of the values and is not interpolated, because values may be infinite.
     """
     known = np.sort(values[1:][~np.isnan(values[1:])])  # a resample may contain no clean success
     if not len(known):
@@ -340,17 +360,18 @@ def scores(
     against: str | None = None,
     drawn: str = DRAWN[0],
 ) -> list[Scores]:
-    """Return the scores of each split, episode list, suite version and success rule in ``rows``.
+    """Return one Scores object per split, episode list, suite version and success rule in ``rows``.
 
     Args:
-        rows: result rows of clean episodes and of corruptions at severity 1 and others.
+        rows: result rows of clean episodes and of corruptions at severity 1 and at other
+            severities.
         losses: fractions of the clean success.
-        against: the column with which the others are compared; None means "base" or "before", or
-            else the first column.
+        against: the column with which the other columns are compared. The default is the column
+            "base" or "before" if it exists, and otherwise the first column.
         drawn: unit that the bootstrap resamples, "episode" or "scene".
 
     Raises:
-        ValueError: A loss or ``against`` is invalid, or no column has a corruption at severity 1.
+        ValueError: A loss or ``against`` is invalid, or no column has results at severity 1.
     """
     chosen, rows = tuple(check_losses(losses)), list(rows)
     first = references(rows, against)
@@ -365,7 +386,7 @@ def scores(
             results.append(replace(every, columns=columns, corruptions=usable))
     if not results:
         raise ValueError(
-            "A critical severity needs rows of clean successes and of a corruption at severity 1, "
-            "and there are none. Run `mitigate evaluate checkpoint=... critical=[0.1,0.5]` first."
+            "A critical severity needs clean rows with successes and rows of a corruption at "
+            "severity 1. Run `mitigate evaluate checkpoint=... critical=[0.1,0.5]` first."
         )
     return results

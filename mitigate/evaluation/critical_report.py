@@ -18,7 +18,7 @@ from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLE
 from mitigate.evaluation.critical import Score, Scores
 from mitigate.evaluation.report import MOST_HEATMAPS, NO_PICTURE, is_drawable
 
-GRID_STEP = 0.05  # step of the full grid with which the number of episodes is compared
+GRID_STEP = 0.05  # step between the severities of the full grid that ``_cost`` compares with
 
 
 def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
@@ -44,7 +44,11 @@ def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
 
 
 def markdown(part: Scores) -> str:
-    """Return a table per measure and one of its differences, by corruption, and notes."""
+    """Return the Markdown text of ``critical.md``.
+
+    Each measure has a table of values and a table of differences between columns. Notes follow the
+    tables.
+    """
     grid = part.grid
     seeds = {s for columns, names, _ in part.results for s in part.seeds(columns, names)}
     columns = [names for names in part.comparisons if len(names) == 1]
@@ -78,7 +82,7 @@ def markdown(part: Scores) -> str:
 
 
 def _table(part: Scores, comparisons: Sequence[tuple[str, ...]], loss: float | None) -> str:
-    """Return the table of one measure, whose columns are agents or pairs of agents."""
+    """Return the table of one measure. The table's columns are agents or pairs of agents."""
     lines = []
     for names in part.groups:
         label = title(names[0]) if len(names) == 1 else f"**Mean of {len(names)} corruptions**"
@@ -106,14 +110,14 @@ def _cell(score: Score | None, columns: int) -> str:
 
 
 def _episodes(part: Scores) -> str:
-    """Return the number of episodes, or the range if the scores have different numbers."""
+    """Return the number of episodes as text, or a range if it differs between the scores."""
     counts = [score.episodes for score in part.results.values()]
     least = "" if min(counts) == max(counts) else f"{min(counts)} to "
     return f"{least}{counted(max(counts), 'episode')}"
 
 
 def _cost(part: Scores) -> str:
-    """Return a text on the number of corrupted episodes, compared with a full grid."""
+    """Return a sentence that compares the number of corrupted episodes with a full grid."""
     measured = whole = 0
     for column in part.columns:
         for name in part.corruptions:

@@ -1,4 +1,4 @@
-"""Compute SR against severity, for the curves of ``severity.png`` and of the HTML page."""
+"""Compute the curves of SR against severity in ``severity.png`` and in the HTML page."""
 
 from __future__ import annotations
 
@@ -10,12 +10,12 @@ from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import METRICS, Grid
 
-RESAMPLES = 2000  # number of resamples for a point's interval (heuristic)
+RESAMPLES = 2000  # number of bootstrap resamples for the interval of each point (heuristic)
 
 
 @dataclass(frozen=True)
 class Curve:
-    """SR against severity of one column under one corruption.
+    """SR as a function of severity, for one column and one corruption.
 
     Attributes:
         column: label of the column.
@@ -31,7 +31,7 @@ class Curve:
 
 
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
-    """Return a curve for each column with ``corruption`` at ``least`` or more severities."""
+    """Return the curves of columns that measured ``corruption`` at ``least`` severities or more."""
     lines = (_curve(grid, column, corruption, least) for column in grid.columns)
     return [line for line in lines if line is not None]
 

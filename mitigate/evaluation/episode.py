@@ -40,7 +40,7 @@ def run_episode(
 ) -> dict[str, Any]:
     """Run one episode with ``guards`` and return its measures.
 
-    ``decisions`` is the number of observations that the agent read.
+    The measure ``decisions`` is the number of observations that the agent read.
 
     Raises:
         ValueError: A step failed, an action is not an integer, or the agent or the world raised
@@ -76,7 +76,9 @@ def _no_exit(name: str) -> Iterator[None]:
 
 
 def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
-    """Return the ``answer`` of ``agent`` as an action of ``space`` (None means integer actions).
+    """Return ``answer``, which ``agent.act`` returned, as an action of ``space``.
+
+    If ``space`` is None, actions are integers.
 
     Raises:
         ValueError: The answer is not an action of the space.
@@ -105,7 +107,7 @@ def run_side_by_side(
     """Run each job (episode, corruption, seed), and yield the measures in order.
 
     The number of episodes that run at once equals the number of worlds. The measures are the same
-    as with :func:`run_episode`. Guards must not change the agent here.
+    as those of :func:`run_episode`. ``guards`` must not contain guards that change the agent.
     """
     waiting, free = deque(enumerate(jobs)), list(worlds)
     running: dict[int, tuple[_Rollout, World, Any]] = {}
@@ -166,21 +168,21 @@ class _Rollout:
         if self.steps >= MOST_STEPS:
             raise ValueError(
                 f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its task end "
-                "it (gymnasium: max_episode_steps=), or give limit=, which cuts episodes and "
-                "counts them."
+                "it (gymnasium: max_episode_steps=), or set limit=, which ends long episodes and "
+                "reports how many it ended."
             )
         self.observation = self.guarded.step(action)
         self.steps += 1
 
     def failed(self, error: ValueError) -> ValueError:
-        """Return ``error`` with the episode, the condition and the step added to its message."""
+        """Return ``error`` with the episode, the condition and the step named in its message."""
         return ValueError(f"{self.name}, step {self.steps + 1}: {error_message(error)}")
 
     def measures(self) -> dict[str, Any]:
         """Return the measures as plain numbers, in the order of ``MEASURES``."""
         frames_read = self.corrupted.frames_read
         values: dict[str, Any] = {**self.corrupted.measures(), "decisions": frames_read}
-        # NumPy scalars and arrays of one number have ``item``.
+        # NumPy scalars and arrays have the method ``item``, which returns a plain number.
         plain = {n: v if missing_members(v, ("item",)) else v.item() for n, v in values.items()}
         values = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
         return {name: values.pop(name) for name in MEASURES if name in values} | values
@@ -199,7 +201,7 @@ def instruction(episode: Episode, corruption: Corruption, seed: int) -> str:
 
 
 def start_of(agent: Agent, episode: Episode, corruption: Corruption, seed: int) -> EpisodeStart:
-    """Return the input of guards: the corrupted instruction and prompt of an episode.
+    """Return what guards receive before an episode: the corrupted instruction and prompt.
 
     Raises:
         ValueError: "white_box" is used with an agent that has no system prompt.
@@ -222,9 +224,9 @@ def instructed(
     seed: int,
     guards: Guards = NO_GUARDS,
 ) -> Iterator[None]:
-    """Reset the agent with the corrupted and guarded instruction.
+    """Reset the agent with the instruction that was corrupted and then filtered by the guards.
 
-    Inside the block, the agent has the corrupted prompt, and guards are attached to it.
+    Inside the ``with`` block, the agent has the corrupted prompt, and guards are attached to it.
     """
     contract = as_agent(agent)
     prompt = contract.system_prompt

@@ -30,7 +30,9 @@ TASKS = {"vln": "follow a route", "ogn": "find an object"}  # descriptions of in
 
 
 def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
-    """Return ``count`` episodes of a split's shipped list (all if None), chosen by :func:`spread`.
+    """Return ``count`` episodes of a split's shipped list, chosen by :func:`spread`.
+
+    If ``count`` is None, all episodes are returned.
 
     Raises:
         ValueError: The split is unknown, the count is below 1, or the list is empty, contains an id
@@ -49,11 +51,13 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
 
 
 def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
-    """Return a function from a number to a training episode, for guards that measure an agent.
+    """Return a function that maps a number to a training episode.
+
+    Guards that measure the agent before an evaluation use this function.
 
     Args:
         world: the world.
-        training: the config of its training episodes; None: unknown.
+        training: the config of the world's training episodes, or None if it is unknown.
     """
 
     def draw(number: int) -> Episode:
@@ -64,10 +68,10 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
             return seeded_episodes([FIRST_TRAINING_SEED + number])[0]
         if training is None:
             raise ValueError(
-                f"The training episodes of {type(world).__name__} are unknown, on which "
-                "adapt=recentre measures clean features. Measure them on episodes of yours: "
+                f"adapt=recentre measures clean features on training episodes, but those of "
+                f"{type(world).__name__} are unknown. Measure the features on your own episodes: "
                 "guard = Recentre(); guard.calibrate(agent, world, lambda number: episodes[number])"
-                " (mitigate.guards.adaptation.recentre), and give adapt=guard."
+                " (mitigate.guards.adaptation.recentre). Then pass adapt=guard."
             )
         source = build.maker(training)()
         return source.draw(generator(0, "calibration", number), (0, 1))
@@ -76,12 +80,14 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
 
 
 def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
-    """Return ``count`` episodes (all if None) that are spread evenly over the list, in list order.
+    """Return ``count`` episodes that are spread evenly over the list, in list order.
+
+    If ``count`` is None, all episodes are returned.
 
     Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
-    layouts. The chosen indices i are those with the smallest fractional parts of i times the golden
-    ratio, which are spread evenly for any count. A smaller choice is always a subset of a
-    larger one, so rows of 40 episodes can be reused for 100.
+    layouts. The chosen indices i are those for which i times the golden ratio has the smallest
+    fractional part. These indices are spread evenly for any count. A smaller selection is always a
+    subset of a larger one, so an evaluation of 100 episodes can reuse the rows of 40.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
@@ -105,7 +111,7 @@ def check_episodes(source: str, listed: Sequence[Episode]) -> None:
     if not listed:
         raise ValueError(f"{source} must list at least one episode.")
     if twice:
-        raise ValueError(f"{source} has the episode {twice[0]} twice. Give each a unique id.")
+        raise ValueError(f"{source} has the episode {twice[0]} twice. Each id must be unique.")
     if silent:
         raise ValueError(f"The episode {silent[0]} of {source} has no instruction.")
 
@@ -117,7 +123,7 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
         agent: the agent.
         chosen: the episodes.
         name: name of the agent.
-        split: name of a split with tasks that the agent supports, for the message.
+        split: name of a split with tasks that the agent supports; the warning suggests this split.
     """
     from mitigate.agents.agent import as_agent
 
@@ -137,8 +143,10 @@ def _in_words(tasks: Sequence[str]) -> str:
     return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))
 
 
-LIST_HASH = "episodes-{split}.sha256"  # name of the file with the hash of a split's episode file
-LARGEST = 1 << 16  # number of characters of this file that are read (heuristic; it has one line)
+# name of the file that stores the hash of a split's episode file
+LIST_HASH = "episodes-{split}.sha256"
+# maximum number of characters read from a hash file, which has one line (heuristic)
+LARGEST = 1 << 16
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -146,9 +154,9 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
     """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
 
     Raises:
-        ValueError: The rows belong to a different episode list, or the earlier hash is damaged.
-            Without this check, such rows would be treated as finished, because rows identify
-            episodes only by id.
+        ValueError: The rows belong to a different episode list, or the stored hash is damaged.
+            Without this check, rows of a different list would be treated as finished, because rows
+            identify episodes only by id.
     """
     note = folder / LIST_HASH.format(split=split)
     digest = sha256(find(source))
@@ -157,7 +165,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
             words = file.read(LARGEST).split()
         if not words or not _SHA256.fullmatch(words[0]):
             raise ValueError(
-                f"{note} must begin with a sha256, and is empty or damaged. Copy it back, or move "
+                f"{note} must begin with a sha256, but is empty or damaged. Copy it back, or move "
                 f"{folder} aside and evaluate again."
             )
         if words[0] != digest:
@@ -172,7 +180,8 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
     """Return the rows of each episode list, ordered by the first row of each list.
 
-    Agents that have an episode in common belong to the same list, directly or through other agents.
+    Agents belong to the same list if they have an episode in common, directly or through a chain of
+    other agents.
     """
     rows = list(rows)
     by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)

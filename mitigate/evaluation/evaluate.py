@@ -31,8 +31,7 @@ DECISIONS = "safeguard.jsonl"  # name of the log with a safeguard's decision on 
 
 
 def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
-    """Evaluate the weights in ``cfg.checkpoint``, and return the folder with the rows and the
-    table.
+    """Evaluate the weights in ``cfg.checkpoint``; return the folder with the rows and the table.
 
     Args:
         cfg: the composed options.
@@ -50,12 +49,12 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
 
 
 def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Path:
-    """Evaluate like :func:`run`, but with typed options that were already checked."""
+    """Evaluate as :func:`run` does, but with typed options that were already checked."""
     env = config.env
     where = launcher.chosen(config.launcher)
     chosen = episodes(env, config.split, config.episodes)
     met = conditions(config.condition_names, config.severity, config.severity_depth)
-    # slow imports come after the checks of the options
+    # these imports are slow, so they follow the checks of the options
     from mitigate.core import build
     from mitigate.evaluation import provenance
     from mitigate.evaluation.critical import first_conditions, search
@@ -81,7 +80,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
         source = env.episodes[config.split]
         notes = provenance.keep(out, first, made_by, config.split, chosen, source)
         lock.expect(out / ROWS, *notes)
-        print(  # printed after all checks, so that an error is the only output
+        print(  # printed after all checks, so that a failed check prints only its error
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
             f"{config.severity:g}",
@@ -110,7 +109,7 @@ def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Pat
 
 
 def _column(config: EvaluateConfig, overrides: Sequence[str]) -> str:
-    """Return the column name: the weights, the options that change the agent, and its guards."""
+    """Return the column name, which names the weights, the options of the agent, and its guards."""
     from mitigate.guards.opening import labels
 
     default_name = name_of(config.checkpoint or config.agent["_target_"].rpartition(".")[2])
@@ -173,7 +172,7 @@ def write_critical(rows: list[dict[str, Any]], losses: Sequence[float], out: Pat
 def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | None = None) -> None:
     """Join row files into ``out/table.md`` and pictures, and print the table.
 
-    ``selected`` contains the rows to use if the files also hold other rows; None uses all.
+    If ``selected`` is not None, the printed table contains only these rows of the files.
     """
     from mitigate.evaluation import report, rows
     from mitigate.evaluation.sections import sections
@@ -193,7 +192,7 @@ hydra_main = conf.hydra_program("evaluate", lambda cfg: run(cfg, HydraConfig.get
 
 
 def _add_kind_of_agent() -> None:
-    """Add the kind of agent that the weights belong to to the command line."""
+    """Add to the command line the kind of agent to which the weights belong."""
     if any("checkpoint=" in option for option in sys.argv[1:]):
         from mitigate.agents.building import with_kind
 

@@ -1,4 +1,4 @@
-"""Evaluate agents in closed loop, on the same episodes with the same random keys.
+"""Evaluate agents in closed loop, all on the same episodes with the same random keys.
 
 The result of an episode does not depend on other episodes. Each row is written as soon as it is
 computed, and an interrupted evaluation resumes where it stopped. All conditions of an episode run
@@ -43,22 +43,22 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
-WORTH = 40  # minimum number of episodes per process (heuristic): 4 s at 0.1 s each
+WORTH = 40  # minimum number of episodes per process (heuristic); at 0.1 s per episode they take 4 s
 LOCAL = LauncherConfig()  # the default launcher: worker processes on this machine
 _PAUSE = 1.0  # minimum seconds between two writes
 
-# episode, corruption, and the entries of the row except measures
+# the episode, the corruption, and the entries of the result row except the measures
 Job = tuple[Episode, Corruption, dict[str, Any]]
 
 
 @dataclass
 class EpisodeTask:
-    """Task that runs jobs (``mitigate/core/workers.py``) and returns each row's label with
-    measures.
+    """A task for ``mitigate/core/workers.py`` that runs jobs and yields their result rows.
 
-    Each process calls ``make_world``. A label holds "seed". ``classes`` is the hash in ``Known``,
-    which worker processes compare with their own. ``streams`` holds all jobs of a condition in
-    order if a guard is continual: episodes before an unfinished one run again, without a result.
+    Each process calls ``make_world``. The label of each job has the key "seed". ``classes`` is the
+    hash ``Known.classes``, which worker processes compare with a hash of their own classes. If a
+    guard is continual, ``streams`` holds all jobs of each condition in order. For such a guard,
+    finished episodes also run again, and their new results are discarded.
     """
 
     agent: Any
@@ -76,8 +76,8 @@ class EpisodeTask:
     def ready(self) -> Iterator[None]:
         """Use one torch thread, fp32 and eval mode inside the context.
 
-        So results do not depend on the number of processes, nor on a surrounding training run in
-        bf16. Afterwards, the previous modes of the networks are restored.
+        So the results do not depend on the number of processes or on the precision of a training
+        run that calls the evaluation. Afterwards, the previous modes of the networks are restored.
         """
         threads = torch.get_num_threads()
         torch.set_num_threads(1)
@@ -92,11 +92,12 @@ class EpisodeTask:
             torch.set_num_threads(threads)
 
     def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
-        """Yield the rows of ``jobs``, which should belong to one episode, because frames are
-        cached.
+        """Yield the rows of ``jobs``.
+
+        The jobs should belong to one episode, because frames of an episode are cached.
         """
         assert self.world is not None, "work() is called while ready()"
-        # features that were computed before an adaptation must not be used after it
+        # a guard that adapts the agent makes cached features invalid
         agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
         repeated: Sequence[Job] = ()
         if self.guards.continual:
@@ -130,13 +131,13 @@ class EpisodeTask:
             yield run_episode(self.agent, world, *run, self.guards)
 
     def name(self, job: Job) -> str:
-        """Return a text with the episode and its condition."""
+        """Return a text that names the episode and its condition."""
         return f"episode {job[0].episode_id}, {job[1].name}"
 
 
 def _together(agent: Any, world: Any) -> int:
     """Return how many episodes the agent can run at once in worlds of this kind."""
-    # an inherited or delegated ``beside()`` may return worlds of a different class
+    # an inherited ``beside()`` may return worlds of another class, so it is not used
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
 
@@ -161,7 +162,7 @@ def evaluate(
     version: str | None = None,
     known: Known | None = None,
 ) -> list[dict[str, Any]]:
-    """Evaluate an agent and return its rows, which are also in the file ``out``.
+    """Evaluate an agent, write its rows to the file ``out``, and return them.
 
     The entry ``agent`` in a row is the fingerprint of the agent, including its sensors and guards.
     Rows do not depend on ``workers`` or ``launcher``.
@@ -179,8 +180,8 @@ def evaluate(
         workers: number of processes; None means one per core if there is enough work.
         launcher: where the workers run (``cluster/launcher.py``).
         guards: guards between the world and the agent (``guards/guard.py``).
-        version: string that identifies state of the agent that cannot be read, so that its rows can
-            be reused (``agents/fingerprint.py``).
+        version: string that the user chooses for an agent whose state cannot be read completely.
+            Rows with the same string are reused (``agents/fingerprint.py``).
         known: the agent's fingerprint, if it was computed earlier.
 
     Raises:
@@ -261,8 +262,9 @@ def run_missing(
 def jobs_of(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
-    """Return all jobs in the order of episodes, each with the entries of its row except
-    measures.
+    """Return all jobs in the order of episodes.
+
+    Each job contains the entries of its row, except the measures.
     """
     return [
         (
@@ -312,7 +314,7 @@ def _condition(job: Job) -> tuple[str, float]:
 
 
 def _by_condition(jobs: list[Job]) -> dict[tuple[str, float], list[Job]]:
-    """Return the jobs of each condition, in order."""
+    """Return the jobs of each condition, in the order of ``jobs``."""
     streams: dict[tuple[str, float], list[Job]] = {}
     for job in jobs:
         streams.setdefault(_condition(job), []).append(job)
@@ -320,7 +322,7 @@ def _by_condition(jobs: list[Job]) -> dict[tuple[str, float], list[Job]]:
 
 
 def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
-    """Return groups of at least ``least`` jobs, each with one or more complete episodes."""
+    """Return groups of at least ``least`` jobs. The jobs of an episode are in the same group."""
     groups: list[list[Job]] = []
     for _, group in groupby(jobs, lambda job: job[0].episode_id):
         if groups and len(groups[-1]) < least:
@@ -341,7 +343,8 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
                 progress.advance()
             if pending and time.monotonic() - last_write >= _PAUSE:
                 done = pending
-                pending = []  # reset before writing, so that a failing write is not repeated below
+                # reset before the write, so that ``finally`` does not repeat a failed write
+                pending = []
                 last_write = time.monotonic()
                 rows.append(out, done)
     finally:
@@ -352,7 +355,8 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
 def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     """Sort the rows with these identities in the file ``out``, and return them (``rows.unique``).
 
-    Only these rows change places, so that the file does not depend on the number of processes.
+    As a result, the order of rows in the file does not depend on the number of processes. Rows with
+    other identities keep their places.
 
     Raises:
         FolderLostError: Rows are missing.

@@ -1,4 +1,4 @@
-"""Arrange result rows for tables by column (agent), condition and episode, and find gaps.
+"""Arrange result rows by agent (the table column), condition and episode, and find gaps.
 
 Rows with different splits, episode lists, suite versions or success rules are in different
 :class:`Grid` objects.
@@ -30,7 +30,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
-BLOCKS = {  # blocks of this project's corruptions; corruptions of other packages have no block
+BLOCKS = {  # the blocks contain this project's corruptions; those of other packages are in no block
     "RGB": names("rgb"),
     "Depth": names("depth"),
     "Instruction": names("instruction"),
@@ -38,7 +38,8 @@ BLOCKS = {  # blocks of this project's corruptions; corruptions of other package
     "unseen depth": unseen_names("depth"),
     **{f"{family} faults": fault_names(family) for family in FAMILIES},
 }
-FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))  # the paper's corruptions of frames
+# corruptions of RGB and depth frames in the NavTrust paper
+FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))
 # each of these kinds has its own table
 SUITE, UNSEEN_KIND, PAIRS = "", "unseen corruptions", "pairs of corruptions"
 KINDS = (SUITE, UNSEEN_KIND, *(f"{family} faults" for family in FAMILIES), PAIRS)
@@ -46,10 +47,10 @@ PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this
 
 
 def kind(corruption: str) -> str:
-    """Return the table that contains a corruption; each table is one of :data:`KINDS`.
+    """Return the name of the table that shows a corruption, one of :data:`KINDS`.
 
-    Corruptions that other packages define are in the table of the suite. A pair with
-    ``intermittent`` is a temporal fault.
+    The suite's table also shows corruptions that other packages define. A pair that contains
+    ``intermittent`` counts as a temporal fault.
     """
     if AND in corruption and parts(corruption)[0] != GATE:
         return PAIRS
@@ -59,10 +60,10 @@ def kind(corruption: str) -> str:
 
 
 def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
-    """Return the rows of each table, with the clean rows of its agents.
+    """Return the rows of each table, including the clean rows of its agents.
 
-    So the numbers in the table of the suite do not depend on other measurements. Agents without
-    corrupted rows are in the table of the suite.
+    Each table uses only its own rows, so other measurements do not change the suite's table. Agents
+    without corrupted rows are shown in the suite's table.
     """
     rows = list(rows)
     kinds = {row["corruption"]: kind(row["corruption"]) for row in rows}
@@ -83,10 +84,11 @@ def _column(row: Row) -> tuple:
 
 
 def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]:
-    """Return the corruptions that a complete PRS over ``block`` needs, given those ``measured``.
+    """Return the corruptions that a complete PRS over ``block`` needs.
 
-    :data:`PROMPT_ONLY` is needed only if it was measured. Each half of the unseen corruptions
-    (validation, test) is needed only if at least one corruption of that half was measured.
+    :data:`PROMPT_ONLY` is needed only if it is in ``measured``. The unseen corruptions consist of a
+    validation part and a test part. The corruptions of one of these parts are needed only if
+    ``measured`` contains at least one of them.
     """
     every = tuple(n for n in BLOCKS.get(block, measured) if n in measured or n != PROMPT_ONLY)
     halves = {UNSEEN[name].half for name in measured if name in UNSEEN}
@@ -94,7 +96,11 @@ def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]
 
 
 def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str, ...]]]:
-    """Return the measured corruptions of each half, by block and heading, if both were measured."""
+    """Return the validation and test parts of each block of unseen corruptions, by heading.
+
+    ``blocks`` contains the measured corruptions. A block is left out if its validation part or its
+    test part was not measured.
+    """
     by_block = {
         block: {
             f"{block}, {half}": tuple(n for n in names if n in UNSEEN and UNSEEN[n].half == half)
@@ -108,10 +114,12 @@ def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str,
 def label_columns(
     measured: Iterable[tuple[str, str, int]],
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
-    """Return a dict from column labels to (name, agents), given all (name, agent sha, seed).
+    """Return a dict that maps column labels to (name, agent hashes).
+
+    ``measured`` lists the (name, agent hash, seed) of every measured agent.
 
     Agents with the same name and different seeds are the training seeds of one column. Otherwise
-    each agent has a separate column, with its sha in the label.
+    each agent has its own column, whose label contains the agent's hash.
     """
     seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
     for name, agent, seed in measured:
@@ -128,7 +136,7 @@ def label_columns(
 
 
 def _unique_digits(agents: Iterable[str]) -> int:
-    """Return how many leading digits (at least 6) distinguish ``agents``."""
+    """Return the number of leading digits (at least 6) that tells all hashes ``agents`` apart."""
     agents = set(agents)
     digits = 6
     while len({agent[:digits] for agent in agents}) < len(agents):
@@ -136,18 +144,21 @@ def _unique_digits(agents: Iterable[str]) -> int:
     return digits
 
 
-# a corruption counts in a PRS if at least this fraction of the clean episodes was measured under
-# it (heuristic)
+# a PRS includes a corruption only if at least this fraction of the clean episodes was also measured
+# under that corruption (heuristic)
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
-STEPS = "steps"  # the cells also contain this value for the HTML page
+STEPS = "steps"  # number of steps, which the HTML page shows
 DRAWN = ("episode", "scene")  # units that the bootstrap can resample
 _Run = dict[tuple[str, float, str], np.ndarray]  # maps (corruption, severity, metric) to values [N]
 
 
 @dataclass(frozen=True)
 class Gap:
-    """A table cell with missing episodes, which has ``have`` of ``want`` episodes."""
+    """A table cell with missing episodes.
+
+    The cell contains ``have`` episodes instead of ``want``.
+    """
 
     column: str
     corruption: str
@@ -162,10 +173,10 @@ class Retention:
 
     Attributes:
         corruptions: names of the K corruptions.
-        clean: [N].
-        corrupted: [K, N], for the same N episodes.
-        units: [N], a number per episode; the bootstrap resamples episodes with the same number
-            together, as one unit.
+        clean: clean values of N episodes, shape [N].
+        corrupted: values of the same episodes under each corruption, shape [K, N].
+        units: a number per episode. The bootstrap resamples episodes with the same number together,
+            as one unit.
     """
 
     corruptions: tuple[str, ...]
@@ -187,19 +198,21 @@ class Grid:
         split: name of the split.
         suite: version of the corruption suite.
         rule: success rule.
-        columns: (name, agent shas) by column label.
-        agents: ``agents[label][seed]`` is the sha of the agent of a seed.
-        seeds: pooled seeds by (label, severity).
-        unfinished: seeds that are excluded, by (label, severity), with the number of their rows and
-            the number of rows of a complete seed.
+        columns: the pair (name, agent hashes) of each column, by label.
+        agents: ``agents[label][seed]`` is the hash of the agent with that training seed.
+        seeds: the seeds whose results are averaged, by (label, severity).
+        unfinished: the incomplete seeds, which are excluded, by (label, severity). Each seed is
+            mapped to its number of rows and the number of rows of a complete seed.
         episodes: ids of the N episodes.
-        cells: float64 [N] by (label, corruption, severity, metric), the mean over ``seeds``, or NaN
-            if a row is missing. There is one clean cell per severity, over its seeds.
+        cells: the values of each episode by (label, corruption, severity, metric), as float64. A
+            value is the mean over ``seeds``, or NaN if a row is missing. Each severity has its own
+            clean cell, because the seeds may differ between severities.
         runs: ``runs[label][seed]`` holds the cells of a seed by (corruption, severity, metric).
         drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
-        units: [N]; episodes with equal numbers are resampled together.
-        cut: text by label on how many episodes were cut by a limit, if any.
-        begins: id of the first episode if a different grid differs only in its list, else empty.
+        units: a number per episode. Episodes with equal numbers are resampled together.
+        cut: for each label with episodes that a step limit ended, a text with their number.
+        begins: id of the first episode if another grid has the same split, suite and rule but a
+            different episode list; otherwise empty.
     """
 
     split: str
@@ -219,18 +232,22 @@ class Grid:
 
     @property
     def heading(self) -> str:
-        """The name of the split; with several episode lists, also the id of the first episode."""
+        """The name of the split.
+
+        If there are several episode lists, the id of the first episode is added.
+        """
         split = "unnamed split" if self.split == "unnamed" else self.split
         return f"{split} from {self.begins}" if self.begins else split
 
     def cell(self, label: str, corruption: str, severity: float, metric: str) -> np.ndarray:
-        """Return the values [N] of a cell, which are all NaN if nothing was measured."""
+        """Return the values of a cell, one per episode; all are NaN if nothing was measured."""
         empty = np.full(len(self.episodes), np.nan)
         return self.cells.get((label, corruption, severity, metric), empty)
 
     def over(self, labels: Iterable[str], seeds: Iterable[int], severity: float) -> Grid:
-        """Return the grid of columns at ``severity`` with only ``seeds``, which all columns must
-        have.
+        """Return the grid of the columns ``labels`` at ``severity``, restricted to ``seeds``.
+
+        All these columns must have results for these seeds.
         """
         seeds = tuple(seeds)
         cells = {
@@ -243,9 +260,10 @@ class Grid:
         return replace(self, cells=cells)
 
     def paired(self, labels: Iterable[str], severity: float) -> Grid:
-        """Return a grid for comparing columns, with only their common seeds if there are any.
+        """Return a grid for paired comparisons of the columns ``labels``.
 
-        With common seeds, corruptions have the same random keys.
+        If the columns have common seeds, the grid contains only these seeds. With common seeds, all
+        columns met corruptions with the same random keys.
         """
         labels = tuple(labels)
         common = self.common(labels, severity)
@@ -262,7 +280,7 @@ class Grid:
 
     @cached_property
     def corruptions(self) -> list[str]:
-        """The measured corruptions in the order of the blocks, followed by all others."""
+        """The measured corruptions in the order of the blocks, then those that are in no block."""
         measured = {name for _, name, _, _ in self.cells if name != "clean"}
         known = [name for block in BLOCKS.values() for name in block if name in measured]
         return known + sorted(measured.difference(known))
@@ -273,12 +291,14 @@ class Grid:
         return [label for label in self.columns if label in measured]
 
     def agents_at(self, label: str, severity: float) -> list[str]:
-        """Return the shas of a column's agents at ``severity``, in the order of seeds."""
+        """Return the hashes of a column's agents at ``severity``, in the order of seeds."""
         return [*dict.fromkeys(self.agents[label][s] for s in self.seeds[label, severity])]
 
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
-        """Return the measured corruptions at ``severity`` by block; the block "Pairs" holds pairs
-        of corruptions, and "Other" all remaining ones.
+        """Return the corruptions measured at ``severity``, by block.
+
+        The block "Pairs" holds pairs of corruptions. The block "Other" holds corruptions of other
+        packages.
         """
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         rest = sorted(measured.difference(*BLOCKS.values()))
@@ -290,17 +310,18 @@ class Grid:
         return {block: names for block, names in blocks.items() if names}
 
     def measured(self, label: str, severity: float, metric: str = "success") -> np.ndarray:
-        """Return a mask [N] of the episodes in the clean cell of a column at ``severity``."""
+        """Return a mask of the episodes in the clean cell of a column at ``severity``."""
         return ~np.isnan(self.cell(label, "clean", severity, metric))
 
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
     ) -> list[Retention] | None:
-        """Return the values for each column's PRS over ``names``, or None if a value is missing.
+        """Return the values for the PRS of each column over the corruptions ``names``.
 
-        All columns use the same corruptions and episodes: those corruptions that every column
-        measured on at least a fraction :data:`COVERAGE` of the episodes, and the episodes that have
-        no gap under these.
+        All columns use the same corruptions and episodes. A corruption is used if every column
+        measured it on at least a fraction :data:`COVERAGE` of the episodes. An episode is used if
+        every column has it under all these corruptions. If no corruption or no episode remains,
+        return None.
         """
         known = np.all([self.measured(label, severity, metric) for label in labels], axis=0)
         complete = {
@@ -336,14 +357,14 @@ class Grid:
 
 
 def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
-    """Return the grids of ``rows``, ordered by split, suite and rule, and then by list.
+    """Return the grids of ``rows``, ordered by split, suite, success rule and episode list.
 
     Args:
         rows: result rows.
         drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
 
     Raises:
-        ValueError: There are no rows, or scenes are to be resampled but rows do not name their
+        ValueError: There are no rows, or the bootstrap resamples scenes but rows do not name their
             scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
@@ -393,7 +414,7 @@ def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
-    """Return the cells of one seed; ``place`` is the index of each episode."""
+    """Return the cells of one seed; ``place`` maps each episode id to its index."""
     cells: _Run = {}
     for row in rows:
         for metric in (*METRICS.values(), STEPS):
@@ -406,11 +427,11 @@ def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
 def _complete_seeds(
     runs: dict[int, _Run], severity: float
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
-    """Return the seeds to pool at ``severity``, and the other seeds with (actual rows, expected
-    rows).
+    """Return the complete seeds at ``severity``, and (actual, expected) row counts of the others.
 
-    A seed is pooled if it has at least a fraction :data:`COVERAGE` of the largest number of rows,
-    both clean and corrupted. Seeds without rows at ``severity`` are in neither result.
+    The results of complete seeds are averaged. A seed is complete if it has at least a fraction
+    :data:`COVERAGE` of the rows of the seed with the most rows. Clean rows and corrupted rows must
+    each reach this fraction. Seeds without rows at ``severity`` are in neither result.
     """
 
     def rows(run: _Run, at: float) -> int:
@@ -434,7 +455,7 @@ def _complete_seeds(
 
 
 def _pooled(runs: list[_Run], severity: float) -> dict[tuple[str, str], np.ndarray]:
-    """Return the mean over seeds of the clean and the corrupted cells at ``severity``."""
+    """Return the clean cells and the corrupted cells at ``severity``, averaged over seeds."""
     keys = {
         (name, at, metric)
         for run in runs

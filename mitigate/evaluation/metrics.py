@@ -7,17 +7,18 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-FLOOR = 0.10  # minimum clean SR or SPL for a meaningful PRS (heuristic; random walks have < 0.05)
+# minimum clean SR or SPL for a meaningful PRS (heuristic; random agents reach less than 0.05)
+FLOOR = 0.10
 
 
 def prs(clean: float, corrupted: ArrayLike) -> float:
     """Return the Performance Retention Score: the mean over K of ``corrupted[k] / clean``.
 
-    The definition is the paper's; nothing is clipped.
+    As in the paper, values are not clipped.
 
     Args:
         clean: the agent's SR or SPL without corruption.
-        corrupted: [K], the SR or SPL under each corruption.
+        corrupted: the SR or SPL under each of K corruptions, shape [K].
 
     Returns:
         The PRS, or NaN if ``clean`` is 0.

@@ -1,4 +1,4 @@
-"""Draw pictures of the results: a heatmap as in the paper, and SR against severity."""
+"""Draw the results as pictures: a heatmap as in the paper, and curves of SR against severity."""
 
 from __future__ import annotations
 
@@ -16,23 +16,23 @@ from mitigate.evaluation.grid import Grid
 from mitigate.evaluation.sections import Section, label
 
 COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright means good
-# Colours of Okabe and Ito (2008), which colour-blind readers can distinguish, without their yellow
+# The colour-blind safe palette of Okabe and Ito (2008), without its yellow
 OKABE_ITO = ("#0072b2", "#e69f00", "#009e73", "#d55e00", "#cc79a7", "#56b4e9", "#000000")
 LINES = [mpl.colors.to_rgba(colour) for colour in OKABE_ITO]
 DASHES = ("-", "--", "-.", ":")
-WIDTH, MARKER = 1.2, 3.0  # width of a line and size of its markers, in points
-# decrease of the marker size per column, and the largest marker size, in points
+WIDTH, MARKER = 1.2, 3.0  # line width and marker size in points
+# difference in marker size between successive columns, and maximum marker size, in points
 RIM, LARGEST = 1.4, 8.0
 DPI = 150
-STACKED = 5  # number of columns from which the panels of a heatmap are stacked vertically
+STACKED = 5  # with at least this many columns, the panels of a heatmap are stacked vertically
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
-    """Draw one panel per block, with rows for PRS-SR, PRS-SPL, clean and corruptions, one column
-    per agent.
+    """Draw a heatmap with one panel per block of corruptions and one column per agent.
 
-    A cell shows SR (%) / SPL; its colour is SR divided by the best clean SR. A PRS is coloured by
-    its own value. With many agents the panels are stacked vertically.
+    The rows of a panel are PRS-SR, PRS-SPL, clean, and the corruptions. A cell shows SR (%) / SPL,
+    and its colour encodes SR divided by the best clean SR. The colour of a PRS encodes its value.
+    With many agents, the panels are stacked vertically.
     """
     rows = [3 + len(names) for names in section.blocks.values()]
     width, narrow = 1.6 + 0.95 * len(section.columns), len(section.columns) < STACKED
@@ -58,7 +58,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 def severity_curves(grid: Grid, path: Path | str) -> Path:
     """Draw SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
 
-    If lines coincide, all remain visible, because later lines have dashes and smaller markers.
+    Lines that coincide all remain visible, because later lines are dashed and have smaller markers.
     """
     names = grid.corruptions
     across = min(3, len(names))
@@ -89,8 +89,8 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
 
 
 def text_colour(value: float) -> str:
-    """Return the colour of text on a cell with ``value`` in [0, 1] in :data:`COLOURS`."""
-    return "white" if value < 0.6 else "black"  # NaN has no colour, so the text is black
+    """Return a readable text colour for a cell whose background colour encodes ``value``."""
+    return "white" if value < 0.6 else "black"  # a NaN cell is not coloured, so its text is black
 
 
 def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
@@ -122,7 +122,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
-    """Draw the curves of one panel; coinciding curves have different dashes and smaller markers."""
+    """Draw the curves of one panel; dashes and marker sizes tell coinciding curves apart."""
     columns = list(grid.columns)
     rim = min(RIM, (LARGEST - MARKER) / len(columns))
     for curve in curves(grid, name):
@@ -144,7 +144,7 @@ def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
 
 
 def plain(name: str) -> str:
-    """Escape a name for matplotlib, so that it is not a formula and is visible in the legend."""
+    """Escape a name, so that matplotlib draws it as plain text and shows it in the legend."""
     return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
 
 

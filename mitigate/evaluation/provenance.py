@@ -1,8 +1,9 @@
 """Record to which agent, world and episodes the rows in a folder belong.
 
 A row contains the world's success rule, the agent's hash (which includes the sensors) and the
-episode id. It contains no other description of the world or the episode, so rows of a different
-world would be treated as finished. The notes that this module writes next to the rows prevent this.
+episode id. A row does not describe the world or the episode further. Therefore, rows of a different
+world with the same rule and ids would be treated as finished. The notes that this module writes
+next to the rows prevent this.
 """
 
 from __future__ import annotations
@@ -41,31 +42,34 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# maps the id() of an agent without settings() to the agent, its parts after the last run
-# and its parts before the first run
+# For agents without settings(): maps the id() of an agent to a function that returns the agent, and
+# to two versions of its hashed parts: after its last run, and before its first run.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# maps (classes of the layers, user's version) to hashes of the names that the code of worlds
-# reads, before the first episode and after the last
+# Maps (classes of the world and its environments, user's version) to two hashes of the values that
+# the code of these classes refers to: before the first episode, and after the last one.
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
 class Known:
-    """Hashes of an agent and of classes, which are computed before episodes change them.
+    """Hashes of an agent and of classes, computed before episodes can change them.
 
-    ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``; ``classes`` is
-    a hash of the names that the classes of agent and world read. The object is used as a context
-    manager around all episodes.
+    ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``. ``classes`` is
+    a hash of the attributes of the agent's and the world's classes, and of the global variables and
+    functions that their code refers to. The object is used as a context manager around all
+    episodes.
 
-    If an agent has no ``settings()``, its attributes are part of the hash. If only episodes have
-    changed the object since the last call, the hash from before these episodes is used. The same is
-    done for the attributes of the world's classes.
+    If an agent has no ``settings()``, its attributes are part of the hash. Episodes may change the
+    attributes of such an agent. If nothing else changed the agent since the last evaluation, the
+    hash from before that evaluation is used. The attributes of the world's classes are treated in
+    the same way.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
         if version is not None and not (isinstance(version, str) and version):
             raise ValueError(
-                f"version must be a non-empty string, got {version!r:.80}. Name what the agent is, "
-                'such as version="2026-11 weights", and change it whenever its behaviour changes.'
+                f"version must be a non-empty string, got {version!r:.80}. Choose a text for the "
+                'agent\'s version, such as version="2026-11 weights", and change it whenever the '
+                "agent's behaviour changes."
             )
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
@@ -93,7 +97,8 @@ class Known:
         key = id(agent)
         try:
             same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
-        except TypeError:  # the class allows no weak references, so the agent is kept alive
+        # the class allows no weak references, so this reference keeps the agent alive
+        except TypeError:
 
             def same() -> Any:
                 return agent
@@ -101,11 +106,13 @@ class Known:
         _last[key] = same, contents(agent, self.version).parts, self.parts
 
     def check(self, file: Path, name: str) -> Known:
-        """Print a message if all rows of ``name`` in ``file`` belong to a different agent; return
-        self.
+        """Print a message if all rows of ``name`` in ``file`` belong to a different agent.
+
+        Return ``self``.
 
         Raises:
-            ValueError: There are earlier rows, and the agent cannot be read completely.
+            ValueError: ``file`` already holds rows of this agent, but its state cannot be read
+                completely.
         """
         rows = read(file) if file.exists() else []
         known = any(row["agent"] == self.hash for row in rows)
@@ -146,8 +153,8 @@ def keep(
 ) -> list[Path]:
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
-    Worlds with different sensors or success rules can use the same folder, because their rows
-    differ. Without a note, nothing is compared.
+    If the folder already has a description, the new one must match it. Worlds with different
+    sensors or success rules can use the same folder, because their rows differ.
 
     Args:
         folder: folder of the rows.
@@ -199,7 +206,7 @@ def _report_unreadable(
     """Print a message that rows of an agent or a world cannot be reused.
 
     Raises:
-        ValueError: There are earlier rows in ``place``.
+        ValueError: ``place`` already holds rows of this agent or world.
     """
     if earlier:
         raise ValueError(
@@ -215,8 +222,9 @@ def _report_unreadable(
 
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
-    """Read the entries of a folder's ``note``, by split. Raises ValueError if the note is
-    damaged.
+    """Read the entries of a folder's ``note``, by split.
+
+    Raises ValueError if the note is damaged.
     """
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
@@ -240,7 +248,7 @@ def _described(world: World) -> dict[str, str]:
 
 
 def _is_same(before: str | None, now: str | None) -> bool:
-    """Return whether two texts are equal, or are two paths of the same file."""
+    """Return whether two texts are equal or are paths of the same file."""
     if before == now or CHANGES in (before, now):
         return True
     with suppress(OSError, TypeError, ValueError, RecursionError):
@@ -289,9 +297,9 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
 
 
 def _sum(episode: Episode) -> str:
-    """Return the hash of the parts of an episode that an agent and a world use.
+    """Return the hash of those parts of an episode that an agent and a world use.
 
-    Other parts of the episode may differ between processes.
+    Other parts of an episode may differ between processes.
     """
     content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
@@ -310,7 +318,7 @@ def _spec(world: World) -> str:
     """
     spec = _member(_member(world, "env"), "spec")
     entries: Mapping[str, Any] = {}
-    with suppress(TypeError):  # the value may be None or an object with slots
+    with suppress(TypeError):  # ``vars`` raises TypeError for None and for objects with slots
         entries = vars(spec)
     if entries.get("id") is None:
         return ""
@@ -320,13 +328,16 @@ def _spec(world: World) -> str:
 
 
 def _member(owner: Any, name: str) -> Any:
-    """Return the attribute ``name`` of an environment, or None."""
-    return getattr(owner, name, None)  # the classes of gymnasium and torchrl have no common base
+    """Return the attribute ``name`` of an environment, or None if it is missing."""
+    # gymnasium and torchrl have no common base class that declares the attribute
+    return getattr(owner, name, None)
 
 
 MADE = "what makes it"  # keys and texts of stored notes, which must not change
 CHANGES = "changes while worlds are made"
-SHOWN = 100  # characters of a value that are stored; the rest is hashed (heuristic)
+# maximum number of characters stored of a value; a longer value is cut and its hash is added
+# (heuristic)
+SHOWN = 100
 
 
 def first_world(
@@ -334,12 +345,13 @@ def first_world(
 ) -> tuple[World, dict[str, str]]:
     """Construct a world, and describe how it was constructed.
 
-    The description contains the entries of a config; or the arguments, defaults and used values of
-    a function; or the class and attributes of a callable object. It also contains a hash of the
-    names that the code of the world's classes reads. A value that changes while the world is
-    constructed, such as a cache, is described as ``CHANGES``.
+    If ``make`` comes from a config, the description contains the config's entries. For a function,
+    the description contains the arguments, the defaults and the values that the code refers to. For
+    another callable object, it contains the class and the attributes. The description also contains
+    a hash of the values that the code of the world's classes refers to. A value that changes while
+    the world is constructed, such as a cache, is described as ``CHANGES``.
 
-    ``version`` is a string with which the user identifies class state that cannot be read.
+    ``version`` is a string that the user sets if the state of a class cannot be read.
     """
     before = {name: _text(value) for name, value in _made_by(make)}
     same = {place for place, (_, last) in _read_by.items() if last == _names_read(*place)[0]}
@@ -355,7 +367,7 @@ def first_world(
 
 
 def check_classes(agent: Any, world: World, expected: str) -> None:
-    """Raise ValueError if classes in a worker process differ from those in its parent process.
+    """Raise ValueError if the classes of a worker process differ from those of its parent process.
 
     ``expected`` is ``Known.classes`` of the parent.
     """
@@ -363,9 +375,9 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
             f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
-            "variables and functions that their code names, are not the same in a worker process, "
-            "which imports them again. Set them where they are defined, not later, or give "
-            "workers=1."
+            "variables and functions that their code names, are different in a worker process, "
+            "which imports them again. Set them where they are defined and do not change them "
+            "later, or set workers=1."
         )
 
 
@@ -374,9 +386,10 @@ def _hash_of_classes(agent: Any, of_world: str) -> str:
 
 
 def _names_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
-    """Return a hash of the user's classes among ``kinds``, and a text on state that cannot be read.
+    """Return a hash of the user's classes among ``kinds``, and a text on unreadable state.
 
-    The hash covers their attributes, and the functions and global variables that their code names.
+    The hash covers the attributes of the classes, and the functions and global variables that their
+    code names.
     """
     content = code_of(*kinds)
     names = content.parts.get("names", {})
@@ -391,14 +404,15 @@ def kind_of(value: object) -> str:
 
 
 def json_hash(value: Any) -> str:
-    """Return 12 hex digits of the hash of JSON data, which may contain numbers of other
-    libraries.
+    """Return 12 hex digits of the hash of JSON data.
+
+    The data may contain numbers of NumPy and other libraries.
     """
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 
 
 def _made_by(make: Any) -> Iterator[tuple[str, Any]]:
-    """Yield the values that ``make`` makes a world from, by name."""
+    """Yield the names and values that determine which world ``make`` constructs."""
     if isinstance(make, Maker):
         yield from _flat("env.world", make.node)
     elif isinstance(make, partial):
@@ -410,7 +424,8 @@ def _made_by(make: Any) -> Iterator[tuple[str, Any]]:
         yield from _made_by(make.__self__)
     elif isinstance(make, FunctionType):
         if is_users(make):
-            code = make.__code__  # the bytecode, because the source lines may also hold other code
+            # bytecode is used because the source lines may contain other code too
+            code = make.__code__
             yield MADE, [code.co_names, [c for c in code.co_consts if c is not None]]
             defaults = {str(number): value for number, value in enumerate(make.__defaults__ or ())}
             yield from _flat(f"{MADE}, default", defaults | (make.__kwdefaults__ or {}))
@@ -422,14 +437,14 @@ def _made_by(make: Any) -> Iterator[tuple[str, Any]]:
 
 
 def _flat(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
-    """Yield the entries of nested mappings by dotted names."""
+    """Yield the entries of nested mappings; dots join the keys of each entry."""
     for key, value in values.items():
         nested = type(value) is dict and value and name.startswith("env.world")
         yield from _flat(f"{name}.{key}", value) if nested else [(f"{name}.{key}", value)]
 
 
 def _text(value: Any) -> str:
-    """Return ``value`` as JSON; objects count with the name of their class."""
+    """Return ``value`` as JSON; other objects are replaced by the names of their classes."""
     try:
         text = json.dumps(_with_text_keys(value), sort_keys=True, default=_as_data)
     except (TypeError, ValueError, RecursionError):  # a cycle, or an object that JSON rejects
@@ -438,7 +453,7 @@ def _text(value: Any) -> str:
 
 
 def _with_text_keys(value: Any) -> Any:
-    """Return ``value`` with the keys of its dicts as text, which JSON requires."""
+    """Return ``value`` with all keys of dicts converted to strings, as JSON requires."""
     if isinstance(value, dict):
         items = value.items()
         return {k if isinstance(k, str) else _text(k): _with_text_keys(v) for k, v in items}
@@ -446,7 +461,7 @@ def _with_text_keys(value: Any) -> Any:
 
 
 def _as_data(value: Any) -> Any:
-    """Return an object that JSON lacks as data, or the name of its class."""
+    """Convert an object that JSON does not support to plain data, or to the name of its class."""
     if isinstance(value, (Enum, PurePath)):
         return str(value)
     if isinstance(value, np.generic) and not value.dtype.hasobject:
@@ -457,5 +472,5 @@ def _as_data(value: Any) -> Any:
         return [kind_of(value), [getattr(value, one.name) for one in fields(value)]]  # with slots
     if isinstance(value, (set, frozenset)):
         return sorted(map(_text, value))
-    # classes and functions have a qualified name; objects do not
+    # only classes and functions have ``__qualname__``
     return value.__qualname__ if isinstance(value, (type, FunctionType)) else kind_of(value)

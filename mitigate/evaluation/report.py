@@ -21,7 +21,8 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
-# Limits for pictures (heuristic): their time grows with panels and cells, and rows may be untrusted
+# Limits for pictures (heuristic), because drawing time grows with panels and cells, and result rows
+# may be untrusted
 MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report
@@ -29,12 +30,13 @@ NO_PICTURE = (
     f"No picture: it would show more than {MOST_CORRUPTIONS} corruptions or {MOST_COLUMNS} "
     f"columns, or this report has {MOST_HEATMAPS} heatmaps."
 )
-FEW = 10  # with fewer episodes than this, the table prints no difference in bold (heuristic)
+FEW = 10  # with fewer episodes, no difference is printed in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
-    """Return the tables as Markdown; ``pictures[i]`` contains the picture files to show under
-    section i.
+    """Return the tables as Markdown.
+
+    ``pictures[i]`` lists the picture files that are shown below section i.
     """
     texts = []
     several_rules = len({section.grid.rule for section in parts}) > 1
@@ -59,14 +61,15 @@ def write(
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
-    Further sections and grids get ``heatmap-2.png``, ``severity-2.png`` and so on. Sections that
-    are too large, or beyond ``MOST_HEATMAPS``, have no pictures.
+    The pictures of further sections and grids are called ``heatmap-2.png``, ``severity-2.png`` and
+    so on. Sections that are too large have no pictures, and the report has at most
+    ``MOST_HEATMAPS`` heatmaps.
 
     Args:
         rows: result rows.
         folder: output folder.
-        first: the success rule whose sections come first.
-        least: minimum number of severities for drawing curves.
+        first: the sections with this success rule come first.
+        least: minimum number of severities for which curves are drawn.
         against: the reference column, as in :func:`sections`.
         drawn: unit that the bootstrap resamples, as in :func:`sections`.
     """
@@ -93,12 +96,15 @@ def write(
 
 
 def is_drawable(grid: Grid) -> bool:
-    """Return whether a picture can show all corruptions and columns of a grid."""
+    """Return whether a grid is small enough for a picture of all its corruptions and columns."""
     return len(grid.corruptions) <= MOST_CORRUPTIONS and len(grid.columns) <= MOST_COLUMNS
 
 
 def _heading(section: Section, several_rules: bool) -> str:
-    """Return the heading, with the name of the success rule if the report has several."""
+    """Return the heading of a section and the text below it.
+
+    The heading names the success rule if the report has several rules.
+    """
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     at = f"{section.kind}, {at}" if section.kind else at
@@ -123,7 +129,7 @@ def _heading(section: Section, several_rules: bool) -> str:
 
 
 def _drawn(grid: Grid) -> str:
-    """Return the unit that the bootstrap resamples as text, with the number of scenes."""
+    """Return a text that names the unit that the bootstrap resamples, and the number of scenes."""
     if grid.drawn == DRAWN[0]:
         return "episodes"
     return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
@@ -162,14 +168,14 @@ def _table(section: Section) -> str:
 
 
 def _changes(section: Section) -> list[Difference]:
-    """Return the difference of each column from the reference, with "" for the reference itself."""
+    """Return the difference of each column from the reference; the reference has no difference."""
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
 def _mean_sr(section: Section) -> list[list[str]]:
-    """Return a line with the mean SR over all corruptions of each column.
+    """Return a table line with each column's mean SR over all corruptions.
 
-    If there are several columns, a second line has the differences from the reference.
+    If there are several columns, a second line contains their differences from the reference.
     """
 
     def cell(value: Retained | None, text: Callable[[Estimate], str]) -> str:
@@ -190,7 +196,10 @@ def _mean_sr(section: Section) -> list[list[str]]:
 def _by_seed(
     section: Section, key: str, title: str, text: Callable[[float], str]
 ) -> list[list[str]]:
-    """Return a line with the value of each seed, or no line if no column has several seeds."""
+    """Return a table line with the value of each seed.
+
+    If no column has several seeds, return an empty list.
+    """
     columns = [section.by_seed.get((column, key), {}) for column in section.columns]
     if not any(len(values) > 1 for values in columns):
         return []
@@ -314,17 +323,18 @@ def _numbered(stem: str, index: int) -> str:
     return f"{stem}.png" if index == 0 else f"{stem}-{index + 1}.png"
 
 
-# severity of Table II in the paper (see its caption); other severities are not compared
+# severity of Table II in the paper, from its caption; results are compared only at this severity
 SEVERITY = 0.6
 
 
 def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
-    """Return Markdown of ``section`` with the paper's figures.
+    """Return a Markdown table of ``section``, with the paper's figures in brackets.
 
     Args:
         section: the results.
-        paper: the paper's column names under "columns", and for each row name ("PRS-SR (RGB)",
-            "motion_blur") the figures of that row in the order of these columns.
+        paper: the key "columns" holds the paper's column names. Every other key is a row name, such
+            as "PRS-SR (RGB)" or "motion_blur", and holds the figures of that row in the order of
+            the columns.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))

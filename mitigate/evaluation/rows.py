@@ -1,8 +1,9 @@
-"""Read and write result rows, which are JSON lines with everything that identifies a measurement.
+"""Read and write result rows, which are lines of JSON that describe one measurement each.
 
-A row contains its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). Files end in
-``.jsonl`` (appended to during an evaluation) or ``.jsonl.gz`` (shipped). If a plain file ends in an
-incomplete line, as after a kill, that line is ignored, and the next append repairs the file.
+A row contains its identity (:data:`IDENTITY`) and its measures (:data:`MEASURES`). An evaluation
+appends to a ``.jsonl`` file; shipped files end in ``.jsonl.gz``. If a process was killed while it
+wrote, a ``.jsonl`` file may end in an incomplete line. Such a line is ignored, and the next append
+removes it.
 """
 
 from __future__ import annotations
@@ -44,32 +45,35 @@ MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps", "cut", "limit"),
 )
-SCENE = "scene"  # the entry for the scene of the episode
+SCENE = "scene"  # key of the entry that names the episode's scene
 SUFFIXES = (".jsonl", ".jsonl.gz")
-LONGEST_LINE = 1 << 16  # maximum characters of a row (heuristic); a row has about 450
-LONGEST_TEXT = 200  # maximum characters of an entry (heuristic)
+LONGEST_LINE = 1 << 16  # maximum number of characters of a row (heuristic); a row has about 450
+LONGEST_TEXT = 200  # maximum number of characters of an entry (heuristic)
 GREATEST = 1e9  # maximum value of a measure, in metres or steps (heuristic)
-# pattern of corruption names, where + joins a pair
+# pattern of corruption names; the name of a pair contains +
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
-# patterns of episode ids: first apartments, then the bridge
+# patterns of the ids of generated episodes and of episodes from the Habitat bridge
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")
 _SHARES = ("severity", "success", "spl", "ndtw", "cut")  # entries that are numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)
 _ROUNDING = 1e-9
-_MARK = "\ufeff"  # byte order mark of Windows editors, which joined files may have in the middle
+# byte order mark that Windows editors write; if files were joined, it may occur in the middle
+_MARK = "\ufeff"
 
 
 def identity(row: Row) -> tuple:
     """Return the identity of ``row``; rows with equal identities are the same measurement."""
     values = tuple(float(row[key]) if key == "severity" else row[key] for key in IDENTITY)
-    return (*values, row.get("version", ""))  # version of a corruption of another package
+    # rows of a corruption from another package contain the version of that corruption
+    return (*values, row.get("version", ""))
 
 
 def of_episode(episode: Episode) -> Row:
-    """Return the entries of a row that identify its episode, and its scene if the scene has a
-    name.
+    """Return the entries of a row that identify its episode.
+
+    If the scene has a valid name, an entry with this name is included.
     """
     scene = stem_of(episode.scene_id)
     valid = scene and not allowed(SCENE, scene)
@@ -77,14 +81,15 @@ def of_episode(episode: Episode) -> Row:
 
 
 def stem_of(scene: str) -> str:
-    """Return the name of a scene, which is its file name without folder and GLB suffixes."""
+    """Return the name of a scene: its file name without the folder, ".basis" and ".glb"."""
     return scene.rpartition("/")[2].removesuffix(".glb").removesuffix(".basis")
 
 
 def scene_of(row: Row) -> str:
-    """Return the scene of a row's episode, from its entry or from the id.
+    """Return the scene of a row's episode.
 
-    In rows of older versions and of the bridge, only the id contains the scene.
+    The scene is read from the entry :data:`SCENE`. Rows of older versions and of the bridge have no
+    such entry, so the scene is read from the episode id.
 
     Raises:
         ValueError: The row names no scene.
@@ -93,8 +98,9 @@ def scene_of(row: Row) -> str:
     scene = row.get(SCENE) or (match and (match[1] or match[2]))
     if not scene:
         raise ValueError(
-            f"The rows do not name the scene of episode {short(row['episode_id'])}, so scenes "
-            "cannot be drawn. Evaluate again (new rows name it), or draw episodes."
+            f"The rows do not name the scene of episode {short(row['episode_id'])}, so the "
+            "bootstrap cannot resample scenes. Evaluate again (new rows name the scene), or "
+            "resample episodes."
         )
     return str(scene)
 
@@ -105,7 +111,7 @@ def read(path: Path | str) -> list[Row]:
     An incomplete last line of a plain file is ignored.
 
     Raises:
-        ValueError: A row is invalid; the message names file, line and key.
+        ValueError: A row is invalid. The message names the file, the line and the key.
     """
     rows: list[Row] = []
     try:
@@ -138,7 +144,7 @@ def read(path: Path | str) -> list[Row]:
 def append(path: Path | str, rows: Iterable[Row]) -> None:
     """Append ``rows`` to the file ``path`` and flush them to disk; create it if needed.
 
-    A plain file is extended by a single write; a ``.gz`` file is rewritten atomically.
+    A ``.jsonl`` file is extended by a single write. A ``.gz`` file is replaced atomically.
     """
     path, rows = Path(path), list(rows)
     text = "".join(_line(row) for row in rows)
@@ -154,22 +160,23 @@ def append(path: Path | str, rows: Iterable[Row]) -> None:
 
 
 def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None:
-    """Replace the file ``path`` by ``rows``, atomically.
+    """Replace the content of the file ``path`` by ``rows``, atomically.
 
     Args:
-        path: the file, which need not exist.
+        path: the file; it may not exist yet.
         rows: all rows of the new file.
-        fewer: whether the new file may have fewer rows; the caller must have compared them.
+        fewer: whether the new file may have fewer rows. The caller must then have checked that no
+            row is lost.
 
     Raises:
-        ValueError: The existing file has more rows than ``rows``, or it is damaged. It is not
+        ValueError: The existing file has more rows than ``rows``, or it is damaged. The file is not
             changed.
     """
     path, rows = Path(path), list(rows)
     before = len(read(path)) if path.exists() and not fewer else 0
     if len(rows) < before:
         raise ValueError(
-            f"{path} holds {counted(before, 'row')}, and only {len(rows)} would replace them. The "
+            f"{path} holds {counted(before, 'row')}, but only {len(rows)} would replace them. The "
             "file was not changed. Find out why rows are missing, or move the file to another "
             "folder and run the same command again."
         )
@@ -178,14 +185,15 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
 
 
 def upsert(*parts: Iterable[Row]) -> list[Row]:
-    """Return the rows of all ``parts``, one per identity: the last row, at the position of the
-    first.
+    """Return the rows of all ``parts``, with one row per identity.
+
+    If several rows have the same identity, the last one takes the position of the first.
     """
     return list({identity(row): row for row in chain(*parts)}.values())
 
 
 def cuts(rows: Iterable[Row]) -> str:
-    """Return a text on how many episodes were cut by a world's ``limit=``, or an empty text."""
+    """Return a text that states how many episodes a world's ``limit=`` ended, or "" if none."""
     rows = list(rows)
     cut = [row for row in rows if row.get("cut")]
     if not cut:
@@ -198,9 +206,9 @@ def cuts(rows: Iterable[Row]) -> str:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows in files and in all row files of folders, one per identity (:func:`unique`).
+    """Return the rows of all ``paths``, which are row files or folders (:func:`unique`).
 
-    Other JSON lines in a folder are ignored.
+    Files in a folder that contain other JSON lines are ignored.
 
     Raises:
         FileNotFoundError: A path does not exist, or a folder contains no rows.
@@ -209,9 +217,10 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
 
 
 def unique(rows: Iterable[Row]) -> list[Row]:
-    """Return one row per identity: the last row, at the position of the first.
+    """Return one row per identity.
 
-    Warns about rows whose success or SPL differs from an earlier one.
+    If several rows have the same identity, the last one takes the position of the first. Warns if
+    such rows differ in success or SPL.
     """
     by_identity: dict[tuple, Row] = {}
     different: list[Row] = []
@@ -225,13 +234,14 @@ def unique(rows: Iterable[Row]) -> list[Row]:
             f"{len(different)} rows have another success or SPL than an earlier row of the same "
             f"agent, episode and condition (first {first['name']}, episode {first['episode_id']}, "
             f"{first['corruption']}). The last row counts. Name the files of one evaluation.",
-            stacklevel=1,  # a fixed location, so that the same warning is printed only once
+            # a constant location in the code makes Python print the same warning only once
+            stacklevel=1,
         )
     return list(by_identity.values())
 
 
 def files(path: Path | str) -> list[Path]:
-    """Return ``path`` itself, or all row files in and below a folder.
+    """Return all row files in and below the folder ``path``, or ``path`` itself if it is a file.
 
     Raises:
         FileNotFoundError: The folder contains no row files.
@@ -239,7 +249,7 @@ def files(path: Path | str) -> list[Path]:
     path = Path(path)
     if not path.is_dir():
         return [path]
-    # rglob() is recursive, so it fails for a thousand levels
+    # rglob() is recursive and fails in folders that are nested a thousand levels deep
     names = (Path(folder, name) for folder, _, files in os.walk(path) for name in files)
     row_files = [p for p in names if p.name.endswith(SUFFIXES) and _holds_rows(p)]
     if not row_files:
@@ -255,7 +265,7 @@ def _holds_rows(path: Path) -> bool:
         with open_text(path) as file:
             line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
-        return True  # the file is damaged; read() raises the error
+        return True  # the file is damaged; read() will raise an error that says so
     first = _parse(line)
     if first is None and line.strip() and len(line) <= LONGEST_LINE:
         return True
@@ -263,9 +273,10 @@ def _holds_rows(path: Path) -> bool:
 
 
 def _parse(line: str) -> Any:
-    """Return the value of a line, or None if it is damaged or too long."""
+    """Return the JSON value of a line, or None if the line is damaged or too long."""
     try:
-        line.encode()  # bytes that are not UTF-8 were read as surrogates, which raise ValueError
+        # raises ValueError if the line has surrogates, which stand for bytes that are not UTF-8
+        line.encode()
         return parse_json(line.removeprefix(_MARK)) if len(line) <= LONGEST_LINE else None
     except (ValueError, RecursionError):
         return None
@@ -293,7 +304,7 @@ def _problem(row: Any) -> str:
 
 
 def allowed(key: str, value: Any) -> str:
-    """If ``value`` is invalid for a row's ``key``, return a text on the allowed values, else ""."""
+    """Return a text on the allowed values if ``value`` is invalid for ``key``, else ""."""
     if key in _NUMBERS and isinstance(value, bool):  # bool is a subclass of int
         return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):
@@ -336,7 +347,7 @@ def _line(row: Row) -> str:
 
 
 def _repair(file: Any) -> None:
-    """Terminate the last line of ``file``, or remove it if it is incomplete."""
+    """Add a missing newline at the end of ``file``, or remove an incomplete last line."""
     size = file.seek(0, os.SEEK_END)
     tail = b""
     while b"\n" not in tail and len(tail) < size:

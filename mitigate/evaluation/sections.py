@@ -30,17 +30,18 @@ from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
-REFERENCES = ("base", "before")  # columns with these names come first and are the reference
+# a column with one of these names comes first and is the reference of comparisons
+REFERENCES = ("base", "before")
 
-label = title  # name of a corruption in the paper's table
+label = title  # returns the name of a corruption in the paper's table
 
 
 @dataclass(frozen=True)
 class Retained:
-    """A PRS, a mean SR or a difference, with the corruptions and episodes over which it is
-    computed.
+    """A PRS, a mean SR, or a difference of two of these.
 
-    ``near_floor`` states whether a clean value is too low for a meaningful PRS.
+    ``corruptions`` and ``episodes`` state over which corruptions and how many episodes the value is
+    computed. ``near_floor`` states whether a clean value is too low for a meaningful PRS.
     """
 
     estimate: Estimate
@@ -53,13 +54,13 @@ class Retained:
 class Difference:
     """Paired differences of one column from another, over the seeds that both have.
 
-    Without a common seed there are no differences, because corruptions with different seeds have
-    different keys.
+    Without a common seed there are no differences, because corruptions with different seeds use
+    different random keys.
 
     Attributes:
-        clean: difference of clean SR, or None if not measured.
-        corrupted: difference of the mean SR under corruption, or None if not measured.
-        retained: difference of PRS by (block or half, metric).
+        clean: difference of clean SR, or None if it was not measured.
+        corrupted: difference of the mean SR under corruption, or None if it was not measured.
+        retained: differences of PRS by (part, metric), where a part is a key of ``Section.parts``.
     """
 
     clean: Estimate | None
@@ -69,11 +70,13 @@ class Difference:
 
 @dataclass(frozen=True)
 class Section:
-    """One table: a grid at one severity (0 if there are only clean cells). Metrics: "SR", "SPL".
+    """One table of results: a grid at one severity.
+
+    The severity is 0 if there are only clean cells. The metrics are "SR" and "SPL".
 
     Attributes:
         grid: the results.
-        kind: the kind of corruptions in the table; empty for the suite.
+        kind: the kind of corruptions in the table; it is empty for the corruption suite.
         severity: severity of the corruptions.
         columns: labels of the columns; the first one is the reference of differences.
     """
@@ -95,12 +98,12 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """The parts of a block that have a separate PRS, by block and heading."""
+        """The validation and test parts of blocks that have their own PRS, by block and heading."""
         return halves(self.blocks)
 
     @cached_property
     def parts(self) -> dict[str, tuple[str, ...]]:
-        """The corruptions of each block, and then of each half, that has a PRS."""
+        """The corruptions of everything that has a PRS: the blocks, and then their parts."""
         parts = self.halves.values()
         return self.blocks | {half: names for part in parts for half, names in part.items()}
 
@@ -134,7 +137,7 @@ class Section:
 
     @cached_property
     def retained(self) -> dict[tuple[str, str, str], Retained]:
-        """The PRS by (column, block or half, metric)."""
+        """The PRS by (column, part, metric), where a part is a key of :attr:`parts`."""
         return {
             (column, part, metric): _retained(retention)
             for column in self.columns
@@ -150,7 +153,7 @@ class Section:
 
     @cached_property
     def by_seed(self) -> dict[tuple[str, str], dict[int, float]]:
-        """For each pooled seed, the clean SR by (column, "clean") and PRS-SR by (column, block).
+        """The clean SR by (column, "clean") and the PRS-SR by (column, block), for each seed.
 
         Only columns with several seeds are included.
         """
@@ -168,12 +171,12 @@ class Section:
         return dict(values)
 
     def mean_sr(self, column: str, names: Sequence[str]) -> Retained | None:
-        """Return the mean SR of a column over corruptions, or None if nothing was measured."""
+        """Return a column's mean SR over ``names``, or None if none of them was measured."""
         retention = self.grid.retention([column], names, self.severity, METRICS["SR"])
         return _mean_sr(retention) if retention else None
 
     def compare(self, column: str, reference: str) -> Difference:
-        """Return the difference of any ``column`` from any ``reference`` column."""
+        """Return the difference of ``column`` from ``reference``, which can be any two columns."""
         pair, severity = (column, reference), self.severity
         if not self.grid.common(pair, severity):
             return Difference(None, None, {})
@@ -204,22 +207,23 @@ class Section:
         return frozenset((gap.column, gap.corruption) for gap in self.gaps)
 
     def whole(self, part: str) -> int:
-        """Return the number of corruptions in a block (a part of the table) or in half a block."""
+        """Return the number of corruptions in ``part``, which is a key of :attr:`parts`."""
         block = part if part in self.blocks else part.rpartition(",")[0]
         return len(expected_corruptions(block, self.parts[part]))
 
     def marks(self, value: Retained, *parts: str) -> str:
-        """Return the marks of a value: * missing episodes, † missing corruptions, ‡ low clean
-        value.
+        """Return the marks that the table shows next to a value.
+
+        The mark * means missing episodes, † missing corruptions, and ‡ a low clean value.
         """
         measured, expected = len(value.corruptions), sum(map(self.whole, parts))
         fewer = "*" * (value.episodes < len(self.grid.episodes))
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
 
     def notes(self, escape: Callable[[str], str] = str) -> list[str]:
-        """Return a line for each unfinished seed and for columns with cut episodes.
+        """Return a line for each unfinished seed and for each column with cut episodes.
 
-        ``escape`` is applied to the column labels.
+        The function ``escape`` is applied to the column labels.
         """
         unfinished = [
             f"Seed {seed} of {escape(column)} is not finished and left out: {have:,} of {want:,} "
@@ -232,7 +236,9 @@ class Section:
 
 
 def references(rows: Iterable[Row], against: str | None) -> Sequence[str]:
-    """Return the names of reference columns: ``against``, or :data:`REFERENCES` if it is None.
+    """Return the names of the reference columns.
+
+    The result is ``against``, or :data:`REFERENCES` if ``against`` is None.
 
     Raises:
         ValueError: No row belongs to the column ``against``.
@@ -248,11 +254,12 @@ def sections(
 ) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
-    If a column has only clean rows (a control), a clean-only section comes first.
+    If a column, such as a control, has only clean rows, a section with clean rows only comes first.
 
     Args:
         rows: result rows.
-        against: the reference column in sections that contain it; None means :data:`REFERENCES`.
+        against: name of the reference column, in sections that contain this column. The default is
+            :data:`REFERENCES`.
         drawn: unit that the bootstrap resamples, as in :func:`grids`.
 
     Raises:
@@ -261,8 +268,8 @@ def sections(
     rows = list(rows)
     if any(row["rule"] == RETURN for row in rows):
         raise ValueError(
-            "These rows hold the return of a task without a success, so that SR is undefined. Use "
-            "mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
+            "These rows hold the return of a task without a success criterion, so SR is undefined. "
+            "Use mitigate.evaluation.comparison.compare(rows), as mitigate.benchmark does."
         )
     first = references(rows, against)
     rank = {name: place for place, name in enumerate(first)}
@@ -280,7 +287,7 @@ def sections(
 
 
 def _retained(parts: list[Retention]) -> Retained:
-    """Return the PRS of one part, or the first part's PRS minus the second's."""
+    """Return the PRS of ``parts[0]``, minus the PRS of ``parts[1]`` if there is a second part."""
     pairs, units = [(part.clean, part.corrupted) for part in parts], parts[0].units
     estimate = (
         bootstrap.prs(*pairs[0], units=units)
@@ -292,7 +299,7 @@ def _retained(parts: list[Retention]) -> Retained:
 
 
 def _mean_sr(parts: list[Retention]) -> Retained:
-    """Return the mean SR under corruption of one part, or the first part's minus the second's."""
+    """Return the mean SR of ``parts[0]``, minus the mean SR of ``parts[1]`` if it exists."""
     means, units = [part.corrupted.mean(axis=0) for part in parts], parts[0].units
     estimate = (
         bootstrap.share(means[0], units=units)

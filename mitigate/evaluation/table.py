@@ -1,11 +1,12 @@
 """Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
-``--draw scene`` computes intervals for new scenes, instead of new episodes in the same scenes.
-``--critical 0.1,0.5`` compares the severities at which 10 % and 50 % of the clean success are lost.
+With ``--draw scene``, the intervals describe the variation between scenes, and not only between
+episodes of the same scenes. With ``--critical 0.1,0.5``, the table compares the severities at which
+10 % and 50 % of the clean success are lost.
 
-The command accepts row files, and run or sweep folders that may be incomplete. It prints the table
-and writes ``table.md``, ``heatmap.png`` and ``severity.png``, or with ``--critical`` the files
-``critical.md``, ``critical.json`` and ``critical.png``.
+The command accepts row files, and folders of runs or sweeps, which may be incomplete. The command
+prints the table and writes ``table.md``, ``heatmap.png`` and ``severity.png``. With ``--critical``,
+it writes ``critical.md``, ``critical.json`` and ``critical.png`` instead.
 """
 
 from __future__ import annotations
@@ -29,17 +30,19 @@ def run(
     drawn: str = "episode",
     critical: Sequence[float] | None = None,
 ) -> list[Path]:
-    """Join the rows of ``paths``, write the report to ``out``, and return its files (table first).
+    """Join the rows of ``paths``, write a report to ``out``, and return the report's files.
+
+    The table is the first file.
 
     Args:
         paths: row files or folders.
         out: folder of the report.
         seeds: the seeds to use, or None for all.
-        against: the column with which the others are compared. The default is "base" or "before",
-            or else the first column.
+        against: the column with which the other columns are compared. The default is the column
+            "base" or "before" if it exists, and otherwise the first column.
         drawn: unit that the bootstrap resamples, "episode" or "scene".
-        critical: fractions of the clean success; the report then consists of critical severities
-            and areas under the retention curve (``critical.py``).
+        critical: fractions of the clean success. If they are given, the report consists of critical
+            severities and areas under the retention curve (``critical.py``).
 
     Raises:
         FileNotFoundError: A path contains no rows.
@@ -65,7 +68,7 @@ def run(
 
 
 def _losses(text: str) -> list[float]:
-    """Return the numbers in ``text``, which are separated by commas and may be in brackets."""
+    """Return the comma-separated numbers in ``text``, which may be in brackets."""
     try:
         return [float(word) for word in text.strip("[] ").split(",")]
     except ValueError:

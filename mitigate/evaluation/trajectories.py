@@ -26,11 +26,11 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
 
-# colours of Okabe and Ito, readable without colour vision; one per agent for corrupted runs
+# colour-blind safe colours of Okabe and Ito; under corruption, each agent has its own colour
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
 CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80
-PICTURES = 4  # number of episodes that are drawn after training (heuristic)
+PICTURES = 4  # maximum number of episodes that :func:`write_pictures` draws (heuristic)
 
 
 @dataclass(frozen=True)
@@ -39,13 +39,13 @@ class Walk:
 
     Attributes:
         name: text in the legend.
-        path: float64 [n, 2], in plan metres.
+        path: positions on the floor plan in metres, float64 [n, 2].
         won: whether the episode succeeded.
-        metres_left: geodesic metres to the goal at the end.
+        metres_left: geodesic distance to the goal at the end, in metres.
         colour: colour of the line.
         agent: name of the agent.
         corruption: the corruption.
-        measures: the measures as in a result row.
+        measures: the measures of the episode, as in a result row.
     """
 
     name: str
@@ -73,18 +73,18 @@ def draw_trajectories(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> Path:
-    """Run an episode and write a PNG with the start panorama, plan, reference path and
-    trajectories.
+    """Run an episode with each agent, and write a PNG of the trajectories.
 
-    The first agent runs the episode clean and corrupted; the others run it only corrupted. If
-    ``seed`` is the seed of an evaluation, these are the trajectories of its rows. If the
-    world has a method ``draw(axes)``, it draws the plan.
+    The PNG also shows the start panorama, the floor plan and the reference path. The first agent
+    runs the episode with and without corruption; the other agents run it only with corruption. If
+    ``seed`` is the seed of an evaluation, the trajectories are those behind the rows of that
+    evaluation. If the world has a method ``draw(axes)``, this method draws the floor plan.
 
     Args:
         agents: agents by their names in the legend.
         world: the world.
         episode: the episode.
-        corruption: the corruption of corrupted runs.
+        corruption: the corruption.
         out: the PNG to write; parent folders are created.
         seed: corruption seed.
         guards: guards by the name of their agent.
@@ -97,7 +97,7 @@ def draw_trajectories(
 def draw_episode(
     walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> Figure:
-    """Draw the start panorama (clean and corrupted), the plan, the reference path and ``walks``."""
+    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories."""
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -121,7 +121,7 @@ def draw_episode(
 def first_sight(
     world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> tuple[str, list[np.ndarray]]:
-    """Return a sensor's name and its clean and corrupted frames at the start of an episode.
+    """Return the name of a sensor and its clean and corrupted frame at the start of an episode.
 
     The sensor is "depth" if ``corruption`` changes only depth or the world has no RGB, else "rgb".
     The frames are pictures, uint8 [H, W, 3]. For a world without frames, the name is "" and there
@@ -143,9 +143,9 @@ def _picture(frames: np.ndarray, far: float) -> np.ndarray:
 
 
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
-    """Yield each (episode id, corruption) at which ``before`` fails and ``after`` succeeds.
+    """Yield pairs (episode id, corruption) for which ``before`` fails and ``after`` succeeds.
 
-    The order follows the rows, and each episode and each corruption occurs only once.
+    The pairs are in the order of the rows. No episode and no corruption occurs in two pairs.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()
@@ -167,10 +167,10 @@ def write_pictures(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> list[Path]:
-    """Draw the first ``PICTURES`` episodes that the last agent solves and the first one fails.
+    """Draw up to ``PICTURES`` episodes that the last agent solves and the first agent fails.
 
-    If there is no such episode (:func:`won_back`), or only one agent, the first corrupted row is
-    drawn. For a world without poses, no pictures are drawn.
+    If there is no such episode (:func:`won_back`), or only one agent, the episode of the first
+    corrupted row is drawn. If the world has no poses, nothing is drawn.
 
     Args:
         agents: the agents before and after training, by their names in ``rows``.
@@ -193,7 +193,8 @@ def write_pictures(
     chosen = list(won_back(rows, before, after))[:PICTURES] or _first_corrupted(rows)
     paths = []
     for episode_id, corruption in chosen:
-        safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]  # an id may be an invalid file name
+        # an episode id may contain characters that are invalid in a file name
+        safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
         paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
@@ -213,10 +214,11 @@ def run_agents(
     seed: int,
     guards: Mapping[str, Guards] | None = None,
 ) -> Iterator[Walk]:
-    """Run ``episode``, and yield the first agent's clean trajectory and then all corrupted ones.
+    """Run ``episode`` with each agent, and yield the trajectories.
 
-    Keys and measures are the same as in an evaluation with ``seed``. ``guards`` maps the names of
-    agents to their guards.
+    The first trajectory is that of the first agent without corruption. The other trajectories are
+    those of all agents under ``corruption``. Random keys and measures are the same as in an
+    evaluation with ``seed``. ``guards`` maps the names of agents to their guards.
     """
     first = next(iter(agents))
     plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]
@@ -234,7 +236,10 @@ def run_agents(
 
 
 class Traced(WorldWrapper):
-    """A world that records the agent's trajectory: ``path`` is an array [n, 2] in plan metres."""
+    """A world that records the agent's trajectory.
+
+    ``path`` lists the positions on the floor plan in metres.
+    """
 
     def __init__(self, world: World) -> None:
         super().__init__(world)

@@ -1,10 +1,10 @@
 """Define the interface of guards, which change the inputs of an agent at run time.
 
 A guard may change the instruction of an episode (``begin``), the frames of an observation
-(``observe``), or the agent itself while an episode runs (``attach``). The default of each method
-changes nothing. The safeguard (text), the restorer (frames), users' callables and test-time
-adaptation are guards; ``opening.py`` builds them from the options ``safeguard=``, ``restore=`` and
-``adapt=``.
+(``observe``), or the agent itself while an episode runs (``attach``). The default implementation of
+each method changes nothing. Examples of guards are the safeguard (for text), the restorer (for
+frames), users' callables, and the methods of test-time adaptation. ``opening.py`` builds them from
+the options ``safeguard=``, ``restore=`` and ``adapt=``.
 
 This module needs no torch.
 """
@@ -44,18 +44,19 @@ class EpisodeStart:
 
 
 class Guard:
-    """Base class of guards. Subclasses override methods, whose defaults change nothing.
+    """Base class of guards; its methods change nothing unless a subclass overrides them.
 
     An episode's result must not depend on other episodes or on their order. So a guard that
-    remembers earlier frames overrides ``for_episode``. A guard that overrides ``attach`` may keep
-    state in the agent; its episodes run one after the other.
+    remembers earlier frames must override ``for_episode``. A guard that overrides ``attach`` may
+    keep state in the agent; with such a guard, episodes run one after the other.
 
     Attributes:
         label: part of a table's column name.
-        frames: frames that ``observe`` reads or changes.
-        version: identifies state that :meth:`fingerprint` cannot read, such as weights in a file.
-        continual: whether ``attach`` continues from what earlier episodes left. The episodes of a
-            condition then run in order in one process.
+        frames: names of the sensors whose frames ``observe`` reads or changes.
+        version: text that identifies state which :meth:`fingerprint` cannot read, such as weights
+            in a file.
+        continual: whether ``attach`` uses state from earlier episodes. With a continual guard, the
+            episodes of a condition run in order in one process.
     """
 
     label: str = ""
@@ -68,7 +69,7 @@ class Guard:
         return episode.instruction
 
     def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
-        """Return the instruction of each episode; a model may compute them as a batch."""
+        """Return the instruction for each episode; a subclass may process them as one batch."""
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -82,8 +83,9 @@ class Guard:
     def for_episode(self) -> Guard:
         """Return the guard for one episode.
 
-        A guard that remembers earlier frames returns a new guard without memories. ``observe`` of
-        such a guard is called at every step, also for frames that the agent does not read.
+        A guard that remembers earlier frames returns a new guard without memories. The method
+        ``observe`` of such a guard is called at every step, also if the agent does not read the
+        frames.
         """
         return self
 
@@ -95,24 +97,24 @@ class Guard:
         return nullcontext()
 
     def restart(self) -> None:
-        """Forget all earlier episodes; a continual guard gets this call before each condition."""
+        """Forget all earlier episodes. Continual guards are restarted before each condition."""
 
     def calibrate(self, agent: Any, world: World, episode: Callable[[int], Episode]) -> None:
-        """Measure what the guard must know about the agent, before the evaluation.
+        """Measure properties of the agent that the guard needs; called before the evaluation.
 
         Args:
             agent: the agent.
             world: a world, without corruptions.
-            episode: returns a training episode by its number.
+            episode: function that returns a training episode, given its number.
         """
 
     def check_agent(self, agent: Any) -> None:
         """Raise ValueError if the guard cannot adapt ``agent``."""
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Return the guard that is sent to the worker processes of these episodes.
+        """Return the guard to send to the worker processes that run these episodes.
 
-        A guard with a large model can compute all its answers here.
+        A guard with a large model can compute all its answers here, so that workers need no model.
         """
         return self
 
@@ -138,12 +140,12 @@ class Guard:
         return f"{kind}-{hash_of(content.parts, {})}"
 
     def check_shown(self, sensors: Iterable[str], where: str) -> None:
-        """Raise ValueError if ``where`` shows none of the ``frames`` that this guard changes."""
+        """Raise ValueError if ``sensors`` has none of the ``frames`` that this guard changes."""
         available = [*sensors]
         if overrides(self, "observe") and not set(self.frames) & {*available}:
             raise ValueError(
                 f"The guard {self.label or type(self).__name__} is for {', '.join(self.frames)}, "
-                f"but {where} shows {', '.join(available) or 'no frames'}: leave restore= out."
+                f"but {where} shows {', '.join(available) or 'no frames'}: omit restore=."
             )
 
 
@@ -168,13 +170,13 @@ class Guards(Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The frames that any guard reads or changes, or an empty tuple."""
+        """The sensors whose frames at least one guard reads or changes."""
         names = (name for guard in self._overriding("observe") for name in guard.frames)
         return tuple(dict.fromkeys(names))
 
     @property
     def adapts(self) -> bool:
-        """Whether a guard changes the agent."""
+        """Whether at least one guard changes the agent."""
         return bool(self._overriding("attach"))
 
     def begin(self, episode: EpisodeStart) -> str:
@@ -204,7 +206,7 @@ class Guards(Guard):
 
     @property
     def continual(self) -> bool:  # type: ignore[override]
-        """Whether a guard continues from earlier episodes."""
+        """Whether at least one guard uses state from earlier episodes."""
         return any(guard.continual for guard in self.guards)
 
     @contextmanager
@@ -236,16 +238,16 @@ class Guards(Guard):
     def fingerprint(self) -> str:
         """Return the fingerprints of all guards, joined by "+".
 
-        If no guard changes the instruction, the text starts with "none"; without guards, it is
-        "none".
+        If no guard changes the instruction, the text starts with "none". If there are no guards at
+        all, the text is only "none".
         """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
 
     def frames_hash(self) -> str | None:
-        """Return the joined fingerprints of the guards that change frames, or None.
+        """Return the fingerprints of all guards that change frames, joined by "+".
 
-        The fingerprint of a restorer appears without its prefix.
+        The prefix of a restorer's fingerprint is removed. If no guard changes frames, return None.
         """
         fingerprints = [guard.fingerprint() for guard in self._overriding("observe")]
         return (
@@ -267,10 +269,10 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """Wrapper around a world whose frames are changed by a guard.
+    """Wrapper around a world in which a guard changes the frames.
 
-    Frames are changed only when the agent reads them, so the guard costs nothing for other frames.
-    A guard that remembers frames receives all of them. ``observation.clean`` does not change.
+    The guard runs only when the agent reads a frame, so frames that are not read cost nothing. A
+    guard that remembers frames receives all of them. ``observation.clean`` does not change.
     """
 
     def __init__(self, world: World, guards: Guards) -> None:
@@ -294,5 +296,5 @@ class Guarded(WorldWrapper):
 
 
 def guarded(world: World, guards: Guards) -> World:
-    """Return ``world`` with guarded frames, or ``world`` itself if no guard changes frames."""
+    """Wrap ``world`` so that ``guards`` change its frames; if no guard does, return ``world``."""
     return Guarded(world, guards) if guards.frames else world

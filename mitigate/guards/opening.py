@@ -1,6 +1,6 @@
 """Build guards from the options ``safeguard=``, ``restore=`` and ``adapt=``.
 
-Only the chosen ones are imported.
+Only the modules of the chosen guards are imported.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ class TextGuard(Guard):
         return [decision.text for decision in decisions]
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
-        """Compute all answers in this process, which holds the only copy of a language model."""
+        """Compute all answers here, so that workers need no copy of the language model."""
         texts = [episode.instruction for episode in episodes]
         answers = dict(zip(texts, self.begin_all(episodes), strict=True))
         return AnsweredText(answers, self.label, self.fingerprint())
@@ -50,8 +50,9 @@ class TextGuard(Guard):
 
 
 class AnsweredText(Guard):
-    """The precomputed answers of a :class:`TextGuard`, for worker processes. Other texts stay
-    unchanged.
+    """A guard for worker processes that contains the precomputed answers of a :class:`TextGuard`.
+
+    Texts without a precomputed answer stay unchanged.
     """
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
@@ -80,8 +81,8 @@ def open_guards(
         restore: value of ``restore=`` (:func:`open_restorer`).
         sensors: names of the world's sensors.
         log: file for the decisions of the safeguard.
-        adapt: a value as in ``adaptation/choices.py``, or a guard. Call ``calibrate`` before its
-            first episode.
+        adapt: a value as in ``adaptation/choices.py``, or a guard. The caller must call
+            ``calibrate`` before the first episode.
     """
     guards: list[Guard] = []
     restorer = open_restorer(restore, sensors)
@@ -96,12 +97,12 @@ def open_guards(
 
 
 def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
-    """Build the guard of ``restore=`` (``frames/choices.py``); for None and "none", return None.
+    """Build the guard of ``restore=`` (``frames/choices.py``), or return None for None and "none".
 
     Raises:
         FileNotFoundError: The folder contains no restorer.
-        ValueError: The restorer is damaged, the callable does not exist, or the guard changes none
-            of the world's ``sensors``.
+        ValueError: The restorer is damaged, the callable does not exist, or the guard changes no
+            sensor in ``sensors``.
     """
     if choice in NONE:
         return None
@@ -125,10 +126,10 @@ def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard
 
 
 def open_adaptations(choice: str | Guard | None) -> list[Guard]:
-    """Return the guards of ``adapt=``.
+    """Return the guards that ``adapt=`` names.
 
     Raises:
-        ValueError: The method does not exist.
+        ValueError: A method or a reset in ``choice`` does not exist.
     """
     if isinstance(choice, Guard):
         return [choice]
@@ -147,7 +148,7 @@ def open_adaptations(choice: str | Guard | None) -> list[Guard]:
 def labels(
     safeguard: str | None, restore: str | None, adapt: str | Guard | None = None
 ) -> list[str]:
-    """Return the labels of the guards of the three options, without building the guards."""
+    """Return the labels of the guards that the three options name, without building the guards."""
     names = []
     if safeguard not in NONE:
         from mitigate.guards.text import choices

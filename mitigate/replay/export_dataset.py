@@ -1,7 +1,8 @@
 """Write an oracle's episodes as a LeRobot dataset, version 3.
 
-RGB becomes a lossless video, depth a lossless video of lerobot's 12-bit codes. The state is the
-pose (x, y, heading), the action is the number of the oracle's action.
+RGB frames are written as a lossless video. Depth frames are encoded in lerobot's 12-bit format and
+written as a lossless video. The state is the pose (x, y, heading). The action is an integer that
+identifies the oracle's action.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ FIRST = {"chunk_index": 0, "file_index": 0}  # all episodes are in the first fil
 
 
 class DatasetWriter:
-    """Collects episodes and writes them as one dataset.
+    """Collects episodes and writes them to one dataset.
 
     Args:
         out: Folder of the dataset.
@@ -52,7 +53,11 @@ class DatasetWriter:
         self._tasks: list[str] = []
 
     def add(self, steps: Sequence[dict[str, np.ndarray]], actions: list[int], task: str) -> None:
-        """Add an episode: frames and pose of each step, the action at each step, and the text."""
+        """Add an episode.
+
+        ``steps`` contains the frames and the pose of each step, ``actions`` the action at each
+        step, and ``task`` the instruction.
+        """
         self._episodes.append([*steps])
         self._actions.append(actions)
         self._tasks.append(task)
@@ -60,7 +65,7 @@ class DatasetWriter:
     def write(self) -> None:
         """Write all files.
 
-        ``meta/info.json`` is last, so that an incomplete dataset cannot be opened.
+        ``meta/info.json`` is written last, so that an incomplete dataset cannot be opened.
         """
         height, width = self._episodes[0][0][RGB].shape[:2]
         tasks = list(dict.fromkeys(self._tasks))

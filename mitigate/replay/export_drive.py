@@ -1,9 +1,9 @@
 """Record an oracle's episodes as drives (recordings), as examples for ``mitigate replay``:
 ``mitigate export_drive OUT``.
 
-OUT is a folder. Each episode is written to this folder as a drive, in the form that a robot with
-one 90-degree RGB-D camera would record: a folder of frames, or a bag of ROS 1 or ROS 2 (MCAP).
-With form=lerobot, OUT becomes one LeRobot dataset with all episodes.
+OUT is a folder. Each episode is written to this folder as one drive, as a robot with a 90-degree
+RGB-D camera would record it. A drive is a folder of frames, a ROS 1 bag, or a ROS 2 bag (MCAP).
+With form=lerobot, OUT becomes one LeRobot dataset that contains all episodes.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from mitigate.core.output import output_folder
 from mitigate.corruptions.frame_files import counts
 
 FORMS = ("frames", "bag", "mcap", "lerobot")
-_NOT_IN_NAMES = re.compile(r"[^\w-]+")  # characters that are replaced in the name of a drive
-UNIT = 0.001  # metres per count of 16-bit depth
+_NOT_IN_NAMES = re.compile(r"[^\w-]+")  # these characters are replaced in the name of a drive
+UNIT = 0.001  # metres per unit of a 16-bit depth value
 SECOND = 1_000_000_000  # duration of a step in nanoseconds (one second)
 TOPICS = {
     RGB: "/camera/color/image_raw",
@@ -63,7 +63,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 
     Raises:
         ValueError: The form or split is unknown, the world has no expert or several cameras, or a
-            drive already exists (checked before any episode runs).
+            drive already exists. The check precedes all episodes.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
@@ -93,7 +93,8 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
                     write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    # written before the bag, so that a complete bag always has its instruction
+                    # the instruction is written before the bag, so that a complete bag always has
+                    # one
                     write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
             root.expected.append(path)
@@ -118,7 +119,10 @@ def _write_dataset(world: Any, listed: Sequence[Any], out: Path) -> Path:
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
-    """Return the output path of each episode; ids are reduced to letters, digits, "_" and "-".
+    """Return the output path of each episode.
+
+    The path is the episode id, in which other characters than letters, digits and "_" are replaced
+    by "-".
 
     Raises:
         ValueError: Two episodes have the same path, or a path already exists.
@@ -140,7 +144,7 @@ def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
 def oracle(
     world: Any, episode: Any, actions: list[int] | None = None
 ) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the observation of each step of the expert, the one before STOP included.
+    """Yield the observation at each step of the expert, including the step at which it stops.
 
     Args:
         world: The world.
@@ -159,8 +163,9 @@ def oracle(
 
 
 def write_frames(path: Path, steps: Sequence[dict[str, np.ndarray]], instruction: str) -> None:
-    """Write a recorded drive as a folder with ``rgb/``, ``depth/``, ``poses.csv`` and
-    ``instruction.txt``.
+    """Write a recorded drive as a folder of frames.
+
+    The folder contains ``rgb/``, ``depth/``, ``poses.csv`` and ``instruction.txt``.
     """
     for number, step in enumerate(steps):
         write_bytes(path / RGB / f"{number:06d}.png", _png(step[RGB][..., ::-1]))
@@ -226,7 +231,10 @@ def messages(
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
-    """Return the odometry at a plan pose; the yaw in ROS is the heading plus a quarter turn."""
+    """Return the odometry message of a pose on the floor plan.
+
+    The yaw in ROS is the heading plus 90 degrees.
+    """
     half = (float(pose[2]) + np.pi / 2) / 2
     z, w = float(np.sin(half)), float(np.cos(half))
     point = types["geometry_msgs/msg/Point"](float(pose[0]), float(pose[1]), 0.0)

@@ -1,4 +1,4 @@
-"""Open the agents and the drives of a replay, and check that they fit."""
+"""Open the agents and the drives of a replay, and check that they are compatible."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def load_agents(agents: Any) -> dict[str, Any]:
 
     Args:
         agents: An agent, a folder of weights, or ``module:callable`` for a function that returns
-            an agent. Several agents are a list of these, or a mapping from names to these.
+            an agent. Several agents are given as a list, or as a mapping from names to agents.
 
     Raises:
         FileNotFoundError: There are no weights at a path.
@@ -57,7 +57,7 @@ def _unique_names(agents: Sequence[Any]) -> list[str]:
 
 
 def _load(agent: Any) -> Any:
-    """Return an agent from an object, a folder of weights, or ``module:callable``."""
+    """Return the agent that is given as an object, a folder of weights, or ``module:callable``."""
     from mitigate.agents.loading import load
 
     if not isinstance(agent, (str, Path)):
@@ -84,7 +84,7 @@ def _check_agent(agent: Any, what: str) -> None:
 
 
 def views_of(agent: Any) -> int:
-    """Return the number of views that an agent reads; the default is one camera."""
+    """Return the number of camera views that an agent reads; the default is 1."""
     from mitigate.agents.agent import as_agent
 
     return as_agent(agent).views or 1
@@ -122,10 +122,10 @@ def open_drives(config: ReplayConfig, paths: Iterable[str | Path]) -> list[Sourc
 def check_drives(
     sources: Sequence[Source], agents: Mapping[str, Any], guards: Guards = NO_GUARDS
 ) -> None:
-    """Check that every drive has an instruction and the frames for the agents and guards.
+    """Check that each drive has an instruction and the frames that the agents and guards need.
 
     Raises:
-        ValueError: A drive lacks one of them.
+        ValueError: A drive has no instruction, or lacks frames.
     """
     from mitigate.agents.agent import as_agent
     from mitigate.worlds.recorded import kinds
@@ -151,8 +151,9 @@ def check_drives(
 def load_drives(
     config: ReplayConfig, sources: Sequence[Source], views: Iterable[int]
 ) -> dict[int, list[Recording]]:
-    """Load every drive for each number of views (12: panorama, 1: one camera) and print what was
-    read.
+    """Load every drive once for each number of views, and print what was read.
+
+    A panorama has 12 views, and a single camera has 1.
     """
     from mitigate.worlds.recorded import Step, load
 

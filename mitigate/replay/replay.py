@@ -1,10 +1,11 @@
 """Run agents on recorded drives: ``mitigate replay DRIVE agents=[checkpoints/recurrent/base]``.
 
-DRIVE is a folder of frames, a bag of ROS 1, ROS 2 or MCAP, or a LeRobot dataset; several are
-allowed. An agent is a folder of weights, or module:callable for your own code. Each agent gets the
-clean drive and the drive under each corruption, and decides at each step what it would do. The
-output is every decision (``decisions.jsonl``), the share that each corruption changes
-(``table.md``, ``changes.png``), and pictures of some changed decisions.
+DRIVE is a folder of frames, a ROS 1 bag, a ROS 2 bag (also MCAP), or a LeRobot dataset. Several
+drives are allowed. An agent is a folder of weights, or module:callable for your own code. Each
+agent receives the frames of the drive without corruption and under each corruption. At each step,
+the agent decides what it would do. The output consists of all decisions (``decisions.jsonl``), the
+fraction of decisions that each corruption changes (``table.md``, ``changes.png``), and pictures of
+some changed decisions.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay.inputs import check_drives, load_agents, load_drives, open_drives, views_of
 
 DECISIONS, TABLE, SETTINGS = "decisions.jsonl", "table.md", "replay.json"
-UNSAVED = ("out", "runs", "suite", "check")  # options that do not affect results
+# the stored settings omit these options, because they do not affect results
+UNSAVED = ("out", "runs", "suite", "check")
 
 
 @dataclass
@@ -89,7 +91,7 @@ class ReplayConfig:
         return suite_conditions(self.suite) if self.conditions is None else self.conditions
 
 
-# clean frames alone leave nothing to compare
+# suite=clean is rejected, because without a corruption there is nothing to compare
 conf.register("replay", ReplayConfig, rejected={"suite": ["clean"]})
 
 
@@ -102,11 +104,13 @@ def replay_recordings(
 ) -> Path:
     """Run agents on recorded drives, print the table, and write the report.
 
-    The call does the same as the command ``mitigate replay`` and also accepts agents as objects.
+    The function does the same as the command ``mitigate replay``, but also accepts agents as
+    objects.
 
     Args:
-        agents: An agent (an object with ``reset`` and ``act``), a folder of weights, or
-            ``module:callable``; a list of these, or a mapping of names to these.
+        agents: An agent (an object with ``reset`` and ``act``), a folder of weights, or the
+            ``module:callable`` of a function that returns an agent. Several agents are given as a
+            list, or as a mapping from names to agents.
         recordings: The path of one or several drives: bags, folders, or LeRobot datasets.
         suite: Name of the suite of corruptions.
         options: Other options of ``mitigate replay --help``, such as ``conditions=["flare"]``,
@@ -140,7 +144,7 @@ def run(
     Args:
         config: The options.
         paths: The drives.
-        agents: Agents by name; None loads those that ``config`` names.
+        agents: Agents by name. The default is the agents that ``config`` names.
 
     Returns:
         The folder of the report, which is not written if ``config.check`` is set.
@@ -169,7 +173,7 @@ def run(
     recordings = load_drives(config, sources, {views_of(agent) for agent in agents.values()})
     with FolderLock(out) as lock:
         lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
-        for name, corruption in product(agents, corruptions):  # removes pictures of an earlier run
+        for name, corruption in product(agents, corruptions):  # delete pictures of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
         with atomic_text(out / SETTINGS) as file:
             json.dump(settings, file, indent=1)
@@ -185,7 +189,7 @@ def run(
 
 
 def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
-    """Raise ValueError for invalid options, or if there is no drive."""
+    """Raise ValueError if an option is invalid or no drive is given."""
     if not paths:
         raise ValueError(
             "A drive is missing: mitigate replay FOLDER_OR_BAG agents=[checkpoints/recurrent/base]"
@@ -194,13 +198,13 @@ def check_options(config: ReplayConfig, paths: Sequence[str]) -> None:
         raise ValueError(f"size must be 16 to 1024 pixels, got {config.size}.")
     if not {*config.names} - {"clean"} or config.severity == 0:
         raise ValueError(
-            "Clean frames alone leave nothing to compare. Add a corruption to conditions=, with "
-            "severity above 0."
+            "Without a corruption there is nothing to compare. Add a corruption to conditions=, "
+            "with a severity above 0."
         )
 
 
 def _name(paths: Sequence[str]) -> str:
-    """Return a name for the drives, from the first drive's name and the number of others."""
+    """Return a name for the drives: the name of the first drive and the number of the others."""
     first = Path(paths[0])
     more = f"+{len(paths) - 1}" if len(paths) > 1 else ""
     return (first.stem if first.is_file() else first.name) + more
@@ -211,7 +215,7 @@ def _settings(
 ) -> dict[str, Any]:
     """Return all settings that determine the report, as JSON data.
 
-    Agents without weights are described only by the name of their class.
+    If an agent has no weights, only the name of its class is included.
     """
     from torch import nn
 
@@ -227,10 +231,10 @@ def _settings(
 
 
 def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
-    """Raise ValueError if ``out`` is not a folder, or contains a report with different settings."""
+    """Raise ValueError if ``out`` is a file, or contains a report with different settings."""
     fix = "Name another folder (out=...), or delete this one."
     if out.exists() and not out.is_dir():
-        raise ValueError(f"{out} must be a folder, which a replay writes into. {fix}")
+        raise ValueError(f"{out} must be a folder, because a replay writes several files. {fix}")
     if not is_regular(out / SETTINGS):
         other_files = [out / name for name in (DECISIONS, TABLE) if (out / name).exists()]
         if other_files:
@@ -261,7 +265,7 @@ def replay(
 
     Args:
         agents: Agents by name.
-        recordings: Recordings by number of views.
+        recordings: The recordings for each number of views.
         corruptions: Corruptions, clean first.
         out: Folder of the report.
         severity: Severity, for titles.
@@ -335,7 +339,7 @@ def replay(
 
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
-    """Return the reason why a corruption does not apply to an agent and drives, or ""."""
+    """Return why a corruption does not apply to an agent and drives, or "" if it applies."""
     from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts, record
 
@@ -352,7 +356,7 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
 
 
 def _worst(corruptions: Sequence[Any], changes: Mapping[str, Any]) -> Any:
-    """Return the frame corruption that changed the most decisions, or None."""
+    """Return the corruption of frames that changed the most decisions, or None if none was run."""
     of_frames = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
     return max(of_frames, key=lambda c: changes[c.name].changed.value, default=None)
 
@@ -364,7 +368,10 @@ def _draw(
     rerun: Callable[..., Any],
     path: Path,
 ) -> list[Path]:
-    """Draw decisions that a corruption changed, from the drive with the most such decisions."""
+    """Draw some decisions that a corruption changed.
+
+    All these decisions come from the drive with the most changed decisions.
+    """
     from mitigate.replay import report
     from mitigate.replay.walk import changed_steps
 

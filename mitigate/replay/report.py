@@ -26,8 +26,9 @@ from mitigate.replay.walk import (
 )
 from mitigate.worlds.recorded import Recording
 
-AgentChanges = Mapping[str, Mapping[str, Changes]]  # maps agent and condition to the changes
-MAX_CELLS = 6  # maximum number of decisions in a picture
+# maps the names of agent and condition to the changes of decisions
+AgentChanges = Mapping[str, Mapping[str, Changes]]
+MAX_CELLS = 6  # maximum number of decisions that a picture shows
 
 
 def table(
@@ -41,12 +42,12 @@ def table(
     """Return the report as Markdown.
 
     Args:
-        changes: Changes by agent and condition.
+        changes: Changes of decisions by agent and condition.
         severity: Severity of the corruptions.
-        steps: Number of steps of all drives.
+        steps: Number of steps, summed over all drives.
         drives: Number of drives.
         guards: Guards that processed the frames.
-        notes: Warnings that the reader must know.
+        notes: Warnings that are shown above the tables.
 
     Returns:
         A table of changed decisions and a table of the other measures.
@@ -87,14 +88,14 @@ def table(
 
 
 def _conditions(changes: AgentChanges) -> list[str]:
-    """Return the conditions that any agent has run, in order."""
+    """Return the conditions that at least one agent has run, in order."""
     return list(dict.fromkeys(name for by_condition in changes.values() for name in by_condition))
 
 
 def _other_measures(changes: AgentChanges) -> list[str]:
-    """Return a table of stops, aims (target positions) and agreement with the driver.
+    """Return a table of stops, changed target positions and agreement with the driver.
 
-    The distance between actions is added if an agent has continuous actions.
+    If an agent has continuous actions, a column with the distance between actions is added.
     """
     text = (
         "False stops: steps with STOP here but not on clean frames; missed stops: the reverse. Aim "
@@ -124,7 +125,7 @@ def _other_measures(changes: AgentChanges) -> list[str]:
 
 
 def summaries(recordings: Sequence[Recording]) -> str:
-    """Return what was read from each drive, as Markdown."""
+    """Return a Markdown list that describes what was read from each drive."""
     lines = ["", "Drives:", ""]
     for recording in recordings:
         first, *others = recording.summary or (recording.name,)
@@ -133,8 +134,9 @@ def summaries(recordings: Sequence[Recording]) -> str:
 
 
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
-    """Draw the fraction of changed decisions, with one row per condition and one column per
-    agent.
+    """Draw the fraction of changed decisions as a heatmap.
+
+    The heatmap has one row per condition and one column per agent.
     """
     agents = list(changes)
     names = [name for name in _conditions(changes) if name != "clean"]
@@ -158,7 +160,7 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
 
 
 def spread(changed: Sequence[int]) -> list[int]:
-    """Choose at most ``MAX_CELLS`` steps, spread evenly."""
+    """Choose at most ``MAX_CELLS`` of the steps, spread evenly."""
     if len(changed) <= MAX_CELLS:
         return list(changed)
     return [changed[i] for i in np.linspace(0, len(changed) - 1, MAX_CELLS).round().astype(int)]
@@ -167,7 +169,10 @@ def spread(changed: Sequence[int]) -> list[int]:
 def picture(
     recording: Recording, corruption: Corruption, clean: Answers, corrupted: Answers, path: Path
 ) -> Path:
-    """Draw the steps in ``corrupted.seen`` with clean frame, corrupted frame and both decisions."""
+    """Draw the steps in ``corrupted.seen``.
+
+    For each step, the picture shows the clean frame, the corrupted frame and both decisions.
+    """
     corrupted_frames = [part for part in corruption.modalities if part in recording.frames]
     modality = (*corrupted_frames, *recording.frames)[0]
     frames = recording.frames[modality]
@@ -194,9 +199,10 @@ def picture(
 
 
 def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
-    """Draw a frame, or the middle parts of a panorama's views, as uint8 [H, W, 3].
+    """Return a picture of a frame, uint8 [H, W, 3].
 
-    Depth is coloured over the range of the clean frame.
+    For a panorama, the middle parts of its views are joined. Depth is coloured over the range of
+    the clean frame.
     """
     flat = strip(frame) if frame.ndim == 4 else frame
     return flat if flat.shape[-1] == 3 else depth_picture(flat[..., 0], max(1e-3, clean.max()))

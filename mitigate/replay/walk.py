@@ -25,13 +25,16 @@ from mitigate.worlds.world import Corrupted
 
 ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 # Heuristic limits.
-MIN_AIM_SHIFT = 0.5  # shift in metres (two steps) below which an aim counts as unchanged
-MIN_ACTION_SHIFT = 0.1  # fraction of a number's range in continuous actions
-ROUNDING = 1e-6  # absolute difference below which continuous actions are equal
-OFTEN = 0.2  # minimum fraction of steps with an action that the driver takes often
-RARELY = 0.1  # an agent that takes an action less often, relative to the driver, takes it rarely
-MIN_BLOCKS = 8  # minimum number of blocks of steps for the bootstrap
-# number of consecutive steps that are resampled together, because they are correlated
+# a target position counts as changed if it moved by more than this (metres; two steps)
+MIN_AIM_SHIFT = 0.5
+# a continuous action counts as changed if one of its numbers moves by this fraction of the range
+MIN_ACTION_SHIFT = 0.1
+ROUNDING = 1e-6  # continuous actions whose numbers differ by less are equal
+OFTEN = 0.2  # the driver takes an action often if it takes it at this fraction of the steps
+# the agent takes an action rarely if it takes it less than this fraction as often as the driver
+RARELY = 0.1
+MIN_BLOCKS = 8  # minimum number of blocks of steps for a bootstrap interval
+# number of steps per block; consecutive steps are correlated, so a block is resampled as a unit
 BLOCK_STEPS = 10
 
 
@@ -41,8 +44,9 @@ class Answers:
 
     Attributes:
         actions: int [T], or float [T, A] for continuous actions.
-        aims: float [T, 2], the plan position (metres) to which the agent moves, or NaN.
-        seen: Frames of some steps as the agent received them, by step and sensor.
+        aims: array of the positions to which the agent wants to move, on the floor plan in metres,
+            float [T, 2]. A position is NaN if the agent has no target.
+        seen: The frames that the agent received at some steps, by step and sensor.
     """
 
     actions: np.ndarray
@@ -61,16 +65,16 @@ def walk(
 ) -> Answers:
     """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
-    After each step, the agent is informed of the driver's motion (``Agent.taken``). If this motion
-    is unknown, the agent is informed of its decision on clean frames instead. So only frames and
-    instructions differ between the runs.
+    After each step, the agent is told how the driver moved (``Agent.taken``). If the motion is
+    unknown, the agent is told its own decision on clean frames instead. So runs under different
+    corruptions differ only in frames and instructions.
 
     Args:
         agent: The agent.
         recording: The drive.
         corruption: Corruption of frames and instruction; ``CLEAN`` for the reference run.
         seed: Corruption seed.
-        keep: Steps whose frames are returned.
+        keep: Steps whose frames are returned in ``Answers.seen``.
         clean: Decisions on clean frames, or None if this is the clean run.
         guards: Guards between the drive and the agent.
 
@@ -120,7 +124,9 @@ def walk(
 
 
 def _decision(answer: Any, agent: Agent) -> int | np.ndarray:
-    """Return an answer as a whole number, or as float [A] if it is a continuous action.
+    """Return the answer of an agent as an action.
+
+    A discrete action is a whole number, and a continuous action is an array float [A].
 
     Raises:
         ValueError: The answer is neither.
@@ -133,17 +139,17 @@ def _decision(answer: Any, agent: Agent) -> int | np.ndarray:
 
 
 def named_action(action: Any) -> str | list[float]:
-    """Return the name of a discrete action, or the rounded numbers of a continuous one."""
+    """Return the name of a discrete action, or the rounded numbers of a continuous action."""
     if np.ndim(action):
         return [round(float(value), 4) for value in action]
     return ACTIONS.get(int(action), str(action))
 
 
 def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
-    """Return whether each decision changed, bool [T].
+    """Return for each of the T steps whether the decision changed.
 
-    A continuous action counts as changed if one of its numbers moves by more than
-    ``MIN_ACTION_SHIFT`` of that number's range on clean frames.
+    A continuous action counts as changed if one of its numbers changes by more than a fraction
+    ``MIN_ACTION_SHIFT`` of the number's range on clean frames.
     """
     if clean.actions.ndim == 1:
         return clean.actions != corrupted.actions
@@ -152,7 +158,7 @@ def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
 
 
 def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
-    """Return the actions that the driver often takes, but the agent rarely on clean frames."""
+    """Return the actions that the driver takes often, but the agent rarely on clean frames."""
     drives = [r for r in recordings if r.driven is not None and clean[r.name].actions.ndim == 1]
     if not drives:
         return []
@@ -169,7 +175,10 @@ def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answe
 def decision_lines(
     labels: dict[str, Any], recording: Recording, clean: Answers, corrupted: Answers
 ) -> list[dict[str, Any]]:
-    """Return one JSON object per step: ``labels``, and the decision with and without corruption."""
+    """Return one JSON object per step.
+
+    Each object contains ``labels`` and the decision with and without corruption.
+    """
     lines = []
     for step, action in enumerate(corrupted.actions):
         aim = corrupted.aims[step]
@@ -194,16 +203,18 @@ class Changes:
     """Changes of an agent's decisions under one condition, over all drives.
 
     Attributes:
-        changed: Fraction of steps whose action differs from that on clean frames
+        changed: Fraction of steps at which the action differs from the action on clean frames
             (:func:`changed_steps`).
         stops: Number of steps with STOP under this condition but not on clean frames.
         missed: Number of steps with STOP on clean frames but not under this condition.
-        aim: Fraction of steps whose aim moved by more than ``MIN_AIM_SHIFT``, or None if the agent
-            has no aim.
-        agreement: Fraction of steps with the driver's action, among steps whose motion is an
-            action; None if the driver's actions are unknown, or the agent's are continuous.
+        aim: Fraction of steps at which the target position moved by more than ``MIN_AIM_SHIFT``, or
+            None if the agent has no target position.
+        agreement: Fraction of steps at which the agent chooses the driver's action. Steps at which
+            the driver's motion is not an action are left out. The value is None if the driver's
+            actions are unknown, or if the agent's actions are continuous.
         steps: Number of steps.
-        distance: Mean Euclidean distance of continuous actions to those on clean frames, or None.
+        distance: Mean Euclidean distance of continuous actions from the actions on clean frames, or
+            None if actions are discrete.
     """
 
     changed: Estimate
@@ -218,7 +229,7 @@ class Changes:
 def compare(
     recordings: Sequence[Recording], clean: Mapping[str, Answers], corrupted: Mapping[str, Answers]
 ) -> Changes:
-    """Compare decisions with those on clean frames; both are dicts by the name of the drive."""
+    """Compare decisions under corruption with those on clean frames; the keys are drive names."""
     pairs = [(clean[r.name], corrupted[r.name]) for r in recordings]
     changed = [changed_steps(a, b) for a, b in pairs]
     if pairs[0][0].actions.ndim == 2:
@@ -247,13 +258,14 @@ def compare(
 
 
 def _share(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the fraction of true steps, with a 95 % interval.
+    """Estimate the fraction of steps that are true, with a 95 % interval.
 
-    The interval resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
-    or if all are equal, Wilson's score interval is used, with one observation per block.
+    The bootstrap resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
+    or if all blocks have equal means, Wilson's score interval is used instead; each block counts as
+    one observation.
 
     Args:
-        drives: bool [T] for each drive.
+        drives: an array bool [T] for each drive.
     """
     estimate = _mean(drives)
     if not np.isnan(estimate.low):
@@ -266,12 +278,13 @@ def _share(drives: Sequence[np.ndarray]) -> Estimate:
 
 
 def _mean(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the mean over all steps from blocks of steps.
+    """Estimate the mean over all steps; the bootstrap resamples blocks of steps.
 
-    The interval is undefined with fewer than ``MIN_BLOCKS`` blocks, or if all are equal.
+    The interval is NaN if there are fewer than ``MIN_BLOCKS`` blocks, or if all blocks have equal
+    means.
 
     Args:
-        drives: float [T] for each drive.
+        drives: an array float [T] for each drive.
     """
     blocks = [block for drive in drives for block in _blocks(drive)]
     sums = np.array([block.sum() for block in blocks])
@@ -282,5 +295,5 @@ def _mean(drives: Sequence[np.ndarray]) -> Estimate:
 
 
 def _blocks(drive: np.ndarray) -> list[np.ndarray]:
-    """Split a drive into blocks of about ``BLOCK_STEPS`` steps and nearly equal length."""
+    """Split a drive into blocks of nearly equal length, with about ``BLOCK_STEPS`` steps each."""
     return np.array_split(drive.astype(float), max(1, round(len(drive) / BLOCK_STEPS)))

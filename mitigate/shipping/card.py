@@ -1,6 +1,7 @@
-"""Write the card of a hardened checkpoint with its training and results, and a README.
+"""Write the card and the README of a hardened checkpoint.
 
-The README has the front matter that Hugging Face reads.
+The card describes the training and the results. The README begins with the front matter that
+Hugging Face reads.
 """
 
 from __future__ import annotations
@@ -26,14 +27,15 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Retained, Section, label, sections
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
-# paths in a checkout that determine the content of an exported folder
+# the files at these paths of a checkout determine the content of an exported folder
 CODE = ("mitigate", "conf", "recipes", "pyproject.toml")
 LIBRARY = "mitigate"
-TASK = "robotics"  # Hugging Face's name of the task for moving agents
+TASK = "robotics"  # Hugging Face's task name for agents that move
 TAGS = ("embodied-navigation", "robustness", "sensor-corruption", "safetensors")
-DATASET = "mitigate-episodes"  # a name of this project, because the hub has no such data set
-LICENCE = "Apache-2.0"  # the licence of this project's agents
-UNKNOWN = "other"  # Hugging Face's word for an unknown licence
+# this project's own name for the episodes, which are not a data set on the hub
+DATASET = "mitigate-episodes"
+LICENCE = "Apache-2.0"  # licence of the agents that this project defines
+UNKNOWN = "other"  # Hugging Face's name for an unknown licence
 
 
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
@@ -43,7 +45,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: The base or a teacher of the run is missing.
-        ValueError: ``cfg`` has an entry that training never writes.
+        ValueError: ``cfg`` has an entry with a value that training never writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -68,7 +70,10 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 
 def reference(weights: str) -> dict[str, str]:
-    """Return the path of ``weights`` (relative if below the current folder) and its sha256."""
+    """Return the path of ``weights`` and its sha256.
+
+    A path below the current folder is made relative.
+    """
     path = find(weights)
     adapters_only = loading.adapters_only(path)
     file = path / adapters.WEIGHTS if adapters_only else checkpoint.weights_file(path)
@@ -76,18 +81,24 @@ def reference(weights: str) -> dict[str, str]:
 
 
 def commit() -> str | None:
-    """Return the git commit of the checkout, or None outside a checkout or without git."""
+    """Return the git commit of the checkout.
+
+    Returns None if this is not a checkout or git is missing.
+    """
     return _git("rev-parse", "HEAD") or None
 
 
 def uncommitted() -> bool:
-    """Return whether code or configs of the checkout differ from its commit."""
+    """Return whether the checkout has uncommitted changes of code or configs."""
     return bool(_git("--no-optional-locks", "status", "--porcelain", "--", *CODE))
 
 
 def _git(*words: str) -> str:
-    """Return the output of git in the checkout, or "" outside a checkout or without git."""
-    # if installed, an enclosing repository belongs to a different project
+    """Run git in the checkout and return its output.
+
+    Returns "" if this is not a checkout or git is missing.
+    """
+    # if the package is installed, it may be inside the git repository of another project
     if not (ROOT / ".git").exists():
         return ""
     try:
@@ -98,7 +109,10 @@ def _git(*words: str) -> str:
 
 
 def weights_of(row: Row) -> str:
-    """Return the hash of the weights in a row; older rows have it under ``agent``."""
+    """Return the hash of the weights in a row.
+
+    Rows of older versions store it under ``agent``.
+    """
     return str(row.get("weights", row["agent"]))
 
 
@@ -117,7 +131,7 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
 
 
 def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
-    """Return the agent fingerprints in the rows whose weights have the hashes ``agents``.
+    """Return the agent fingerprints in those rows whose weights have a hash in ``agents``.
 
     Tables and the leaderboard identify agents by fingerprint.
     """
@@ -156,7 +170,10 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, retained: Retained) -> str:
-    """Return the block of a PRS, with the number of covered corruptions if it is incomplete."""
+    """Return the block of a PRS.
+
+    If the PRS does not cover all corruptions of the block, their number is added.
+    """
     count = len(retained.corruptions)
     whole = section.whole(block)
     return block if count >= whole else f"{block}, {count} of {whole}"
@@ -194,7 +211,10 @@ def _origin(card: dict[str, Any]) -> str:
 
 
 def _hashes(card: dict[str, Any]) -> str:
-    """Return the hashes of the exported and the original weights, and the fingerprints in rows."""
+    """Return a text with the hashes of the exported and the original weights.
+
+    The text also names the agent fingerprints in the result rows.
+    """
     exported, before = card["agent"], card.get("run_agent", card["agent"])
     rounded = f" (`{before}` before rounding)" if before != exported else ""
     names = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
@@ -202,7 +222,7 @@ def _hashes(card: dict[str, Any]) -> str:
 
 
 def _exported(card: dict[str, Any]) -> str:
-    """Return the commit of the export, if known."""
+    """Return a text with the commit of the export, or "" if it is unknown."""
     changed = ", with uncommitted changes" if card.get("uncommitted") else ""
     return f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
 
@@ -268,7 +288,7 @@ def _use(card: dict[str, Any]) -> str:
 
 
 def _check(cfg: dict[str, Any]) -> None:
-    """Raise ValueError for entries in an untrusted config that must not appear in a card."""
+    """Raise ValueError if an untrusted config has an entry that must not appear in a card."""
     schedule = cfg.get("schedule") or {}
     entries = {**cfg, **(schedule if isinstance(schedule, dict) else {})}
     name, stages = entries.get("name"), entries.get("stages") or {}
@@ -296,7 +316,7 @@ def _is_span(severity: Any) -> bool:
 
 
 def _precision(stages: dict[str, Any]) -> str:
-    """Return the precision of the stages, which is "fp32", "bf16", or both if they differ."""
+    """Return the precision of the stages: "fp32", "bf16", or both if the stages differ."""
     settings = [(stage or {}).get("trainer") or {} for stage in stages.values()]
     return " and ".join(sorted({s["precision"] for s in settings if s.get("precision")}))
 
@@ -319,11 +339,11 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return the front matter of a README for Hugging Face: This is YAML between two lines of
-    ``---``.
+    """Return the front matter of a README for Hugging Face.
 
-    After ``hf upload``, the hub shows a model page with its library, licence, tags and metrics
-    (docs/deployment.md). Without metrics there is no ``model-index``. The format is described in
+    The front matter is YAML between two lines of ``---``. After ``hf upload``, the hub shows a
+    model page with the library, the licence, tags and metrics (docs/deployment.md). If there are no
+    metrics, there is no ``model-index``. The format is described in
     https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"
@@ -341,7 +361,7 @@ def front_matter(card: dict[str, Any]) -> str:
 
 
 def _result(entry: dict[str, Any]) -> dict[str, Any]:
-    """Return one table of a card as a result of ``model-index``."""
+    """Convert one metrics table of a card to an entry of ``model-index``."""
     severity = f"severity {entry['severity']:g}"
     intervals = [(f"Clean {metric}", value) for metric, value in entry["clean"].items()]
     intervals += entry["PRS"].items()
@@ -378,5 +398,5 @@ def _metric(title: str, value: float, low: float | None, high: float | None) -> 
 
 
 def _tag(text: str) -> str:
-    """Return ``text`` as a tag of the hub: lower-case letters, digits and dashes."""
+    """Convert ``text`` to a tag of the hub, which has lower-case letters, digits and dashes."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")

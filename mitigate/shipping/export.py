@@ -1,9 +1,10 @@
 """Export the agent of a run as a folder for deployment (``export_command.py`` has the command).
 
-``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
-``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
-and reloaded in a new process. It is renamed to its final place only if the outputs on a fixed probe
-are the same.
+The folder ``checkpoints/hardened/<name>`` contains ``config.yaml``, ``program.pt2``, a card, a
+README, and the weights. If only adapters were trained, the folder contains the adapters and a
+reference to their base instead of the weights. The folder is first written to a temporary place and
+loaded in a new process. The folder is moved to its final place only if the loaded agent gives the
+same outputs on fixed inputs.
 """
 
 from __future__ import annotations
@@ -45,26 +46,29 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
-# Maximum absolute differences of outputs on the probe (heuristic; logits are about 1 to 10).
-RELOADED = 1e-5  # for the folder loaded in a new process, compared with the agent in this process
-EXPORTED = 1e-3  # for program.pt2 and the ONNX files, compared with the agent
-ROUNDED = 0.1  # for the float16 weights, compared with the float32 weights of the run
-# a message quotes at most this many characters of the last line of a failed check (heuristic)
+# Maximum absolute differences of outputs on the fixed probe inputs (heuristic; logits are about 1
+# to 10).
+# limit for the agent loaded in a new process, compared with the agent in this process
+RELOADED = 1e-5
+EXPORTED = 1e-3  # limit for program.pt2 and the ONNX files, compared with the agent
+ROUNDED = 0.1  # limit for the float16 weights, compared with the float32 weights of the run
+# if a check fails, the message quotes at most this many characters of its last line of output
+# (heuristic)
 REASON_WIDTH = 400
-MOST_PIXELS = 4096  # maximum side of a frame that programs take (heuristic)
-WALKS = 2  # number of episodes for comparing a reloaded agent of a different class (heuristic)
+MOST_PIXELS = 4096  # maximum side of the frames that exported programs read, in pixels (heuristic)
+WALKS = 2  # agents of other classes are checked on this number of episodes (heuristic)
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 
 @dataclass
 class Walks:
-    """Settings for checking an exported folder with clean episodes in a new process.
+    """Settings of a check that runs clean episodes with the exported agent in a new process.
 
     Attributes:
-        make_agent: function that constructs an agent, which then loads the folder.
+        make_agent: function that constructs an agent, into which the folder is loaded.
         make_world: function that constructs the world.
-        episodes: episodes; the first ``WALKS`` of them are run.
+        episodes: a list of episodes. The check runs the first ``WALKS`` of them.
     """
 
     make_agent: Callable[[], nn.Module]
@@ -94,16 +98,18 @@ def export(
         run: folder of a finished run.
         name: name of the new folder.
         out: folder that contains it.
-        rows: row files or folders with the agent's evaluation, in addition to the run's.
+        rows: files or folders with result rows of the agent, in addition to those in the run
+            folder.
         overwrite: whether to replace ``out/name`` if it is a hardened folder.
         onnx: whether to also write the two networks as ONNX files.
-        walks: check for an agent of a different class, whose folder has no programs.
+        walks: settings of the check for agents of other classes. The folders of these agents
+            contain no programs.
 
     Raises:
         FileNotFoundError: ``run`` contains no finished run.
-        ValueError: The run cannot be exported, ``out/name`` exists (with ``overwrite``: and is not
-            a hardened folder), ``rows`` has no rows of this agent, or the agent reloaded from the
-            new folder gives different outputs. Nothing is written.
+        ValueError: The run cannot be exported, ``rows`` has no rows of this agent, or the agent
+            loaded from the new folder gives different outputs. Also raised if ``out/name`` exists,
+            unless ``overwrite`` is true and it is a hardened folder. Nothing is written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise ValueError(
@@ -159,11 +165,12 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 
 def add_programs(folder: Path) -> Path:
-    """Write ``program.pt2`` of the hardened ``folder`` again and list it in the card.
+    """Write ``program.pt2`` of the hardened ``folder`` again.
+
+    The outputs of the program on the probe inputs are compared with those of the agent.
 
     Returns:
-        The file. The outputs of the program on the probe are compared with the outputs of the
-        agent.
+        The path of the file.
 
     Raises:
         FileNotFoundError: ``folder`` is not a complete hardened folder.
@@ -194,7 +201,7 @@ def add_programs(folder: Path) -> Path:
 
 
 def _input_size(folder: Path) -> int:
-    """Return the side of the frames that the programs in ``folder`` take, in pixels."""
+    """Return the side, in pixels, of the frames that the programs in ``folder`` read."""
     size = read_object(folder / loading.INPUTS, folders.AGAIN).get("size")
     if type(size) is not int or not 1 <= size <= MOST_PIXELS:
         raise ValueError(
@@ -205,8 +212,9 @@ def _input_size(folder: Path) -> int:
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
-    """Raise ValueError unless ``target`` does not exist or is a hardened folder that may be
-    replaced.
+    """Raise ValueError if ``target`` exists and must not be replaced.
+
+    With ``overwrite``, only a hardened folder may be replaced.
     """
     if not os.path.lexists(target):
         return
@@ -226,13 +234,13 @@ def _check_free(target: Path, overwrite: bool) -> None:
 
 
 def check_outputs(folder: str, expected: str) -> None:
-    """Raise ValueError unless agent and program in ``folder`` give the ``expected`` outputs.
+    """Raise ValueError unless the agent and the programs in ``folder`` give the expected outputs.
 
     ``export`` runs this in a new process.
 
     Args:
         folder: the hardened folder.
-        expected: safetensors file of the outputs on the probe.
+        expected: safetensors file with the expected outputs on the probe inputs.
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
@@ -262,12 +270,13 @@ def _write(
     walks: Walks | None,
 ) -> None:
     """Write all files into ``draft`` and check them."""
-    # The path of the run is not relevant.
+    # The path of the run is left out, because it is not relevant.
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)
     config = config.replace(f"{Path.cwd()}/", "")
     write_text(draft / loading.CONFIG, config)
     adapters_only = _only_adapters_trained(cfg, agent)
-    known = facts(cfg, agent)  # done before the slow part, to find missing files at once
+    # called before the slow part, so that missing files are reported at once
+    known = facts(cfg, agent)
     shipped = agent
     if adapters_only:
         adapters.write_adapters(agent, draft)
@@ -287,7 +296,7 @@ def _write(
         "format": loading.FORMAT,
         "name": name,
         **known,
-        "agent": checkpoint.weights_sha(shipped),  # hash of the weights, as in run_agent
+        "agent": checkpoint.weights_sha(shipped),  # this entry and run_agent are hashes of weights
         "run_agent": checkpoint.weights_sha(agent),
         "rows_agent": rows_agent(result_rows_of_agent, weights),
         "adapters_only": adapters_only,
@@ -297,7 +306,7 @@ def _write(
     write_text(draft / loading.README, readme(card))
     _write_json(draft / loading.CARD, card)
     for file in draft.iterdir():
-        file.chmod(0o644)  # safetensors writes files with mode 600
+        file.chmod(0o644)  # safetensors writes files that only their owner can read
     folders.seal(draft, "hardened")
     print("reloading in a new process", flush=True)
     if walks is None:
@@ -312,7 +321,8 @@ def _programs(
     """Write the exported programs of ``shipped``.
 
     Returns:
-        The entries of the card about the programs, and the outputs of ``shipped`` on the probe.
+        The entries of the card about the programs, and the outputs of ``shipped`` on the probe
+        inputs.
     """
     size = agent.rgb_encoder.size
     inputs = programs.probe(agent, size)
@@ -326,8 +336,9 @@ def _programs(
     rounded = programs.difference(before, after)
     if not rounded <= ROUNDED:
         raise ValueError(
-            f"Rounding the weights to float16 moves an output on the probe by {rounded:g}; at most "
-            f"{ROUNDED:g} is allowed. Was the run trained to the end? Nothing was written."
+            f"Rounding the weights to float16 changes an output on the probe inputs by "
+            f"{rounded:g}; at most {ROUNDED:g} is allowed. Check that the run was trained to the "
+            "end. Nothing was written."
         )
     if onnx:
         programs.save_onnx(shipped, size, draft, EXPORTED)
@@ -342,7 +353,7 @@ def _programs(
 
 
 def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
-    """Return whether only the adapters of ``agent`` differ from the initial weights of the run."""
+    """Return whether the run trained only the adapters of ``agent``."""
     init = find(cfg.get("init") or "")
     if not adapters.adapted(agent) or not cfg.get("init") or loading.adapters_only(init):
         return False
@@ -350,13 +361,13 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
     adapters.remove_adapters(base)
     try:
         checkpoint.load_weights(base, init)
-    except ValueError:  # the base itself has adapters
+    except ValueError:  # the initial weights already contain adapters
         return False
     return adapters.backbone_sha(base) == adapters.backbone_sha(agent)
 
 
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
-    """Return the rows of the weights ``agents``, from the run and from the files ``rows``.
+    """Return the rows in ``run`` and ``rows`` whose weights have a hash in ``agents``.
 
     Raises ValueError if ``rows`` contains no row of these weights.
     """
@@ -375,10 +386,11 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 
 
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
-    """Yield the rows of ``weights`` that belong to a single agent.
+    """Yield the rows of the exported agent, whose weights have a hash in ``weights``.
 
-    The same weights with a blanked sensor or a guard form a different agent. If there are several
-    agents, the one in the run's own rows is used. Raises ValueError if these rows do not decide.
+    The same weights with a blanked sensor or with a guard form a different agent. If the rows
+    belong to several agents, only the agent in the run's own rows is used. Raises ValueError if
+    this agent is not unique.
     """
     rows = [row for row in result_rows.upsert(run_rows, other_rows) if weights_of(row) in weights]
     for sha in weights:
@@ -389,7 +401,7 @@ def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str])
             names = sorted({f"{row['name']} ({row['agent']})" for row in mine})
             raise ValueError(
                 f"The rows belong to several agents with these weights: {', '.join(names)}. Name "
-                "the files of one of them (--rows ...)."
+                "the row files of only one of them (--rows ...)."
             )
         yield from (row for row in mine if row["agent"] in known)
 
@@ -406,7 +418,7 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
     """Run :func:`check_walks` in a new process; raise ValueError if it fails."""
     with tempfile.TemporaryDirectory() as folder:
         check_file, expected = Path(folder, "walks"), Path(folder, "expected.json")
-        # This function writes the file for the process that it starts.
+        # Unpickling is safe, because this function writes the file for the process that it starts.
         check_file.write_bytes(pickle.dumps((sys.path, walks)))
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
         _run_apart("check_walks", "agent", draft, check_file, expected)
@@ -415,8 +427,8 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 def _run_apart(check: str, what: str, *paths: Path) -> None:
     """Call the function ``check`` of this module in a new process.
 
-    If it fails, raise ValueError with the last line of its output: the message states that the
-    reloaded folder differs in ``what``.
+    If the check fails, raise ValueError. The message states that the loaded folder does not give
+    the same ``what``, and quotes the last line of the output.
     """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:
@@ -434,7 +446,7 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
 
 
 def check_walks(draft: str, check_file: str, expected: str) -> None:
-    """Raise ValueError if episodes of the agent in ``draft`` differ from those in ``expected``.
+    """Raise ValueError if the agent in ``draft`` does not reproduce the measures in ``expected``.
 
     :func:`_reload_walks` runs this in a new process.
     """

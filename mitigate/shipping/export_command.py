@@ -1,9 +1,10 @@
 """Export the agent of a run as a folder for deployment: ``mitigate export runs/a my_agent``.
 
-``checkpoints/hardened/<name>`` contains the weights (or adapters and a reference to their base),
-``config.yaml``, ``program.pt2``, a card and a README. The folder is written to a temporary place
-and reloaded in a new process. It is renamed to its final place only if the outputs on a fixed probe
-are the same.
+The folder ``checkpoints/hardened/<name>`` contains ``config.yaml``, ``program.pt2``, a card, a
+README, and the weights. If only adapters were trained, the folder contains the adapters and a
+reference to their base instead of the weights. The folder is first written to a temporary place and
+loaded in a new process. The folder is moved to its final place only if the loaded agent gives the
+same outputs on fixed inputs.
 
 ``mitigate export checkpoints/hardened/harden --programs`` writes a missing ``program.pt2`` into
 such a folder.
@@ -22,7 +23,7 @@ from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation import config as options
 from mitigate.evaluation.episode_lists import episodes
 
-if TYPE_CHECKING:  # main() parses the command line before slow imports
+if TYPE_CHECKING:  # the import is slow, so main() first parses the command line
     from mitigate.shipping.export import Walks
 
 
@@ -38,7 +39,7 @@ def main() -> None:
     parser.add_argument(
         "overrides",
         nargs="*",
-        default=[],  # without a default, argparse requires at least one
+        default=[],  # without a default, argparse would require at least one option
         metavar="key=value",
         help="options that name an agent of another class: agent=policy env=corridor",
     )
@@ -91,8 +92,9 @@ def main() -> None:
 
 
 def _own_kind(run: Path) -> list[str]:
-    """Return the option ``agent=`` for ``run``, if it is a shipped kind of agent without
-    programs.
+    """Return the option ``agent=`` for the agent of ``run``.
+
+    The list is empty if the agent has exported programs or is not a shipped kind of agent.
     """
     from mitigate.agents import loading
 
@@ -103,9 +105,9 @@ def _own_kind(run: Path) -> list[str]:
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
-    """Return functions that construct the agent and the world that ``overrides`` name.
+    """Return the check settings for the agent and the world that ``overrides`` name.
 
-    The settings of the agent are read as data from the folder of the run.
+    The settings of the agent are read from the folder of the run, as data and not as code.
     """
     from mitigate.agents import building
     from mitigate.shipping.export import WALKS, Walks

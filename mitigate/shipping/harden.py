@@ -1,8 +1,8 @@
 """``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
-The policy teaches its copy (``recipes/self_distil.py``), or the copy learns from the reward of the
-world (``recipes/ppo.py``). The episodes of the comparison
-are never used for training.
+A copy of the policy is trained. The original policy is its teacher (``recipes/self_distil.py``), or
+the copy learns from the reward of the world (``recipes/ppo.py``). Then the policies before and
+after training are compared, on episodes that are not used for training.
 """
 
 from __future__ import annotations
@@ -56,14 +56,15 @@ from mitigate.worlds.seeded import FIRST_TRAINING_SEED, seeded_episodes
 from mitigate.worlds.world import World
 
 OUT = Path("runs/harden")
-EPISODES = 50  # default number of compared episodes (heuristic): accurate to about 10 points of SR
-# default learning rate of each part that can be trained; adapters start at zero and need a higher
-# one (docs/results/third-party.md)
+# default number of episodes of the comparison (heuristic); SR is then accurate to about 10 points
+EPISODES = 50
+# default learning rates; adapters start at zero and need a higher learning rate
+# (docs/results/third-party.md)
 TUNE = {"all": 3e-4, "adapters": 2e-3}
 SPLIT, VALIDATION = "compared", "validation"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}
 SCHEDULES = ("per_episode", "per_frame")
-# arguments of the objectives that harden() sets itself
+# harden() itself sets these arguments of the objectives
 OWN = ("agent", "world", "training", "schedule", "folder", "steps", "seed")
 
 
@@ -74,11 +75,12 @@ class Hardened:
     Attributes:
         policy: a copy of the given policy with hardened weights, of the same class.
         agent: the hardened policy as an agent, for ``mitigate.benchmark``.
-        report: success, return and retention before and after; its text is a Markdown table.
-        rows: the result rows of both, named "before" and "after".
-        folder: folder of the run, whose subfolder ``agent`` holds the weights
-            (``mitigate.load_policy``).
-        chosen: which weights validation chose: "trained", "averaged" or "given".
+        report: success rate, return and retention before and after training. ``str(report)`` is a
+            Markdown table.
+        rows: the result rows of both policies, with the names "before" and "after".
+        folder: folder of the run. The subfolder ``agent`` holds the weights, which
+            ``mitigate.load_policy`` loads.
+        chosen: name of the weights that validation chose: "trained", "averaged" or "given".
     """
 
     policy: Any
@@ -117,8 +119,8 @@ def harden(
 ) -> Hardened:
     """Train a copy of ``policy`` to act under corruptions as ``policy`` acts on clean frames.
 
-    Needs no expert and no labels, and a reward only for ``method="ppo"``. The same call continues
-    an interrupted run.
+    No expert and no labels are needed. A reward is needed only for ``method="ppo"``. If a run was
+    interrupted, the same call continues it.
 
     Args:
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
@@ -126,32 +128,34 @@ def harden(
         world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
         forward: function that calls an ``nn.Module``
             (:class:`~mitigate.agents.policies.module.ModulePolicy`).
-        recurrent: whether an ``nn.Module`` has a memory.
-        method: "self_distil": the policy teaches its copy. "ppo": the copy learns from the reward
-            of the world.
-        listed: episodes of the comparison; None means seeds 0 to 49 of the environment.
-        training: training episodes; None means other seeds of the environment.
-        suite: a name of ``conf/suite`` or a list of corruptions, for training and comparison;
-            corruptions of sensors that the policy does not read are left out.
+        recurrent: whether ``policy`` is an ``nn.Module`` that keeps state between steps.
+        method: with "self_distil", the policy is the teacher of its copy. With "ppo", the copy
+            learns from the reward of the world.
+        listed: episodes of the comparison. The default is seeds 0 to 49 of the environment.
+        training: training episodes. The default is other seeds of the environment.
+        suite: corruptions for training and comparison: a name in ``conf/suite``, or a list.
+            Corruptions of sensors that the policy does not read are left out.
         severity: severity of the comparison, from 0 to 1. Training uses severities from 0.3 to 1.
-        tune: "all" to train all weights, or "adapters" to insert adapters into the frozen policy.
-        targets: regular expressions for the modules that get adapters; None means every
-            convolution, or the first layer if there is none.
+        tune: "all" to train all weights, or "adapters" to insert adapters into the frozen policy
+            and train only these.
+        targets: regular expressions for the names of modules after which adapters are inserted. The
+            default is every convolution, or the first layer if there is no convolution.
         steps: number of training steps.
-        lr: learning rate; None means 3e-4 for all weights and 2e-3 for adapters.
-        broad_share: fraction of corrupted frames that get random compositions instead of the
-            suite's corruptions. These prepare the policy for corruptions that the suite does not
-            contain.
-        schedule: "per_episode" or "per_frame": how often the corruption of the training changes.
-        validation: number of training episodes that choose between the trained weights, the given
-            weights and an average of both (``shipping/selection.py``), under each corruption; 0:
-            the trained weights.
+        lr: learning rate. The default is 3e-4 for all weights and 2e-3 for adapters.
+        broad_share: fraction of corrupted frames that have random compositions instead of
+            corruptions of the suite. Random compositions prepare the policy for corruptions that
+            the suite does not contain.
+        schedule: how often the corruption changes in training, "per_episode" or "per_frame".
+        validation: number of training episodes on which the trained weights, the given weights and
+            an average of both are compared under each corruption, to choose the best
+            (``shipping/selection.py``). With 0, the trained weights are used.
         seed: seed of training and corruptions.
-        workers: processes for the comparison; None means one per core if there is enough work.
-        out: folder of the run; None means a folder in runs/harden.
-        **settings: other arguments of the method,
-            :class:`~mitigate.recipes.self_distil.SelfDistil` or
-            :class:`~mitigate.recipes.ppo.Ppo`, such as ``episodes=16``.
+        workers: number of processes for the comparison. With None, one process per core is used if
+            there is enough work.
+        out: folder of the run. The default is a folder in runs/harden.
+        **settings: other arguments of the method's class, such as ``episodes=16``. The classes are
+            :class:`~mitigate.recipes.self_distil.SelfDistil` and
+            :class:`~mitigate.recipes.ppo.Ppo`.
 
     Raises:
         TypeError: The policy has an unsupported type.
@@ -203,14 +207,15 @@ def harden(
     objective = METHODS[method](**shared_arguments, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
-        "losses": 2,  # version of the losses; version 1 had no imitation
+        "losses": 2,  # version of the losses; version 1 had no imitation loss
         "settings_of_policy": before.settings(),
         "names": list(names),
         "broad_share": broad_share,
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
     }
-    if method != "self_distil":  # absent for the default, as in runs of older versions
+    # not recorded for the default method, so that runs of older versions can be continued
+    if method != "self_distil":
         identity["method"] = method
     if schedule != "per_episode":
         identity["schedule"] = schedule
@@ -236,7 +241,7 @@ def harden(
         several = partial(measure, conditions=conditions, workers=workers)
         rows = several(before, name="before", version=before.version)
         rows += measure(RandomPolicy(before.space, seed), conditions=[CLEAN], name=RANDOM)
-        # raises an error before training if the policy is no better than random actions
+        # raises an error, before any training, if the policy is not better than random actions
         compare(rows)
         try:
             trainer.fit()
@@ -258,7 +263,8 @@ def harden(
         rows += several(after, name="after", version=after.version)
     report = compare(rows)
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
-    change = corrupted.changes["after"]  # the mean over all corruptions, or the only corruption
+    # change of the mean over all corruptions, or of the only corruption
+    change = corrupted.changes["after"]
     if change.excludes_zero and change.value < 0:
         say(
             "harden: the hardened policy is worse than the given one under these corruptions. Keep "
@@ -273,9 +279,7 @@ def harden(
 
 
 def _check_folder(trainer: Trainer, folder: Path) -> None:
-    """Raise ValueError if the folder contains a run of a different policy or with different
-    settings.
-    """
+    """Raise ValueError if the folder contains a run of another policy or with other settings."""
     newest = states.load_newest(trainer.folder)
     if newest is None:
         return
@@ -289,7 +293,10 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
 
 
 class _Training:
-    """Source of training episodes: a given list, or generated from seeds outside the comparison."""
+    """Source of training episodes.
+
+    The episodes are taken from a list, or generated from seeds that the comparison does not use.
+    """
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
         self.listed = None if listed is None else list(listed)
@@ -309,7 +316,7 @@ class _Training:
         return self.listed[int(rng.integers(len(self.listed)))]
 
     def several(self, count: int, seed: int) -> list[Episode]:
-        """Return ``count`` different episodes, or all that are listed if these are fewer."""
+        """Return ``count`` different episodes; if the list is shorter, return all its episodes."""
         rng = generator(seed, "harden validation")
         if self.listed is not None:
             chosen = rng.permutation(len(self.listed))[:count]
@@ -322,15 +329,15 @@ class _Training:
 
 
 def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
-    """Return the corruptions of a suite that change what the policy reads."""
+    """Return the corruptions of a suite that change a sensor which the policy reads."""
     if isinstance(suite, str):
         listed = list(conf.composed("evaluate", [f"suite={suite}"]).suite.conditions)
     else:
         listed = [check_name(name) for name in suite if name != "clean"]
     if faults := [name for name in listed if family(name)]:
         raise ValueError(
-            f"suite={suite} has {faults[0]}, a {family(faults[0])} fault, which training does not "
-            "draw. Harden with corruptions of single frames, and measure faults with "
+            f"suite={suite} has {faults[0]}, a {family(faults[0])} fault, but training supports "
+            "only corruptions of single frames. Harden with these, and measure faults with "
             "mitigate.benchmark."
         )
     kinds = {name: modality(name) for name in listed if name != "clean"}
@@ -350,7 +357,7 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
 def _insert_adapters(
     policy: Policy, world: World, episode: Episode, targets: Sequence[str] | None, seed: int
 ) -> None:
-    """Insert adapters after the modules ``targets``, by default after every convolution."""
+    """Insert adapters after the modules that ``targets`` match, or after every convolution."""
     observation = world.reset(episode)
     frames = {name: np.asarray(observation[name]) for name in policy.sensors}
 
@@ -382,7 +389,10 @@ def _print_estimate(
     steps: int,
     folder: Path,
 ) -> None:
-    """Print the amount of work, and a time estimate of the comparison from one episode."""
+    """Print the amount of work and the estimated time of the comparison.
+
+    The estimate is based on one episode.
+    """
     each = seconds_per_episode(policy, world(), episodes)
     count = len(episodes) * len(conditions)
     say(
@@ -398,6 +408,7 @@ def _like(policy: Any, hardened: Policy) -> Any:
         return hardened
     if isinstance(policy, nn.Module):
         return hardened.network
-    twin = copy.copy(policy)  # a model of stable-baselines3 contains its network
+    # a model of stable-baselines3 holds its network in the attribute ``policy``
+    twin = copy.copy(policy)
     twin.policy = hardened.network
     return twin

@@ -1,8 +1,8 @@
 """Harden a trained policy: ``mitigate harden policy=my_policy:load world=my_policy:make_world``.
 
 The options are the arguments of ``mitigate.harden``. The modules are imported from the working
-directory or from installed packages. The same command again continues an interrupted run, and
-``-m seed=0,1,2`` runs several.
+directory or from installed packages. If a run was interrupted, the same command continues it. With
+``-m seed=0,1,2``, the command runs several seeds.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from mitigate.evaluation.conditions import suite_conditions
 
 @dataclass
 class HardenConfig:
-    """The options of ``conf/harden.yaml``, which describes them."""
+    """Types of the options in ``conf/harden.yaml``, which documents each of them."""
 
     policy: str | None = None
     world: str | None = None
@@ -64,8 +64,8 @@ def run(config: HardenConfig) -> Any:
     episodes = options.pop("test_episodes")
     settings = options.pop("settings")
     if shared := sorted(set(settings) & set(vars(config))):
-        raise ValueError(f"settings.{shared[0]} is not needed. Write {shared[0]}=VALUE.")
-    # slow imports come after the checks of the options
+        raise ValueError(f"settings.{shared[0]} is not a setting. Write {shared[0]}=VALUE.")
+    # these imports are slow, so they follow the checks of the options
     from mitigate.shipping.harden import harden
     from mitigate.worlds.seeded import seeded_episodes
 

@@ -1,10 +1,10 @@
-"""Export the two networks of a decision as programs that run without this package's code.
+"""Export the agent's two networks as programs that run without this package's code.
 
-``program.pt2`` contains both networks, exported by ``torch.export``: ``perceive`` (frames of
-panoramas to view tokens and waypoint logits) and ``decide`` (instruction, view tokens of all
-panoramas so far and the map to logits over [stop], nodes and ghosts). :data:`INPUTS` describes
-every tensor; the folder's ``program.json`` repeats it, with the vocabulary. :func:`save_onnx`
-writes the same two networks as ONNX files (extra ``onnx``).
+``program.pt2`` contains both networks, exported by ``torch.export``. ``perceive`` maps the frames
+of panoramas to view tokens and waypoint logits. ``decide`` maps the instruction, the view tokens of
+all panoramas so far and the topological map to logits over [stop], nodes and ghosts. :data:`INPUTS`
+describes every input tensor. The folder's ``program.json`` contains the same description and the
+vocabulary. :func:`save_onnx` writes the same two networks as ONNX files (extra ``onnx``).
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 from torch.export import Dim, ExportedProgram
-from torch.export.pt2_archive._package import (  # this module stores several programs in one file
+from torch.export.pt2_archive._package import (  # private, but can store several programs in a file
     load_pt2,
     package_pt2,
 )
@@ -35,7 +35,7 @@ from mitigate.core.seeding import torch_generator
 
 PERCEIVE, DECIDE = "perceive", "decide"
 OUTPUTS = {PERCEIVE: ("views", "waypoints"), DECIDE: ("logits",)}
-INPUTS = {  # maps a name to dtype, shape and meaning
+INPUTS = {  # maps the name of each input to its dtype, shape and meaning
     PERCEIVE: {
         "rgb": ("uint8", "[P, 12, size, size, 3]", "view k looks 30 k degrees right"),
         "depth": ("float32", "[P, 12, size, size, 1]", "metres; 0 or not finite: no reading"),
@@ -62,7 +62,7 @@ MEANINGS = {
     "degrees right, distance d is 0.25 (d + 1) m",
     "logits": "float32 [B, 1 + N + G]: scores, -inf where not allowed",
 }
-TIMED = 20  # number of calls of each network for measuring latency
+TIMED = 20  # number of timed calls of each network
 
 
 class Perceive(nn.Module):
@@ -101,11 +101,15 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """Wraps ``network`` and stores the tensors that it uses as float16 if that is exact."""
+    """Wrapper around ``network`` that stores a tensor as float16 if this loses no precision.
+
+    Only tensors that the network uses are stored.
+    """
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
-        # hidden from torch, so that only the tensors registered below are exported
+        # the tuple hides the network from torch, so that only the buffers registered below are
+        # exported
         self._network = (network,)
         self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
         tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}
@@ -118,28 +122,31 @@ class Stored(nn.Module):
 
 
 def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
-    """Return the two eager networks of ``agent`` by name; they share its weights."""
+    """Return the two eager networks of ``agent`` by name.
+
+    The networks share the weights of the agent.
+    """
     return {PERCEIVE: Perceive(agent), DECIDE: Decide(agent)}
 
 
 @torch.no_grad()
 def export_programs(agent: TopologicalAgent, size: int) -> dict[str, ExportedProgram]:
-    """Return both networks as exported programs for views of ``size`` pixels.
+    """Export both networks for views with a side of ``size`` pixels.
 
-    The sizes P, E, L, B, N and G in :data:`INPUTS` are dynamic and at least 1 (L is at most
-    ``MAX_WORDS``).
+    The dimensions P, E, L, B, N and G in :data:`INPUTS` are dynamic and at least 1. L is at most
+    ``MAX_WORDS``.
     """
     exported = {}
     inputs_by_name = probe(agent, size)
     for name, network in networks(agent).items():
         inputs = tuple(inputs_by_name[key] for key in INPUTS[name])
-        # a single entry, because Stored takes all inputs as *inputs
+        # a tuple in a tuple, because Stored.forward has the single parameter *inputs
         shapes = (free_dimensions(name),)
         stored = Stored(network, inputs).eval()
         exported[name] = torch.export.export(stored, inputs, dynamic_shapes=shapes)
-        exported[name].example_inputs = None  # removes the example inputs, which are not needed
+        exported[name].example_inputs = None  # the example inputs are not needed
         _drop_type_checks(exported[name])
-        for node in exported[name].graph.nodes:  # removes paths of this machine
+        for node in exported[name].graph.nodes:  # stack traces contain paths of this machine
             node.meta.pop("stack_trace", None)
     return exported
 
@@ -152,7 +159,7 @@ def free_dimensions(name: str) -> tuple[dict[int, Any], ...]:
 def save_programs(programs: dict[str, ExportedProgram], file: Path) -> None:
     """Write both programs to one ``.pt2`` file; raise OSError if that fails.
 
-    The file is first written to memory, because torch would end the process if a write to disk
+    The content is first written to memory, because torch would crash the process if writing to disk
     failed.
     """
     with io.BytesIO() as packed:
@@ -169,9 +176,10 @@ def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
 
 
 def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
-    """Return fixed inputs of both networks, with every entry of :data:`INPUTS`.
+    """Return fixed inputs of both networks, one tensor per entry of :data:`INPUTS`.
 
-    The inputs contain noise frames, three panoramas, and two decisions with padding.
+    The inputs consist of three panoramas with random pixels and of two decisions, one of which has
+    padding.
     """
     draw = torch_generator(seed, "export probe", size)
 
@@ -200,9 +208,9 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
 
 @torch.no_grad()
 def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[str, Tensor]:
-    """Return the outputs of both networks, eager or exported, on a probe, by name.
+    """Run both networks, eager or exported, on the probe inputs; return the outputs by name.
 
-    ``decide`` receives the view tokens from ``perceive`` instead of those in the probe.
+    ``decide`` receives the view tokens that ``perceive`` returns, and not those in the probe.
     """
     results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):
@@ -216,7 +224,8 @@ def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[s
 def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
     """Return the maximum absolute difference over all outputs.
 
-    The difference is infinite if only one of them has -inf, or if either has NaN.
+    The difference is infinite if shapes differ, if an element is -inf in only one of the outputs,
+    or if an output contains NaN.
     """
     gaps = [0.0]
     for name, a in one.items():
@@ -230,25 +239,28 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 
 @torch.no_grad()
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
-    """Measure milliseconds per call for each network of each kind, interleaved in one run.
+    """Measure the milliseconds per call of each network.
+
+    The calls of the different kinds of networks, such as eager and exported, alternate.
 
     A call processes one panorama and then one decision among three nodes and four ghosts.
 
     Args:
-        kinds: networks by kind, such as ``{"eager": networks(agent), "exported": ...}``.
+        kinds: the two networks of each kind, such as ``{"eager": networks(agent), "exported":
+            ...}``.
         agent: the agent, for the probe.
         size: width of the views in pixels.
 
     Returns:
-        By kind and network, the fastest of ``TIMED`` calls ("wall") and the median processor time
-        of all threads ("cpu"), which is less affected by other programs.
+        Two times by kind and network: the time of the fastest of ``TIMED`` calls ("wall"), and the
+        median processor time of all threads ("cpu"). Other programs affect the processor time less.
     """
     inputs_by_name = probe(agent, size)
     single = {name: tensor[:1] for name, tensor in inputs_by_name.items()} | {
         "views": inputs_by_name["views"]
     }
     times: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for _ in range(3 + TIMED):  # the first three calls are warm-up
+    for _ in range(3 + TIMED):  # the first three calls are a warm-up and are not counted
         for kind, programs in kinds.items():
             for name in (PERCEIVE, DECIDE):
                 inputs = [single[key] for key in INPUTS[name]]
@@ -267,7 +279,7 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
 
 
 def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
-    """Return the content of ``program.json``: inputs, outputs and the words by id."""
+    """Return the content of ``program.json``: the inputs, the outputs and the vocabulary."""
     return {
         "size": size,
         "programs": {
@@ -286,7 +298,7 @@ def description(agent: TopologicalAgent, size: int) -> dict[str, Any]:
 
 
 def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
-    """Return the names of all buffers, and of the parameters on which the outputs depend."""
+    """Return the names of all buffers and of those parameters on which the outputs depend."""
     parameters = dict(network.named_parameters())
     before = {name: p.requires_grad for name, p in parameters.items()}
     network.requires_grad_(True)
@@ -300,7 +312,10 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the type checks of stored tensors, which are over a hundred calls that cannot fail."""
+    """Remove the type checks of stored tensors.
+
+    Over a hundred calls are removed. The removed checks cannot fail.
+    """
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -314,11 +329,14 @@ def _smallest(tensor: Tensor) -> Tensor:
 
 
 def _free(shape: str) -> dict[int, Any]:
-    """Return the dynamic dimensions of a shape in :data:`INPUTS`: single letters and their sums."""
+    """Return the dynamic dimensions of a shape in :data:`INPUTS`.
+
+    Dynamic dimensions are named by single letters or by sums that contain letters.
+    """
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:
-            free[place] = Dim.AUTO  # torch derives that this size is 1 + N + G
+            free[place] = Dim.AUTO  # torch derives that this dimension is 1 + N + G
         elif name.isupper():
             free[place] = Dim(name, min=1, max=MAX_WORDS if name == "L" else None)
     return free
@@ -330,8 +348,8 @@ def _free(shape: str) -> dict[int, Any]:
 def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> list[Path]:
     """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder`` and return their paths.
 
-    Weights are float32; the dynamic dimensions are the same as in ``export_programs``. Raises
-    ValueError if the extra is not installed, and in the cases of :func:`check_onnx`.
+    The weights are float32. The dynamic dimensions are the same as in ``export_programs``. Raises
+    ValueError if the extra ``onnx`` is not installed, or if :func:`check_onnx` fails.
     """
     try:
         import onnx  # noqa: F401
@@ -362,10 +380,10 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
 
 
 def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
-    """Raise ValueError if outputs of the ONNX files in ``folder`` differ from the agent's.
+    """Raise ValueError if the ONNX files in ``folder`` give other outputs than the agent.
 
-    The probe is used with all of its decisions and with only its first one. Differences up to
-    ``most`` are allowed.
+    The probe inputs are used twice: with both decisions and with only the first one. Differences up
+    to ``most`` are allowed.
     """
     import onnxruntime
 
@@ -388,7 +406,7 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
 
 
 class _Session:
-    """Wrapper that lets an onnxruntime session be called like the original network."""
+    """Wrapper that makes an onnxruntime session callable like the original network."""
 
     def __init__(self, session: Any, keys: tuple[str, ...]) -> None:
         self._session, self._keys = session, keys

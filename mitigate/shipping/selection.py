@@ -1,9 +1,9 @@
 """Choose between the given policy, its trained copy and the average of their weights.
 
-Training for corruptions can lose what a policy could do before. The average of the weights before
-and after training often keeps both (WiSE-FT: Wortsman et al., "Robust fine-tuning of zero-shot
-models", CVPR 2022). Which of the three is best differs between policies, so validation episodes
-decide.
+When a policy is trained on corruptions, it can lose abilities that it had before. The average of
+the weights before and after training often keeps old and new abilities (WiSE-FT: Wortsman et al.,
+"Robust fine-tuning of zero-shot models", CVPR 2022). Which of the three weights are best depends on
+the policy, so they are compared on validation episodes.
 """
 
 from __future__ import annotations
@@ -19,23 +19,23 @@ from mitigate.evaluation.comparison import CLEAN as CLEAN_NAME
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
-# fraction of the trained weights in the average: trained, averaged, given (0.75: heuristic)
+# fraction of the trained weights in each of the three candidates (0.75 is heuristic)
 MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
-TIE = 1e-3  # relative difference of scores that counts as equal (heuristic)
+TIE = 1e-3  # scores count as equal if their relative difference is at most this (heuristic)
 
 
 def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., list[Row]]) -> str:
-    """Load the best weights into ``policy`` and return their name, a key of ``MIXES``.
+    """Load the best weights into ``policy``, and return their name, which is a key of ``MIXES``.
 
-    The best weights have the highest score: the mean of the clean success rate and the mean success
-    rate under the corruptions, or of the returns where the world measures only these. If scores are
-    equal, the weights that come first in ``MIXES`` win.
+    The score of weights is the mean of two numbers: the clean success rate, and the mean success
+    rate under the corruptions. If the world measures only the return, the score uses returns. If
+    scores are equal, the weights that come first in ``MIXES`` are chosen.
 
     Args:
         policy: the trained policy, changed in place.
         start: the weights of ``policy`` before training.
-        measure: function of a policy, ``name`` and ``version`` that evaluates the policy on the
-            validation episodes, clean and corrupted, and returns the rows.
+        measure: function that evaluates a policy on the validation episodes, clean and corrupted,
+            and returns the rows. The function is called with the policy, ``name`` and ``version``.
     """
     end = {name: value.clone() for name, value in policy.network.state_dict().items()}
     scores: dict[str, float] = {}
@@ -58,7 +58,8 @@ def average(
 ) -> dict[str, Tensor]:
     """Return ``(1 - mix) * start + mix * end``.
 
-    Integer tensors, such as counters, are copied from the nearer of the two.
+    Integer tensors, such as counters, are not averaged. Such tensors are copied from ``end`` if
+    ``mix`` is at least 0.5, and from ``start`` otherwise.
     """
     nearer = end if mix >= 0.5 else start
     return {
@@ -68,7 +69,7 @@ def average(
 
 
 def score(rows: Sequence[Row]) -> float:
-    """Return the mean of the clean score and of the mean score under corruptions."""
+    """Return the mean of two numbers: the mean on clean episodes and the mean under corruptions."""
     measure = RETURN if rows[0]["rule"] == RETURN else "success"
     clean = [row[measure] for row in rows if row["corruption"] == CLEAN_NAME]
     corrupted = [row[measure] for row in rows if row["corruption"] != CLEAN_NAME]

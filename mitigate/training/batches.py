@@ -1,7 +1,8 @@
-"""Assemble an objective's batches from pieces, computed in advance by workers or in this process.
+"""Assemble an objective's batches from pieces.
 
-The number of pieces of a step does not depend on the number of workers, and a piece is the same
-wherever it is computed. So the batches are the same for any number of workers, including zero.
+A piece is the result of one job. Workers compute pieces in advance, or this process computes them.
+The number of pieces per step does not depend on the number of workers, and a piece is the same in
+every process. So the batches are the same for any number of workers, including zero.
 """
 
 from __future__ import annotations
@@ -18,17 +19,16 @@ from mitigate.training.objective import Objective, do
 from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
-AHEAD = 4  # number of steps by which pieces are requested in advance (heuristic)
+AHEAD = 4  # pieces are requested this number of steps in advance (heuristic)
 
 
 class Batches:
-    """The batches of ``objective`` up to ``steps``, computed on ``device`` in the precision
-    ``kind``.
+    """The batches of ``objective`` for all training steps.
 
-    Pieces that do not depend on the weights (``objective.ahead``) are requested ``AHEAD`` steps in
-    advance. Other pieces are requested ``lag`` steps in advance, with the weights at that time. No
-    piece is requested across a multiple of ``save_every``, so a resumed run computes the same
-    pieces.
+    If pieces do not depend on the weights (``objective.ahead``), they are requested ``AHEAD`` steps
+    in advance. Other pieces are requested ``lag`` steps in advance, and are computed with the
+    weights at that time. A request with such a lag never reaches beyond the next multiple of
+    ``save_every``, so a resumed run computes the same pieces.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Batches:
         self._taken = False
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return the batch of ``step``; call it for each step in order."""
+        """Return the batch of ``step``. The method must be called for each step in order."""
         objective = self.objective
         early = not objective.here and (
             self.workers is not None or (self.lag and not objective.ahead)
@@ -76,7 +76,7 @@ class Batches:
         return objective.collate(step, receive())
 
     def _last(self, step: int) -> int:
-        """Return the last step whose pieces may be requested when ``step`` is due."""
+        """Return the last step whose pieces may be requested when training is at ``step``."""
         if self.objective.ahead:
             return min(step + AHEAD, self.steps - 1)
         saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
@@ -87,7 +87,7 @@ class Batches:
         return self._ordered[-1][0] if self._ordered else step - 1
 
     def _jobs(self, step: int) -> list[Any]:
-        """Return this rank's jobs for a step, or an empty list if the objective has no jobs."""
+        """Return this rank's jobs for a step. The list is empty if the objective has no jobs."""
         jobs = self.objective.jobs(step)
         return self.ranks.share(jobs) if jobs else []
 
@@ -99,7 +99,7 @@ class Batches:
         return self.objective.collate(step, [do(self.objective, job) for job in jobs])
 
     def _order(self, step: int, jobs: list[Any]) -> None:
-        """Request the pieces of ``step``, to be computed with the current weights."""
+        """Request the pieces of ``step``. The pieces are computed with the current weights."""
         if self.workers is None:
             with precision.computing(self.kind, self.device):
                 pieces = [do(self.objective, job) for job in jobs]
@@ -113,9 +113,9 @@ class Batches:
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))
 
     def _turn(self, step: int) -> int:
-        """Return the index with which the pieces of ``step`` are distributed to workers.
+        """Return the index that determines which workers receive the pieces of ``step``.
 
-        The index is 0 if jobs need the current weights, because then only one step is requested at
-        a time.
+        The index is always 0 if jobs need the current weights, because then only one step is
+        requested at a time.
         """
         return step if self.objective.ahead or self.lag else 0

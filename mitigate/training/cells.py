@@ -1,5 +1,6 @@
-"""Define the options of a table and its cells: a column with a seed, its training and
-evaluations.
+"""Define the options of a table and its cells.
+
+A cell is one column with one seed. A cell consists of a training run and evaluations.
 """
 
 from __future__ import annotations
@@ -28,21 +29,19 @@ from mitigate.training import config as train_options
 
 LOG, OPTIONS = "log.txt", "options.json"
 EXAMPLES = {"columns": "agent=recurrent", "evaluations": "suite=pairs"}
-# Training options that are passed on to evaluations.
+# training options with these prefixes are passed on to evaluations
 OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
-# options that an additional evaluation must not set
+# options that an additional evaluation must not set, because the table sets them
 CELLS = ("agent", "checkpoint", "name", "seed", "out")
-# options that a table column must not set
+# options that a table column must not set, because the table sets them
 PLACES = ("seed", "folder", "out", "workers", "evaluation")
-# options that a column without training must not set either
+# further options that a column without training must not set
 MEASURED = ("split", "episodes", "conditions", "severity")
 
 
 @dataclass
 class TablesConfig:
-    """Types of the options in ``conf/table2.yaml`` and ``conf/table1.yaml``, which document
-    them.
-    """
+    """Types of the options in ``conf/table1.yaml`` and ``conf/table2.yaml``."""
 
     runs: str = "runs"
     out: str = "runs/table"
@@ -79,7 +78,7 @@ def read_options(cfg: DictConfig) -> TablesConfig:
 
 @dataclass(frozen=True)
 class Cell:
-    """One table column with one seed, which has its own folder."""
+    """One table column with one seed. A cell has its own folder."""
 
     column: str
     options: tuple[str, ...]
@@ -89,12 +88,15 @@ class Cell:
 
     @property
     def trains(self) -> bool:
-        """Whether to train the agent; if not, its options name existing weights."""
+        """Whether the agent is trained.
+
+        If the agent is not trained, the options name existing weights.
+        """
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
     def agent(self) -> tuple[str, ...]:
-        """The options of an evaluation: kind of agent, world and weights."""
+        """The options of an evaluation that select the kind of agent, the world and the weights."""
         if self.trains:
             options = (*self.options, *self.train)
             kind = tuple(option for option in options if option.startswith(OF_AGENT))
@@ -103,7 +105,7 @@ class Cell:
 
     @property
     def training(self) -> list[str]:
-        """Options of its training."""
+        """Options of the cell's training run."""
         return [
             *self.options,
             *self.train,
@@ -119,13 +121,17 @@ class Cell:
         return self.evaluation_folder("")
 
     def evaluation_folder(self, name: str) -> Path:
-        """Return the folder of an additional evaluation's rows; "" means the main evaluation."""
+        """Return the folder for the rows of the evaluation ``name``.
+
+        "" is the name of the main evaluation.
+        """
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
         """Return the programs that compute the cell.
 
-        Each is ("train", "evaluate" or "evaluate NAME"; arguments after ``python -m``).
+        Each program is a pair (title, arguments after ``python -m``). The title is "train",
+        "evaluate" or "evaluate NAME".
         """
         commands = []
         if self.trains:
@@ -137,14 +143,14 @@ class Cell:
         return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """Return all options of one of the cell's evaluations.
+        """Return all options of the cell's evaluation ``name``.
 
-        ``options`` extend or override the options of the table. The evaluation has at most as many
-        episodes as the table.
+        ``options`` extend or override the options of the table. The number of episodes is limited
+        to that of the table.
         """
         return [
             f"name={self.column}",
-            *self.agent,  # an option may set a different name
+            *self.agent,  # the agent's options may set another name
             f"seed={self.seed}",
             f"split={config.split}",
             f"episodes={'null' if config.episodes is None else config.episodes}",
@@ -154,7 +160,7 @@ class Cell:
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:
-        """Return the programs that compute the cell, to run on one core."""
+        """Return the programs that compute the cell as a chain that runs on one core."""
         return programs.Chain(
             f"{self.column}, seed {self.seed}",
             tuple((kind, programs.python(*words)) for kind, words in self.commands(config)),
@@ -193,7 +199,7 @@ class Cell:
 
 
 def _at_most(most: int | None, option: str) -> str:
-    """Return ``option``, with its number of episodes limited to ``most``."""
+    """Return ``option``; if it sets the number of episodes, limit the number to ``most``."""
     name, _, value = option.partition("=")
     if name != "episodes" or most is None or not (value == "null" or value.isdecimal()):
         return option
@@ -201,7 +207,10 @@ def _at_most(most: int | None, option: str) -> str:
 
 
 def cells(config: TablesConfig) -> list[Cell]:
-    """Return all cells of the table, ordered by seed, so that a partial table has every column."""
+    """Return all cells of the table, ordered by seed.
+
+    With this order, a table that is not finished already has every column.
+    """
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
@@ -217,9 +226,9 @@ def cells(config: TablesConfig) -> list[Cell]:
 
 
 def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
-    """Return the options of each entry of ``columns`` or ``evaluations``, without null entries.
+    """Return the options of each entry of ``columns`` or ``evaluations``; skip null entries.
 
-    Raises ValueError for an entry that is not a list of options, or an address with a password.
+    Raises ValueError if an entry is not a list of options, or if an address contains a password.
     """
     lists = {str(name): options for name, options in entries.items() if options is not None}
     for name, options in lists.items():
@@ -241,8 +250,8 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
     Raises:
-        ValueError: A seed is repeated; an option, split or condition does not exist; or a cell
-            contains rows of a different agent.
+        ValueError: A seed is repeated; an option, a split or a condition does not exist; or the
+            folder of a cell contains rows of a different agent.
     """
     from mitigate.training import plan  # brings torch
 
@@ -286,8 +295,8 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
 def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> None:
     """Raise ValueError for options that the table itself sets.
 
-    Such options would have no effect, change the agent of the rows, or write the rows where the
-    table does not read them.
+    Such an option would have no effect, change the agent of the rows, or write the rows to a folder
+    that the table does not read.
     """
     for option in options:
         key = option.lstrip("+~").partition("=")[0]
@@ -297,14 +306,17 @@ def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> Non
 
 
 def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
-    """Return the typed options of an evaluation, with the kind of agent of its weights."""
+    """Return the typed options of an evaluation.
+
+    The kind of agent is read from the weights.
+    """
     from mitigate.agents.building import with_kind  # brings torch
 
     return evaluate_options.read(conf.composed("evaluate", with_kind(options)))
 
 
 def _check_guards(config: EvaluateConfig) -> None:
-    """Raise ValueError or FileNotFoundError for a missing guard."""
+    """Raise ValueError or FileNotFoundError if a guard does not exist."""
     choices.check(config.safeguard)
     from mitigate.guards.opening import labels, open_restorer
 

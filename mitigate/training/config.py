@@ -1,6 +1,6 @@
-"""The options of ``conf/train.yaml`` as dataclasses, and the range of each value.
+"""Define the options of ``conf/train.yaml`` as dataclasses, and the range of each value.
 
-A mistyped value is rejected before anything is built.
+A value of a wrong type is rejected before anything is built.
 """
 
 from __future__ import annotations
@@ -27,11 +27,12 @@ from mitigate.evaluation.config import (
     open_entries,
 )
 
-LONGEST = 100  # maximum characters of options in a folder name; longer names end in a digest
+# maximum number of characters of options in a folder name; longer names are cut and end in a hash
+LONGEST = 100
 COUNT = 10**9  # maximum number of steps; at 1000 steps per second, training would take 11 days
-EPISODES = 100_000  # maximum number of episodes per step (a generous bound)
-PROCESSES = 256  # maximum number of processes (a generous bound)
-# minimum and maximum of each value, which must be finite
+EPISODES = 100_000  # maximum number of episodes per step (heuristic)
+PROCESSES = 256  # maximum number of processes (heuristic)
+# minimum and maximum of each trainer setting
 LIMITS: dict[str, tuple[float, float]] = {
     "steps": (1, COUNT),
     "keep": (1, 10**6),
@@ -48,7 +49,7 @@ MEANS = {
     "keep": ", at least 1",
     "lr": ", above 0",
 }
-# maps an option of a run to its minimum, maximum and meaning
+# maps each option of a run to its minimum, its maximum and its description
 OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
@@ -74,7 +75,10 @@ OPTIONS: dict[str, tuple[float, float, str]] = {
 
 @dataclass
 class TrainerConfig:
-    """Settings of a Trainer; None means the value of the stage, or else the Trainer's default."""
+    """Settings of a Trainer.
+
+    If a setting is None, the stage's value is used; if that is None too, the Trainer's default.
+    """
 
     steps: int | None = None
     lr: float | None = None
@@ -97,10 +101,11 @@ class StageConfig:
     """One stage of a recipe.
 
     Attributes:
-        recipe: a ``_target_`` node with the objective, its arguments and its source's arguments.
+        recipe: config node whose ``_target_`` is the objective. The other entries of the node are
+            arguments of the objective and of its source.
         trainer: settings of this stage's trainer.
-        cost: seconds per step on the machine of ``precision.REFERENCE``, for the estimate at the
-            start; None if unknown.
+        cost: seconds per step on the machine of ``precision.REFERENCE``, or None if unknown. The
+            cost is used to estimate the duration of the run.
     """
 
     recipe: Any = None
@@ -152,7 +157,10 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the run starts from complete weights, which are then also evaluated."""
+        """Whether the run starts from complete weights.
+
+        Complete initial weights are also evaluated.
+        """
         return bool(self.init and not self.init_parts)
 
 
@@ -160,7 +168,7 @@ conf.register("train", TrainConfig)
 
 
 def either(first: Any, second: Any) -> Any:
-    """Resolve ``${either:a,b}`` to the first value if it is set, else to the second."""
+    """Resolve ``${either:a,b}`` to the first value, or to the second if the first is None."""
     return second if first is None else first
 
 
@@ -174,7 +182,8 @@ def read(cfg: DictConfig) -> TrainConfig:
         ValueError: An entry refers to a missing entry.
     """
     cfg = cfg.copy()
-    cfg.folder = cfg.folder or default_folder(cfg)  # set first, because other entries refer to it
+    # the folder is set first, because other entries refer to it
+    cfg.folder = cfg.folder or default_folder(cfg)
     config: TrainConfig = conf.typed(cfg, "train")
     config.env = open_entries(EnvConfig, config.env)
     config.suite = open_entries(SuiteConfig, config.suite)
@@ -182,9 +191,9 @@ def read(cfg: DictConfig) -> TrainConfig:
 
 
 def plain_data(value: Any) -> Any:
-    """Return a config as dicts, lists and numbers, in the form stored in ``config.yaml``."""
+    """Return a config as plain dicts, lists and numbers, as ``config.yaml`` stores it."""
     if is_dataclass(value) and not isinstance(value, type):
-        value = vars(value)  # this includes entries that the class does not declare
+        value = vars(value)  # vars() also contains entries that the class does not declare
     if isinstance(value, Mapping):
         return {name: plain_data(entry) for name, entry in value.items()}
     return [*map(plain_data, value)] if isinstance(value, (list, tuple)) else value
@@ -193,9 +202,9 @@ def plain_data(value: Any) -> Any:
 def default_folder(config: TrainConfig | DictConfig, variant: str = "") -> str:
     """Return ``runs/<name>-s<severity>[-d<depth>]-seed<seed>[-<variant>]``."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
-    # as in sweeps, booleans are written in lower case
+    # write booleans in lower case, as sweeps do
     variant = re.sub(r"=(True|False)\b", lambda match: match[0].lower(), variant)
-    # replaced, because Hydra splits at "="
+    # replace "=", because Hydra splits options at this character
     end = re.sub(r"[^A-Za-z0-9._+-]+", "_", variant.replace("=", "-"))
     if len(end) > LONGEST:
         end = f"{end[:LONGEST]}-{seeding.digest(variant):032x}"[: LONGEST + 9]
@@ -254,9 +263,9 @@ def in_range(value: float, low: float, high: float) -> bool:
 
 
 def number_text(value: float) -> str:
-    """Return a number in the form used in messages."""
+    """Return a number as text for a message."""
     if not isinstance(value, Real):
         return short(value)
-    # the number may be too large for a float
+    # format() fails for integers that are too large for a float
     huge = isinstance(value, int) and value.bit_length() > 60
     return "..." if huge else format(value, ".6g")

@@ -13,12 +13,12 @@ from mitigate.evaluation.config import REPORT, times
 from mitigate.training import states
 from mitigate.training.config import TrainConfig
 
-EPISODE_COST = 0.12  # seconds on one core per evaluated episode, measured on the reference machine
-EPISODES = 300  # assumed length of an episode list, which is not opened for the estimate
+EPISODE_COST = 0.12  # seconds per evaluated episode on one core, measured on the reference machine
+EPISODES = 300  # assumed length of episode lists; the estimate does not open them
 
 
 def describe(config: TrainConfig, folder: Path) -> str:
-    """Return one line about the work of a run and its approximate duration on this machine."""
+    """Return a line that states the work of a run and its approximate duration on this machine."""
     parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
     if _episodes(config):
         count = config.evaluation.episodes
@@ -33,11 +33,12 @@ def describe(config: TrainConfig, folder: Path) -> str:
 def estimate(config: TrainConfig, folder: Path) -> float:
     """Return the remaining seconds of a run on this machine, or NaN if a cost is unknown.
 
-    Costs are in seconds on the machine of ``precision.REFERENCE``, and were measured in training
-    runs. Each stage states its seconds per step with the topological agent. Configs of other kinds
-    of agent contain factors (``cost``) relative to this.
+    Costs are in seconds on the machine of ``precision.REFERENCE``. The costs were measured in
+    training runs. The cost of a stage is the time per step with the topological agent. For other
+    kinds of agent, the config contains a factor (``cost``) by which the stage's cost is multiplied.
     """
-    costs: list[tuple[float, float | None]] = []  # pairs of count and seconds per unit
+    # pairs (number of steps or episodes, seconds for each)
+    costs: list[tuple[float, float | None]] = []
     for name, count in _steps(config).items():
         done = states.checkpoints(folder / name)
         left = count - (states.steps_done(done[-1]) if done else 0)
@@ -45,8 +46,8 @@ def estimate(config: TrainConfig, folder: Path) -> float:
     episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
     costs.append((_episodes(config), episode))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
-    # a machine with faster matrix products does not render faster: with bf16, 6 minutes were
-    # estimated for a run that took 13
+    # The speed factor is at least 1, because a machine with faster matrix products does not render
+    # faster. Without this limit, a bf16 run of 13 minutes was estimated at 6 minutes.
     return seconds * max(1.0, precision.probe() / precision.REFERENCE)
 
 
@@ -57,7 +58,10 @@ def _steps(config: TrainConfig) -> dict[str, int]:
 
 
 def _episodes(config: TrainConfig) -> int:
-    """Return how many episodes are run after training, or 0 for a different kind of report."""
+    """Return how many episodes are run after training.
+
+    For other kinds of report, the number is 0.
+    """
     if not config.evaluation.enabled or config.report != REPORT:
         return 0
     count = config.evaluation.episodes or EPISODES

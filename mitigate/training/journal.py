@@ -13,30 +13,33 @@ import numpy as np
 from mitigate.core import output, progress
 from mitigate.core.files import make_folder
 
-CPU = "cpu_s_per_step"  # name of the scalar for CPU seconds per step of this process (all threads)
+# name of the scalar that holds the CPU seconds per step, summed over the threads of this process
+CPU = "cpu_s_per_step"
 
 
 class Journal:
     """Context manager that logs one run over ``total`` steps, beginning at ``start``.
 
-    While the journal is open, every write below its folder checks that the folder was not removed.
+    While the journal is open, every write below its folder checks that the folder still exists.
 
-    It shows a :class:`~mitigate.core.progress.Progress`, which is a bar in a terminal and plain
-    lines elsewhere. :meth:`scalars` with ``line=True`` adds a line with all its values.
+    The journal shows a :class:`~mitigate.core.progress.Progress`. The progress is shown as a bar in
+    a terminal, and as plain lines elsewhere. :meth:`scalars` with ``line=True`` prints an
+    additional line with all its values.
     """
 
     def __init__(self, folder: Path, *, total: int, start: int = 0, name: str = "train") -> None:
         from torch.utils.tensorboard import SummaryWriter  # slow to import
 
         self._folder = make_folder(folder)
-        # TensorBoard appends to the file with this name
+        # TensorBoard may append to such a file, so check that it is a regular file
         for path in self._folder.glob("events.out.tfevents.*"):
             output.open_output(path, "ab").close()
         self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()
-        self._values: dict[str, list[float]] = defaultdict(list)  # a batch may lack some values
+        # a list may be shorter than others, because a batch may lack values
+        self._values: dict[str, list[float]] = defaultdict(list)
         self._since = start, time.monotonic()
 
     def __enter__(self) -> Journal:
@@ -54,7 +57,7 @@ class Journal:
             output.unregister(self._root)
 
     def advance(self, values: dict[str, float]) -> None:
-        """Count one step, and collect its ``values`` for :meth:`means`."""
+        """Count one step, and collect its ``values``, which :meth:`means` will average."""
         for name, value in values.items():
             self._values[name].append(value)
         self._progress.advance()
@@ -64,7 +67,7 @@ class Journal:
 
         Args:
             step: number of updates so far.
-            values: values to log unchanged.
+            values: additional values, which are not averaged.
         """
         means = {name: sum(items) / len(items) for name, items in self._values.items()}
         before, then = self._since
@@ -74,9 +77,9 @@ class Journal:
         self._since = self._progress.done, time.monotonic()
 
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
-        """Log ``values`` after ``step`` updates; with ``line``, also show them.
+        """Log ``values`` after ``step`` updates; with ``line``, also print them.
 
-        Raises FolderLostError if the folder was removed: TensorBoard would not notice.
+        Raises FolderLostError if the folder was removed. TensorBoard would not notice the loss.
         """
         output.check(self._folder / "events")
         for name, value in values.items():
@@ -94,10 +97,10 @@ class Journal:
             self.say("  ".join([f"step {step}/{self._progress.total}", *texts, f"{left} left"]))
 
     def figures(self, step: int, pictures: dict[str, np.ndarray]) -> None:
-        """Log uint8 pictures ``[H, W, 3]``."""
+        """Log pictures, each a uint8 array ``[H, W, 3]``."""
         for name, picture in pictures.items():
             self._writer.add_image(name, picture, step, dataformats="HWC")
 
     def say(self, text: str) -> None:
-        """Print one line without breaking the bar."""
+        """Print one line without disturbing the progress bar."""
         self._progress.say(f"{self._name}: {text}")

@@ -1,7 +1,8 @@
 """Define the interface of objectives, which consist of a loss and a source of batches.
 
-A stage of a recipe (YAML) names an objective and lists its arguments. :class:`ObjectiveSpec` passes
-each argument to the constructor that declares it, which belongs to the objective or to its source.
+A stage of a recipe (YAML) names an objective and lists arguments. Some arguments belong to the
+constructor of the objective, and others to that of its source. :class:`ObjectiveSpec` passes each
+argument to the constructor that declares it.
 """
 
 from __future__ import annotations
@@ -31,18 +32,18 @@ class Objective(nn.Module):
     """Base class of every training method, which has a loss and a source of batches.
 
     An objective contains the module that it trains and, if needed, a teacher or a buffer.
-    State other than tensors (schedule weights, counters) is returned by ``get_extra_state`` and set
-    by ``set_extra_state``, as a JSON-compatible dict. So it is saved and restored with the weights.
-    The optimizer never receives parameters whose ``requires_grad`` is False.
+    State other than tensors, such as counters, is saved and restored with the weights if
+    ``get_extra_state`` returns it and ``set_extra_state`` sets it. This extra state must be a
+    JSON-compatible dict. The optimizer never receives parameters whose ``requires_grad`` is False.
 
     Attributes:
-        sources: functions that build the source of batches, by the name of the constructor
-            parameter that receives it (``{"rollouts": Rollouts}``).
+        sources: maps the constructor parameter that receives the source of batches to the function
+            that builds the source, such as ``{"rollouts": Rollouts}``.
         here: whether jobs run only in the training process, and never in a worker.
         ahead: whether workers may run jobs in advance, because jobs read no weights.
         needs: names of the agent's attributes that the objective uses.
-        otherwise: advice in the message if the agent lacks one of these.
-        workers: number of worker processes for jobs; None means one per core.
+        otherwise: advice for the error message if the agent lacks one of these attributes.
+        workers: number of worker processes for jobs. With None, there is one worker per core.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {}
@@ -54,35 +55,41 @@ class Objective(nn.Module):
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
-        """Return the reason why this objective cannot train ``agent`` with advice, or "".
+        """Return why this objective cannot train ``agent`` and what to do, or "" if it can.
 
-        This is called when a run is planned, before the first stage.
+        The method is called before the first stage, when a run is planned.
         """
         absent = missing_members(agent, cls.needs)
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
-        """Set the mode, but keep the statistics of frozen normalisations (``hold_statistics``)."""
+        """Set the mode, but keep the statistics of frozen normalisation layers constant.
+
+        See ``hold_statistics``.
+        """
         super().train(mode)
         hold_statistics(self)
         return self
 
     def start(self) -> None:
-        """Prepare for the first batch, for example a cache of features.
+        """Prepare for the first batch, for example by computing a cache of features.
 
         This is called once, in the trainer's precision.
         """
 
     def batch(self, step: int) -> dict[str, Any]:
-        """Return the batch of ``step`` (from 0), as a pure function of seed, step and weights.
+        """Return the batch of ``step``, where the first step is 0.
 
-        Tensors are moved to the training device. If the loss is not finite, the error message
-        contains ``episode_ids`` (list of str), if present. State that grows over steps, such as a
-        buffer, must be rebuilt from the seed and the weights or saved as extra state. Otherwise a
-        resumed run differs.
+        The batch must be a pure function of the seed, the step and the weights. The trainer moves
+        its tensors to the training device. If the batch has an entry ``episode_ids`` (list of str),
+        the error message for a loss that is not finite contains these ids.
 
-        An objective defines this method, or :meth:`jobs`, :meth:`work` and :meth:`collate`. The
-        default calls those three, without worker processes.
+        State that grows over steps, such as a buffer, must be rebuilt from the seed and the
+        weights, or saved as extra state. If the state is not restored, a resumed run gives
+        different results.
+
+        An objective must define either this method or the three methods :meth:`jobs`, :meth:`work`
+        and :meth:`collate`. By default, this method calls those three, without worker processes.
         """
         jobs = self.jobs(step)
         if not jobs:
@@ -90,28 +97,28 @@ class Objective(nn.Module):
         return self.collate(step, [do(self, job) for job in jobs])
 
     def jobs(self, step: int) -> list[Any]:
-        """Return the jobs of the batch of ``step``, for worker processes.
+        """Return the jobs for the batch of ``step``, which worker processes can run.
 
-        The list is empty if :meth:`batch` is overridden. The number of jobs must not depend
-        on the number of workers. A job contains the data that :meth:`work` needs in addition to the
-        settings, the seed and the weights: the step, the index of the piece, and the state of the
+        The list is empty if :meth:`batch` is overridden. The number of jobs must not depend on the
+        number of workers. A job contains what :meth:`work` needs to know besides the settings, the
+        seed and the weights. Examples are the step, the index of the job and the state of the
         schedule. Jobs and objectives are pickled.
         """
         return []
 
     def pieces(self) -> int | None:
-        """Return the number of jobs in every step, which are divided among the ranks.
+        """Return the number of jobs per step. The jobs are divided among the ranks.
 
-        This is called before the first stage. A result of 1 means that a single process must train.
-        A result of None means that the number is known only at the first step.
+        This is called before the first stage. If the number is 1, training must run in a single
+        process. If the number is known only at the first step, the result is None.
         """
         return None
 
     def work(self, job: Any) -> Any:
-        """Return the picklable result of ``job``, as a pure function of job, seed and weights.
+        """Run ``job`` and return its result, which must be picklable.
 
-        This is called in eval mode without gradients, on a copy of the objective in a worker
-        process.
+        The result must be a pure function of the job, the seed and the weights. This is called in
+        eval mode and without gradients, on a copy of the objective in a worker process.
         """
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no work(job)")
 
@@ -120,32 +127,33 @@ class Objective(nn.Module):
         raise NotImplementedError(f"{type(self).__name__} has jobs, but defines no collate")
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
-        """Split ``batch`` into parts, whose forward and backward passes run one after the other.
+        """Split ``batch`` into parts that are processed one after the other.
 
-        So a step needs only the memory for one part. Gradients and values of the parts are summed.
-        By default, the whole batch is one part.
+        With several parts, the forward and backward passes of a step need memory for only one part
+        at a time. The gradients and values of the parts are summed. By default, the whole batch is
+        one part.
         """
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the weight that a rank's batch has in means over ranks.
+        """Return the weight of a rank's batch in means over ranks.
 
-        This is the total weight over which the losses of the batch are averaged. The default is the
-        total weight of the decisions, or 1 if there are no decisions.
+        The losses of a batch are weighted means, and the result is their total weight. The default
+        is the total weight of the decisions, or 1 if there are no decisions.
         """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        """Return scalars: A dict with the differentiable ``loss`` and values to log."""
+        """Return a dict of scalars: the differentiable ``loss``, and values to log."""
         raise NotImplementedError(f"{type(self).__name__} defines no forward(batch)")
 
     def parameter_groups(self) -> list[dict[str, Any]]:
-        """Return parameter groups for AdamW; ``lr`` and ``weight_decay`` in a group override the
-        trainer's.
+        """Return the parameter groups for AdamW.
 
-        By default, weight decay applies to matrices and kernels, not to biases, norms and other
-        vectors.
+        ``lr`` and ``weight_decay`` in a group override the trainer's settings. By default, weight
+        decay applies to matrices and convolution kernels, and not to biases, normalisation weights
+        and other vectors.
         """
         trained = [p for p in self.parameters() if p.requires_grad]
         return [
@@ -154,10 +162,10 @@ class Objective(nn.Module):
         ]
 
     def identity(self) -> dict[str, str]:
-        """Return data that identifies the objective beyond its settings, such as a teacher's
-        sha256.
+        """Return data other than settings that identifies the objective.
 
-        Checkpoints record it. A run is not resumed if this data differs.
+        An example is the sha256 of a teacher. Checkpoints record this data. A run is not resumed if
+        the data differs.
         """
         return {}
 
@@ -169,8 +177,9 @@ class Objective(nn.Module):
         """
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return scalars that are measured after ``step`` updates; called every ``eval_every``
-        steps.
+        """Measure and return scalars after ``step`` updates.
+
+        This is called every ``eval_every`` steps.
         """
         return {}
 
@@ -185,7 +194,7 @@ def do(objective: Objective, job: Any) -> Any:
     threads = torch.get_num_threads()
     training = objective.training
     try:
-        # one thread, because the order of sums must not depend on the number of processes
+        # with one thread, the rounding of sums does not depend on the number of processes
         torch.set_num_threads(1)
         return objective.eval().work(job)
     finally:
@@ -198,10 +207,10 @@ def accumulate(
 ) -> dict[str, Tensor]:
     """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
 
-    For a part whose loss is not finite, no gradient is computed.
+    If the loss of a part is not finite, no gradient is computed for it.
 
     Returns:
-        The sums of the values that ``forward`` returned.
+        The values that ``forward`` returned, summed over the parts.
     """
     values: dict[str, Tensor] = {}
     for part in objective.micro_batches(batch):
@@ -215,7 +224,7 @@ def accumulate(
 
 
 def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
-    """Check that the values of ``forward`` are numbers and contain a loss, and return them."""
+    """Check that ``outputs`` of ``forward`` are numbers and contain a loss, and return them."""
     wrong = ""
     if not isinstance(outputs, dict) or "loss" not in outputs:
         returned = (
@@ -240,7 +249,7 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class ObjectiveSpec:
-    """The class of a stage's objective, with the arguments of each constructor.
+    """The objective of a stage, with the arguments of its constructor and of its source.
 
     Attributes:
         target: the ``_target_`` of the stage's config.
@@ -257,12 +266,11 @@ class ObjectiveSpec:
 
     @classmethod
     def of(cls, recipe: Mapping[str, Any]) -> ObjectiveSpec:
-        """Split the flat ``recipe`` node of a stage according to the signatures of both
-        constructors.
+        """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
         Raises:
-            ValueError: An argument belongs to neither constructor, or the class is not an objective
-                or accepts no agent.
+            ValueError: Neither constructor declares an argument, the class is not an objective, or
+                it accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -273,14 +281,16 @@ class ObjectiveSpec:
         return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
-        """Build the objective for ``agent``; the objective chooses which parameters are trained.
+        """Build the objective for ``agent``.
+
+        The objective chooses which parameters are trained.
 
         Raises:
-            ValueError: The target does not build an objective, or its constructor raised this
-                error.
+            ValueError: The target does not build an objective, or its constructor raises
+                ValueError.
         """
         for parameter in agent.parameters():
-            # 8-bit weights are never trained
+            # integer parameters, such as 8-bit weights, cannot be trained
             parameter.requires_grad_(parameter.is_floating_point())
         kind = locate(self.target)
         modules: dict[str, Any] = {"agent": agent}
@@ -296,9 +306,9 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and of its source.
+    """Return the arguments of the objective ``kind`` and those of its source.
 
-    An argument that both constructors declare is passed to both. Raises ValueError for an argument
+    An argument that both constructors declare is in both results. Raises ValueError for an argument
     that neither of them declares.
     """
     names, is_open = _parameters(kind)
@@ -317,7 +327,7 @@ def split_arguments(
 
 
 def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
-    """Return the named parameters of a callable, and whether it accepts any others."""
+    """Return the named parameters of a callable, and whether it also accepts any other keyword."""
     try:
         parameters = signature(kind).parameters.values()
     except (ValueError, TypeError):  # a callable written in C has no signature
@@ -327,7 +337,10 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the parameter of ``kind`` that receives its source, or "" if none or already set."""
+    """Return the parameter of ``kind`` that receives its source.
+
+    Returns "" if there is no such parameter or if ``arguments`` already sets it.
+    """
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -335,14 +348,17 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a subclass of Objective, and not a function that builds one."""
+    """Return whether ``kind`` is a subclass of Objective.
+
+    For a function that builds an objective, the result is False.
+    """
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
 def check_kind(kind: Any, target: str) -> None:
-    """Raise ValueError for a class that is not an objective or accepts no agent.
+    """Raise ValueError if ``kind`` is a class that is not an objective or accepts no agent.
 
-    A function is not checked here: ``ObjectiveSpec.build`` checks its result.
+    A function is not checked here. ``ObjectiveSpec.build`` checks its result.
     """
     if not isinstance(kind, type):
         return
@@ -356,7 +372,7 @@ def check_kind(kind: Any, target: str) -> None:
 
 
 def not_an_objective(target: str) -> str:
-    """Return the message for a ``target`` that is not an objective."""
+    """Return the error message for a ``target`` that is not an objective."""
     return (
         f"{target} is not an objective. Make it a subclass of "
         "mitigate.training.objective.Objective "
@@ -365,7 +381,10 @@ def not_an_objective(target: str) -> str:
 
 
 def check_weights(**weights: float) -> None:
-    """Raise ValueError unless every weight of a loss is from 0 (unused) to ``WEIGHT``."""
+    """Raise ValueError unless each weight of a loss is from 0 to ``WEIGHT``.
+
+    A loss with the weight 0 is not used.
+    """
     for name, value in weights.items():
         if not in_range(value, 0, WEIGHT):
             raise ValueError(
@@ -378,5 +397,5 @@ def check_share(name: str, value: float) -> None:
     """Raise ValueError unless ``value`` is a fraction from 0 to 1."""
     if not in_range(value, 0, 1):
         raise ValueError(
-            f"recipe.{name} must be a share from 0 to 1, such as 0.5, got {number_text(value)}."
+            f"recipe.{name} must be a fraction from 0 to 1, such as 0.5, got {number_text(value)}."
         )

@@ -95,7 +95,7 @@ def test_run_rejects_a_restorer_without_a_camera(run, tmp_path):
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
     options = f"conditions=[spatter] restore={tmp_path}/mine"
     ended = run(tmp_path / "out", options, f"{sys.executable} {program}")
-    assert "is for depth, but episode one shows rgb: leave restore= out" in ended.stderr
+    assert "is for depth, but episode one shows rgb: omit restore=" in ended.stderr
     assert "spatter-s0.6: started" not in ended.stdout
 
 

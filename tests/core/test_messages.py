@@ -72,7 +72,9 @@ def test_evaluate_names_missing_weights_agent_and_sensor(evaluation, monkeypatch
     restorer = ("agent=restorer", "checkpoint=checkpoints/restorer")
     assert "A Restorer cannot run episodes" in evaluation(*restorer)
     monkeypatch.setattr(world, "cameras", lambda size, views: {"rgb": None})
-    assert "has only rgb. Choose another, such as suite=rgb." in evaluation("suite=quick")
+    assert "has only the sensors rgb. Choose another suite, such as suite=rgb." in evaluation(
+        "suite=quick"
+    )
 
 
 def test_evaluate_names_the_extra_of_an_encoder(monkeypatch):

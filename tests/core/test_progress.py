@@ -91,7 +91,7 @@ def test_resumed_job_reports_earlier_progress(capsys):
 
 
 def test_start_must_lie_within_the_total():
-    with pytest.raises(ValueError, match="start=5 must be at least 0 and at most total=3"):
+    with pytest.raises(ValueError, match="start=5 must be between 0 and total=3"):
         Progress("maps", 3, start=5)
 
 

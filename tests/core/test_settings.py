@@ -161,7 +161,7 @@ def test_evaluating_a_trapped_folder_runs_nothing(tmp_path, traps, monkeypatch, 
 )
 def test_hydra_key_is_rejected(tmp_path, own_value):
     message = refusals(folder_with(tmp_path, agent_yaml(**own_value)))
-    assert all(WORDS in text and "begins with '_'" in text for text in message)
+    assert all(WORDS in text and "must not begin with '_'" in text for text in message)
 
 
 @pytest.mark.parametrize(

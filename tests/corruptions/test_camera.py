@@ -209,9 +209,9 @@ def test_entry_points_warp_alike(name, clean, tmp_path):
 def test_files_need_a_field_of_view():
     with pytest.raises(ValueError, match="hfov=90"):
         Settings("camera_yaw", 0.5)
-    with pytest.raises(ValueError, match="files show one height"):
+    with pytest.raises(ValueError, match="cannot show another height"):
         Settings("camera_height", 0.5, hfov=90.0)
-    with pytest.raises(ValueError, match="hfov must be 10 to 150"):
+    with pytest.raises(ValueError, match="hfov must be between 10 and 150"):
         corrupt(np.zeros((4, 4, 3), np.uint8), "camera_yaw", 0.5, key=0, hfov=180.0)
 
 

@@ -113,13 +113,15 @@ def test_other_settings_or_frames_in_a_folder_are_rejected(run, walk):
     text = complaint(run("corruption=spatter", "severity=0.5"))
     assert "severity=0.6 there, severity=0.5 now" in text and "Name another folder" in text
     save(walk / "in/a/frame1b.png", RGB[3])
-    assert "The first 12 frames of episode 'a'" in complaint(run(*SPATTER))
+    assert "among the first 12 frames of episode 'a'" in complaint(run(*SPATTER))
     (walk / "in/a/frame1b.png").unlink()
     assert run(*SPATTER)[0] == 0
     (walk / "out/corrupt.json").write_text('{"settings": 3}')
     assert "corrupt.json is damaged" in complaint(run(*SPATTER))
     (walk / "out/corrupt.json").unlink()
-    assert "must be empty or have a corrupt.json of this program" in complaint(run(*SPATTER))
+    assert "must be empty or contain corrupt.json, which this program writes" in complaint(
+        run(*SPATTER)
+    )
 
 
 def test_16_bit_depth_is_in_millimetres_unless_said_otherwise(run, tmp_path):
@@ -299,7 +301,7 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     assert "Cannot write" in complaint(run(*SPATTER, out="file/under"))
     for source, out in (("in", "in"), ("in", "in/out"), ("in/a", "in"), ("in", "empty/../in/x")):
         text = complaint(run(*SPATTER, source=source, out=out))
-        assert "one inside the other" in text
+        assert "neither may contain the other" in text
     assert "There is no rgb frame" in complaint(run(*SPATTER, source="empty"))
     text = complaint(run("corruption=multipath", "severity=1"))
     assert "There is no depth frame" in text and "13 frames are of the other modality" in text
@@ -310,9 +312,12 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     ("options", "part"),
     [
         (("corruption=spater", "severity=0.5"), "Did you mean spatter"),
-        (("corruption=mask", "severity=0.5"), "For instructions use mitigate corrupt_episodes"),
-        ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or more metres, got -7"),
-        ((*SPATTER, "missing=nan"), "0 (no reading) or more"),
+        (
+            ("corruption=mask", "severity=0.5"),
+            "Corrupt instructions with mitigate corrupt_episodes",
+        ),
+        ((*SPATTER, "missing=-7"), "missing must be 0 (no reading) or a depth in metres, got -7"),
+        ((*SPATTER, "missing=nan"), "0 (no reading) or a depth"),
         (("corruption=spatter", "severity=1.2"), "from 0 (clean) to 1 (worst), got 1.2"),
         (("corruption=spatter", "severity=much"), "severity must be a number, got much"),
         (("corruption=spatter", "severity=nan"), "from 0 (clean) to 1"),

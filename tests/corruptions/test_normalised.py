@@ -62,9 +62,9 @@ def test_wrong_depth_and_sensors_are_refused(depth):
     hurt = Corruption("multipath", 0.5)
     with pytest.raises(ValueError, match="got 3.*in metres"):
         corrupt_normalised({"depth": np.full((4, 4), 3, np.float32)}, hurt, KEY)
-    with pytest.raises(ValueError, match="must be float32 in 0-1, got float64"):
+    with pytest.raises(ValueError, match="must be float32 from 0 to 1, got float64"):
         corrupt_normalised({"depth": np.ones((4, 4))}, hurt, KEY)
-    with pytest.raises(ValueError, match="for normalised depth"):
+    with pytest.raises(ValueError, match="For normalised depth"):
         corrupt_normalised({"depth": depth}, hurt, KEY, DepthSensor(missing=-1.0))
     with pytest.raises(ValueError, match="lacks"):
         corrupt_normalised({"rgb": np.zeros((4, 4, 3), np.uint8)}, hurt, KEY)

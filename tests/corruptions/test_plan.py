@@ -79,7 +79,7 @@ def test_run_rejects_a_link_among_its_results(walk):
     (walk / "out/a").symlink_to(walk / "elsewhere")
     saved = (walk / "elsewhere/0.png").read_bytes()
     with pytest.raises(
-        ValueError, match="out/a must be a folder|must be empty or have a corrupt.json"
+        ValueError, match="out/a must be a folder|must be empty or contain corrupt.json"
     ):
         run(walk / "in", walk / "out", Settings("spatter", 0.6))
     assert (walk / "elsewhere/0.png").read_bytes() == saved

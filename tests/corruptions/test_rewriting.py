@@ -65,7 +65,7 @@ def test_non_text_answer_is_reported_and_asked_again(tmp_path, answer):
     cache, model = tmp_path / "cache.jsonl", Model(answer)
     rewriter = Rewriter(model, "m", cache)
     for _ in range(2):
-        with pytest.raises(ValueError, match="The model 'm' answered .* is not kept"):
+        with pytest.raises(ValueError, match="The model 'm' answered .* was not cached"):
             rewriter(TEXT, "friendly")
     assert len(model.asked) == 2 and not cache.exists()
     model.answer = "Hang a left."
@@ -80,7 +80,7 @@ def test_cache_lines_without_answer_are_skipped(tmp_path):
     cache.write_bytes(b"\xff\xfe{\n" + b"[" * 100_000 + b"\n" + "\n".join(bad).encode() + b"\n")
     assert Rewriter(model, "m", cache)(TEXT, "friendly") == model.answer
     assert len(model.asked) == 2
-    with pytest.raises(ValueError, match="is a folder: name the file"):
+    with pytest.raises(ValueError, match="got the folder"):
         Rewriter(model, "m", tmp_path)
 
 

@@ -226,5 +226,5 @@ def test_flare_rejects_heading_that_is_not_a_number(scene, heading):
     """With an invalid heading, the light would be outside all views, and the frame would stay
     clean."""
     rgb, _ = scene.draw(24, 32)
-    with pytest.raises(ValueError, match="heading must be in finite radians"):
+    with pytest.raises(ValueError, match="heading must be a finite number"):
         corrupt(rgb, "flare", 1.0, key=Key(0, "a"), heading=heading)

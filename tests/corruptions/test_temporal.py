@@ -369,14 +369,14 @@ def test_faults_are_rejected_where_they_cannot_apply():
     with pytest.raises(ValueError, match="one time step"):
         corrupt_habitat({RGB: frame}, Corruption("frame_delay", 0.5), Key(0, "e"))
     for pair in ("spatter+intermittent", "intermittent+frozen_frame", "intermittent+mask"):
-        with pytest.raises(ValueError, match="must be the first of a pair"):
+        with pytest.raises(ValueError, match="must be the first name of a pair"):
             Corruption(pair, 0.5)
     for check in (
         lambda: conditions(["intermittent"], 0.5, None),
         lambda: Settings("intermittent", 0.5),
         lambda: FrameStream().corrupt({RGB: frame}, Corruption("intermittent", 0.5), 0),
     ):
-        with pytest.raises(ValueError, match="must be the first of a pair"):
+        with pytest.raises(ValueError, match="must be the first name of a pair"):
             check()
     with pytest.raises(ValueError, match="same shape"):
         stream = FrameStream()
@@ -398,7 +398,7 @@ def test_fault_of_both_sensors_needs_one_of_them():
     met = [Corruption("frozen_frame", 0.6)]
     check_sensors(met, [RGB], "world")
     check_sensors(met, [DEPTH], "world")
-    with pytest.raises(ValueError, match="The suite has frozen_frame"):
+    with pytest.raises(ValueError, match="The suite contains frozen_frame"):
         check_sensors(met, ["state"], "world")
     assert [c.severity for c in conditions(["frozen_frame", "depth_lag"], 0.6, 0.4)] == [0.6, 0.4]
 

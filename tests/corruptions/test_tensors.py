@@ -243,7 +243,7 @@ def test_corrupt_observations_returns_uncorrupted_entries(scene):
     assert all(out[name] is frames[name] for name in frames)
     with pytest.raises(ValueError, match="needs the entry 'depth'"):
         corrupt_observations({"rgb": frames["rgb"]}, CORRUPTIONS, keys)
-    with pytest.raises(ValueError, match="Normalised depth must be in 0-1"):
+    with pytest.raises(ValueError, match="Normalised depth must be between 0 and 1"):
         corrupt_observations(frames, CORRUPTIONS, keys, normalised=True)
     with pytest.raises(ValueError, match=r"one corruption, key and heading per row.*4 .*3 keys"):
         corrupt_observations(frames, CORRUPTIONS, keys[:3])
@@ -257,7 +257,7 @@ DEPTH = torch.ones(2, 1, 8, 9, 1)
     ("frames", "name", "options", "part"),
     [
         (RGB, "flur", {}, "flare"),
-        (RGB, "frozen_frame", {}, "is a temporal fault.*FrameStream"),
+        (RGB, "frozen_frame", {}, "got the temporal fault.*FrameStream"),
         (RGB.float(), "spatter", {}, r"must be torch.uint8.*\* 255"),
         (DEPTH.double(), "multipath", {}, "must be torch.float32.*divided by 1000"),
         (RGB[:, 0], "spatter", {}, r"\[rows, views, H, W, 3\].*frames\[:, None\]"),
@@ -269,7 +269,7 @@ DEPTH = torch.ones(2, 1, 8, 9, 1)
         (RGB, "spatter", {"keys": "ab"}, "keys must have one entry per row"),
         (RGB, "spatter", {"severity": [0.1, 1.2]}, "Severity must be a number from 0"),
         (RGB, "spatter", {"severity": [0.1]}, "severity must have one entry per row"),
-        (RGB, "flare", {"headings": [0.1, float("nan")]}, "heading must be in finite radians"),
+        (RGB, "flare", {"headings": [0.1, float("nan")]}, "heading must be a finite number"),
         (RGB, "spatter", {"backend": "cuda"}, "numpy, torch"),
     ],
     ids=lambda value: value if isinstance(value, str) else "",

@@ -132,7 +132,7 @@ def test_folder_frames_reject_too_small_units(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         Image.fromarray(np.full((6, 6), 1500, np.uint16)).save(tmp_path / f"s{number}/0.png")
-    with pytest.raises(ValueError, match=r"0\.png must hold depth in metres.*nearer.*env\.unit"):
+    with pytest.raises(ValueError, match=r"0\.png must contain depth in metres.*nearer.*env\.unit"):
         collect(FolderFrames(str(tmp_path), "depth", unit=1e-6), TRAIN, 1, 0)
     near = FolderFrames(str(tmp_path), "depth", unit=1e-4)
     # the frames show a wall at a distance of 15 cm
@@ -162,8 +162,8 @@ def test_folder_frames_replace_invalid_depth(tmp_path):
 @pytest.mark.parametrize(
     ("depth", "says"),
     [
-        (np.full((6, 6), 1500.0), "must hold depth in metres.* .median 1500"),
-        (np.linspace(0, 5000, 900).reshape(30, 30), "must hold depth in metres"),
+        (np.full((6, 6), 1500.0), "must contain depth in metres.* .median 1500"),
+        (np.linspace(0, 5000, 900).reshape(30, 30), "must contain depth in metres"),
         (np.ones((6, 6, 3)), r"has the shape \[6, 6, 3\]"),
         (np.ones(6), r"has the shape \[6\]"),
         (np.ones((0, 0)), r"has the shape \[0, 0\]"),
@@ -182,7 +182,7 @@ def test_collect_rejects_black_frames(tmp_path):
     for number in range(2):
         (tmp_path / f"s{number}").mkdir()
         np.save(tmp_path / f"s{number}/0.npy", np.full((6, 6), 1e300))
-    with pytest.raises(ValueError, match="All 1 train frames are 0 everywhere"):
+    with pytest.raises(ValueError, match="All 1 train frames are 0 in all pixels"):
         collect(FolderFrames(str(tmp_path), "depth"), TRAIN, 1, 0)
 
 
@@ -232,7 +232,7 @@ def test_folder_frames_explain_an_empty_folder(tmp_path):
     with pytest.raises(FileNotFoundError, match="There is no folder"):
         FolderFrames(str(tmp_path / "none"))
     (tmp_path / "notes.txt").write_text("x")
-    with pytest.raises(FileNotFoundError, match="holds no rgb frames: .* 1 .txt"):
+    with pytest.raises(FileNotFoundError, match="contains no rgb frames, .* 1 .txt"):
         FolderFrames(str(tmp_path))
     write(tmp_path, "0.png", 0)
     with pytest.raises(ValueError, match="must come from different scenes"):
@@ -240,5 +240,5 @@ def test_folder_frames_explain_an_empty_folder(tmp_path):
 
 
 def test_source_of_requires_a_placeable_world():
-    with pytest.raises(ValueError, match="Save its frames as PNG and use env=frames"):
+    with pytest.raises(ValueError, match="its frames as PNG and use env=frames"):
         source_of(object, "rgb", {"a": LIST}, "a", None)

@@ -45,7 +45,7 @@ def test_load_model_calls_an_import_path():
         ("tests.encoders.shapes:tinyy", None, "Did you mean tiny"),
         (TINY, {"depth": 3}, "cannot be called with"),
         ("os.path:join", {"a": "b"}, "must return a torch nn.Module"),
-        ("weights.pth", None, "Name it as agent.weights"),
+        ("weights.pth", None, "Set agent.weights to this file"),
         ("model.onnx", None, "neither an import path"),
         ("efficientnet_lite_pytorch:EfficientNet.from_name", None, "extra 'encoders'"),
     ],
@@ -68,7 +68,7 @@ def test_encoder_rejects_random_weights_with_adapters(tmp_path):
     process ends."""
     path, state = f"{__name__}:drawn", torch.random.get_rng_state()
     with pytest.raises(
-        ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights="
+        ValueError, match=r"initialises 11 .* at random \(stem.weight.*agent.weights to"
     ):
         encoder(model=path)
     file = tmp_path / "weights.safetensors"
@@ -170,12 +170,12 @@ class Gives(TinyNet):
     ("kind", "output", "says"),
     [
         ("number", None, r"got float32 \(\) for two frames"),
-        ("counts", None, r"must give finite floats .* got int64 \(2, 5\) for two"),
+        ("counts", None, r"must select finite floats .* got int64 \(2, 5\) for two"),
         ("nothing", None, "encoder returns a NoneType"),
         ("nothing", 0, "encoder returns a NoneType"),
         ("deep", None, "encoder returns a dict"),
         ("deep", "a", "encoder returns a dict"),
-        ("missing", None, r"take rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
+        ("missing", None, r"failed for rgb frames .*\(KeyError: 'missing', in .*, line [0-9]+\)"),
     ],
 )
 def test_encoder_explains_an_invalid_output(kind, output, says):
@@ -242,7 +242,9 @@ def test_load_weights_uses_the_prefix(tmp_path, kind):
     result = tiny()
     load_weights(result, str(path), "net.rgb_encoder.model.")
     assert torch.equal(result.stem.weight, expected.stem.weight)
-    with pytest.raises(ValueError, match=r"Their names begin with net; agent.prefix is ''"):
+    with pytest.raises(
+        ValueError, match=r"names in the file begin with net, and agent.prefix is ''"
+    ):
         load_weights(result, str(path))
 
 
@@ -287,10 +289,14 @@ class Runs:
 
 def test_load_weights_unpickles_nothing(tmp_path, capsys):
     (tmp_path / "w.pth").write_bytes(pickle.dumps({"a": Runs()}))
-    with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
+    with pytest.raises(
+        ValueError, match="cannot be read without running code|must contain named tensors"
+    ):
         load_weights(tiny(), str(tmp_path / "w.pth"))
     torch.save({"a": Runs()}, tmp_path / "w.pth")
-    with pytest.raises(ValueError, match="cannot be read without running code|holds no tensors"):
+    with pytest.raises(
+        ValueError, match="cannot be read without running code|must contain named tensors"
+    ):
         load_weights(tiny(), str(tmp_path / "w.pth"))
     assert "this ran" not in capsys.readouterr().out
 
@@ -341,7 +347,7 @@ def test_encoder_output_explains_an_unknown_item():
 
 
 def test_encoder_rejects_unsupported_frames():
-    with pytest.raises(ValueError, match=r"does not take depth frames \[2, 1, 32, 32\]"):
+    with pytest.raises(ValueError, match=r"failed for depth frames \[2, 1, 32, 32\]"):
         encoder(sensor="depth")
     with pytest.raises(ValueError, match="have 3 values, but depth has 1 channels"):
         encoder(sensor="depth", transform={"size": 32, "mean": [0, 0, 0], "std": [1, 1, 1]})

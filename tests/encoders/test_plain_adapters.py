@@ -93,7 +93,7 @@ def test_both_readers_reject_surplus_tensors(tmp_path, name, change):
 def test_attach_rejects_another_encoder(tmp_path):
     model = saved(tmp_path)
     nn.init.zeros_(model.stem.weight)
-    with pytest.raises(ValueError, match="Load those weights first"):
+    with pytest.raises(ValueError, match="Load weights with the first hash"):
         plain_adapters.attach(model, tmp_path)
     plain_adapters.attach(model, tmp_path, check=False)
     with pytest.raises(ValueError, match=r"no module called blocks\.0"):
@@ -117,7 +117,7 @@ def test_attach_rejects_invalid_settings(tmp_path, shape):
     settings["adapters"]["blocks.0"] = shape
     file.write_text(json.dumps(settings))
     with pytest.raises(
-        ValueError, match="damaged, or has adapters that this file does not support"
+        ValueError, match="damaged, or has adapters that this module does not support"
     ):
         plain_adapters.attach(model, tmp_path)
 

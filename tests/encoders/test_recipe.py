@@ -222,7 +222,7 @@ def test_training_of_a_depth_encoder(tmp_path):
 
 def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     result().save(tmp_path)
-    with pytest.raises(ValueError, match="is of an encoder with pool='mean'"):
+    with pytest.raises(ValueError, match="belongs to an encoder with pool='mean'"):
         result(pool="flatten").load(tmp_path)
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):

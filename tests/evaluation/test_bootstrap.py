@@ -146,5 +146,5 @@ def test_gaps_and_unequal_episodes_are_refused(results):
     clean, corrupted = results
     with pytest.raises(ValueError, match="1 NaN"):
         mean([1.0, math.nan])
-    with pytest.raises(ValueError, match=r"same episodes for both, got counts of 299, 300"):
+    with pytest.raises(ValueError, match=r"same episodes in both arguments, got 299 and 300"):
         prs_difference(results, (clean[1:], corrupted[:, 1:]))

@@ -92,7 +92,7 @@ def test_compare_rejects_an_agent_no_better_than_random():
 def test_compare_rejects_agents_without_common_episodes():
     rows = [*rows_of("before", "clean", [1.0]), *rows_of("after", "clean", [1.0])]
     rows[1]["episode_id"] = "9"
-    with pytest.raises(ValueError, match="must share episodes"):
+    with pytest.raises(ValueError, match="must have episodes in common"):
         compare(rows)
 
 

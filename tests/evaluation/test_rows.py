@@ -234,7 +234,7 @@ def test_write_rejects_fewer_rows_than_the_file_holds(tmp_path):
     rows.write(file, cell(5))
     before = file.read_bytes()
     count = len(rows.read(file))
-    with pytest.raises(ValueError, match=f"holds {count} rows, and only {count - 1} would"):
+    with pytest.raises(ValueError, match=f"holds {count} rows, but only {count - 1} would"):
         rows.write(file, rows.read(file)[:-1])
     assert file.read_bytes() == before
     rows.write(file, rows.read(file)[:-1], fewer=True)

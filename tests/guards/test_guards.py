@@ -89,7 +89,7 @@ def test_guards_apply_each_in_turn():
 
 def test_guards_reject_a_world_without_their_frames():
     Guards([Shouts(), Dark()]).check_shown([RGB], "the world")
-    with pytest.raises(ValueError, match="dark is for rgb, but the world shows depth: leave"):
+    with pytest.raises(ValueError, match="dark is for rgb, but the world shows depth: omit"):
         Guards([Shouts(), Dark()]).check_shown([DEPTH], "the world")
 
 
@@ -277,7 +277,7 @@ def test_observe_rejects_what_is_no_frame(name, words):
 @pytest.mark.parametrize(
     ("choice", "words"),
     [
-        ("no_such_module:f", "No module named 'no_such_module'. It names module:callable"),
+        ("no_such_module:f", "No module named 'no_such_module'. It must be module:callable"),
         (f"{FILTERS}.py:median", f"Write {FILTERS}:median."),
         (f"{FILTERS}:medain", "There is no object of .* 'medain'. Did you mean median?"),
         (f"{FILTERS}:NUMBER", "a int cannot be called with frames"),

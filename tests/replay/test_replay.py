@@ -245,7 +245,7 @@ def test_replay_rejects_an_unused_restorer_before_reading_frames(tmp_path, mitig
     Restorer(sensors=[DEPTH], depth_width=4).save(tmp_path / "mine")
     options = (f"restore={tmp_path}/mine", "agents=[checkpoints/recurrent/base]")
     status, _, errors = mitigate("replay", str(colours.parent), *options, f"out={tmp_path}/out")
-    assert status == 1 and "is for depth, but lab shows rgb: leave restore= out" in errors
+    assert status == 1 and "is for depth, but lab shows rgb: omit restore=" in errors
     assert not (tmp_path / "out").exists()
 
 

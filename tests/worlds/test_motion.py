@@ -247,7 +247,7 @@ def test_motion_faults_are_rejected_where_they_cannot_apply():
         corrupt(np.zeros((4, 4, 3), np.uint8), "motion_slip", 0.5, key=Key(0, "e"))
     with pytest.raises(ValueError, match="motion fault"):
         Settings("motion_slip", 0.5)
-    with pytest.raises(ValueError, match="must be the first of a pair"):
+    with pytest.raises(ValueError, match="must be the first name of a pair"):
         Corruption("intermittent+motion_slip", 0.5)
     config = RunConfig(conditions=["motion_slip"], suite={"conditions": []}, launcher=None)
     with pytest.raises(ValueError, match="does not intercept"):

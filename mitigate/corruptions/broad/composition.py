@@ -1,9 +1,10 @@
-"""Sample the primitives of a composition, their strengths and their common random maps.
+"""Sample the primitives of a composition and their strengths, and compute random maps for
+primitives.
 
-A primitive is a function of views, a strength in (0, 1], and random generators for the episode
-(``rng``) and the frame (``now``). It returns views of the same shape. Constants without a source
-were chosen by this project before any agent trained with them was measured under unseen
-corruptions.
+A primitive is a function. Its arguments are views, a strength in (0, 1], and two random generators:
+``rng`` for the episode and ``now`` for the frame. It returns views of the same shape. Constants
+without a source were chosen by this project. They were fixed before any agent that was trained with
+them was evaluated under unseen corruptions.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ import numpy as np
 
 from mitigate.corruptions.keying import Key, digest
 
-COUNTS = (0.4, 0.35, 0.25)  # probabilities of one, two and three primitives
+COUNTS = (0.4, 0.35, 0.25)  # probabilities that one, two or three primitives are applied
 LEAST_STRENGTH = 0.35  # the strength of each primitive is at least this fraction of the severity
 
 Primitive = Callable[..., np.ndarray]
@@ -28,7 +29,9 @@ def composed(
     name: str,
     primitives: Sequence[Primitive],
 ) -> np.ndarray:
-    """Apply one to three of ``primitives`` to ``views``, sampled for the key's episode."""
+    """Apply one to three of ``primitives`` to ``views``; the choice depends on the key's
+    episode.
+    """
     chosen, rng = drawn(key, name, primitives)
     now = stream(digest(key, name, frame=True))
     for primitive in chosen:
@@ -56,7 +59,8 @@ def stream(value: int) -> np.random.Generator:
 def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
     """Return a smooth random map, float32 [H, W], with mean 0 and standard deviation about 1.
 
-    The size of its cells is ``cell`` times the shorter side.
+    The map is interpolated from a grid of random values with a spacing of ``cell`` times the
+    shorter side.
     """
     height, width = shape
     size = max(1.0, cell * min(height, width))
@@ -72,8 +76,8 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
-    """Return a mask [H, W] of one to eight shapes that cover about the fraction ``area`` of the
-    map.
+    """Return a mask [H, W] of one to eight random shapes, which together cover about a fraction
+    ``area`` of the image.
     """
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
@@ -96,15 +100,15 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
     """Return the source coordinates x and y of each pixel, float32 [H, W].
 
-    Pixels are displaced by a smooth random map with cells of 0.06 to 0.6 of the side, and all
-    pixels together are rotated, scaled and shifted. The maximum displacement is about ``reach``
-    times the side.
+    Pixels are displaced by a smooth random map, whose grid spacing is 0.06 to 0.6 times the shorter
+    side. In addition, the whole image is rotated, scaled and shifted. The maximum displacement is
+    about ``reach`` times the shorter side.
     """
     (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)
     side = min(height, width)
     y, x = np.mgrid[:height, :width].astype(np.float32)
     local = rng.uniform(0.0, 1.0)
-    # large displacements with small cells would fold the image
+    # with a fine grid, large displacements would fold the image
     slope = reach * side * local * min(1.0, 3.0 * cell)
     turn, scale = (1.0 - local) * reach * rng.uniform(-1.5, 1.5, 2)
     shift = (1.0 - local) * reach * side * rng.uniform(-1.0, 1.0, 2)

@@ -17,7 +17,7 @@ NAME = "broad_depth"
 
 
 def curve(views, strength, rng, now):
-    """Change scale and offset, and add waves along the range."""
+    """Scale and offset depth, and add an error that is a sine of depth."""
     scale, offset = 1.0 + 0.5 * strength * rng.uniform(-1, 1), 0.1 * strength * rng.uniform(-1, 1)
     waves, phase = rng.uniform(1.0, 8.0), rng.uniform(0, 2 * np.pi)
     wave = 0.04 * strength * rng.random() * np.sin(2 * np.pi * waves * views + phase)
@@ -25,7 +25,7 @@ def curve(views, strength, rng, now):
 
 
 def uneven(views, strength, rng, now):
-    """Add spatially correlated errors, constant or growing with z or its square."""
+    """Add spatially correlated errors, which are independent of depth z or grow with z or z^2."""
     power, amount = rng.choice((0, 1, 2)), strength * rng.uniform(0.02, 0.25)
     error = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.6))
     moving = rng.random() < 0.5
@@ -37,7 +37,7 @@ def uneven(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add noise of random grain size, constant or growing with the square of z."""
+    """Add noise of random grain size; the noise is independent of depth z or grows with z^2."""
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(views.shape[1:]) // 128)
     height, width = views.shape[1:]
     shape = (len(views), -(-height // grain), -(-width // grain))
@@ -56,7 +56,7 @@ def smooth(views, strength, rng, now):
 
 
 def steps(views, strength, rng, now):
-    """Round to few levels, evenly spaced in distance or in disparity."""
+    """Round depth to a few levels that are evenly spaced in distance or in disparity."""
     if rng.random() < 0.5:
         step = np.float32(strength * rng.uniform(0.02, 0.15))
         return np.rint(views / step) * step
@@ -65,7 +65,7 @@ def steps(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Displace pixels by smooth random maps, or all together."""
+    """Displace pixels by a smooth random map, and rotate, scale and shift the image."""
     map_x, map_y = displaced(rng, views.shape[1:], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
     return _each(
@@ -74,7 +74,7 @@ def warped(views, strength, rng, now):
 
 
 def swapped(views, strength, rng, now):
-    """Replace some pixels by other pixels nearby."""
+    """Replace random pixels by other pixels nearby."""
     reach = max(1, round(0.15 * rng.uniform(0.2, 1.0) * min(views.shape[1:])))
     out, share = views.copy(), 0.6 * strength * rng.random()
     for view, clean in zip(out, views, strict=True):
@@ -88,7 +88,8 @@ def swapped(views, strength, rng, now):
 def holes(views, strength, rng, now):
     """Remove or replace at most a fraction ``0.7 * strength`` of the pixels.
 
-    The pixels are selected by a random mixture of a smooth map, chance, distance and edges.
+    The selection is a random mixture of four criteria: a smooth random map, independent noise,
+    distance and edges.
     """
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
@@ -103,7 +104,7 @@ def holes(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Remove or replace depth within random shapes, which are common to all views or different."""
+    """Remove or replace depth within random shapes, which may differ between views."""
     area, fill, alike = 0.5 * strength * rng.uniform(0.1, 1.0), _fill(rng), rng.random() < 0.6
     mask, out = shapes(rng, views.shape[1:], area), views.copy()
     for view in out:
@@ -113,19 +114,25 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Set each view to no reading, or far, with probability 0.5 times the strength."""
+    """With probability 0.5 * strength, set all pixels of a view to no reading or to the maximum
+    range.
+    """
     out = views.copy()
     out[now.random(len(views)) < 0.5 * strength] = rng.choice((np.nan, np.nan, 1.0))
     return out
 
 
 def _fill(rng: np.random.Generator) -> float:
-    """Sample the value that replaces depth: mostly no reading, otherwise any depth in range."""
+    """Sample the value that replaces depth: no reading (NaN) in most cases, otherwise a depth in
+    range.
+    """
     return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view with holes filled as far, and restore the holes afterwards."""
+    """Apply ``change`` to each view. Holes are filled with the maximum range before, and restored
+    afterwards.
+    """
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
     return np.where(holes, np.float32(np.nan), out)
@@ -135,7 +142,9 @@ PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidde
 
 
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Apply one to three primitives of random strength up to ``severity``, fixed per episode."""
+    """Apply one to three primitives with random strengths up to ``severity``; the choice is fixed
+    per episode.
+    """
     valid = (views > 0) & np.isfinite(views)
     z_max = np.float32(sensor.z_max)
     shares = np.where(valid, np.minimum(views, z_max) / z_max, np.float32(np.nan))

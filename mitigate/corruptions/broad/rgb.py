@@ -18,12 +18,14 @@ from mitigate.corruptions.broad.composition import (
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
-STOPS = (-4.0, 2.5)  # range of the change of brightness at strength 1
-GAMMA = 2.2  # gamma exponent of displays, from stored levels to light
+STOPS = (-4.0, 2.5)  # range of brightness changes at strength 1, in stops
+GAMMA = 2.2  # display gamma: light is proportional to (stored level)^GAMMA
 
 
 def exposure(views, strength, rng, now):
-    """Change the brightness, evenly or along a smooth random map, constantly or per frame."""
+    """Change the brightness, either uniformly or by a smooth random map; the change is constant or
+    differs between frames.
+    """
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -34,7 +36,9 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add a random sum of b_n sin(pi n x) per colour or to all colours, with a table (PRIME)."""
+    """Add a random sum of sine waves b_n sin(pi n x) to the levels x, by a look-up table per colour
+    or for all colours (PRIME).
+    """
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -105,7 +109,9 @@ def coarse(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Displace pixels by smooth random maps (PRIME's diffeomorphisms), or all together."""
+    """Displace pixels by a smooth random map (PRIME's diffeomorphisms), and rotate, scale and shift
+    the image.
+    """
     source = now if rng.random() < 0.3 else rng
     map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
@@ -115,7 +121,9 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add or multiply noise of random grain size, distribution and colour, or in bands."""
+    """Add or multiply noise of random grain size, distribution and colour; the noise may form
+    bands.
+    """
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -131,7 +139,7 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Cover views with a random colour, whose opacity is a fine or coarse random map."""
+    """Cover views with a random colour; its opacity is a random map, from fine to coarse."""
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
@@ -146,8 +154,8 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes, common to all views or different, with a colour, noise or other image
-    parts.
+    """Fill random shapes, which may differ between views, with a colour, noise or other parts of
+    the image.
     """
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
@@ -165,9 +173,9 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Remove each view, or a part of it, with probability 0.8 times the strength.
+    """With probability 0.8 * strength, remove a view or a part of it.
 
-    The lost part is filled with one level, noise or a different view.
+    The removed pixels are filled with a constant grey level, noise or pixels of another view.
     """
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
@@ -186,7 +194,7 @@ def lost(views, strength, rng, now):
 
 
 def _colour(rng: np.random.Generator) -> np.ndarray:
-    """Sample black, white, a grey level or any colour."""
+    """Sample a colour: black, white, a grey level or any other colour."""
     kind = rng.random()
     grey = np.repeat(0.0 if kind < 0.3 else 1.0 if kind < 0.4 else rng.random(), 3)
     return (grey if kind < 0.6 else rng.random(3)).astype(np.float32)
@@ -212,6 +220,8 @@ PRIMITIVES = (
 
 
 def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
-    """Apply one to three primitives of random strength up to ``severity``, fixed per episode."""
+    """Apply one to three primitives with random strengths up to ``severity``; the choice is fixed
+    per episode.
+    """
     changed = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
     return np.rint(np.clip(changed, 0.0, 1.0) * 255.0).astype(np.uint8)

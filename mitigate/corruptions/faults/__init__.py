@@ -1,9 +1,9 @@
-"""Faults: corruptions of time, camera mounting and motion, which one frame alone does not show.
+"""Faults are corruptions of timing, camera mounting and motion, which a single frame does not show.
 
-Each is a pure function ``draw`` of (severity, key). A temporal fault draws the age of the frame
-that arrives, a fault of the camera its displacement, a fault of motion how an action is executed.
-The state is outside of the faults: ``mitigate/corruptions/stream.py`` keeps the last frames, and
-``mitigate/worlds/motion.py`` the last action.
+Each fault is a pure function ``draw(severity, key)``. A temporal fault samples the age of the frame
+that arrives. A camera fault samples the displacement of the camera. A motion fault samples how an
+action is executed. Faults keep no state: ``mitigate/corruptions/stream.py`` keeps the last frames,
+and ``mitigate/worlds/motion.py`` the last action.
 """
 
 from mitigate.corruptions.faults import camera, motion, temporal

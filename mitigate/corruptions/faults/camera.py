@@ -1,12 +1,14 @@
-"""Faults of the camera's mounting: it is higher, tilted, turned or has another field of view.
+"""Camera faults: the camera is higher, tilted, turned, or has a different field of view.
 
-``draw(severity, key)`` of a record returns the displacement, a ``Mount``, which is constant in an
-episode. A world that can render again does so (``World.displaced``). For all other frames the exact
-homography of a rotation and of the field of view is applied to a pinhole camera with square pixels;
-what the camera did not see stays black, or without a reading. A change of height needs rendering.
+The function ``draw(severity, key)`` of a record returns the displacement (a ``Mount``), which is
+constant in an episode. Some worlds render the frames of the displaced camera (``World.displaced``).
+All other frames are transformed by a homography. It is exact for a pinhole camera with square
+pixels whose rotation or field of view changes. Pixels that the original camera did not see are
+black, or have no depth reading. A change of height needs rendering.
 
-A panorama is one rigid rig: all views move together. Pitch of the rig is roll for a view to the
-side. In a pair, the camera comes first. The ranges are heuristic.
+The cameras of a panorama form a rigid rig: all views move together. For a camera that looks
+sideways, pitch of the rig is roll. In a pair of corruptions, the camera fault is applied first. The
+ranges are heuristic.
 """
 
 from __future__ import annotations
@@ -27,9 +29,9 @@ from mitigate.corruptions.record import CAMERA, FRAMES, Record
 HEIGHT = 0.6  # metres at severity 1
 PITCH, ROLL, YAW = 30.0, 20.0, 30.0  # degrees at severity 1
 FOV = 30.0  # degrees at severity 1
-NARROWEST, WIDEST = 10.0, 150.0  # degrees: limits of the field of view
+NARROWEST, WIDEST = 10.0, 150.0  # limits of the field of view in degrees
 TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
-_DECIMALS = 12  # of a rotation, so that the last bit of a machine's sine does not reach the pixels
+_DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the last bit of sin()
 
 
 @dataclass(frozen=True)
@@ -51,11 +53,13 @@ class Mount:
     fov: float = 0.0
 
     def hfov(self, degrees: float) -> float:
-        """Return the horizontal field of view that a camera of ``degrees`` gets."""
+        """Return the new horizontal field of view of a camera that originally had ``degrees``."""
         return min(max(degrees + self.fov, NARROWEST), WIDEST)
 
     def rotation(self) -> np.ndarray:
-        """Return the rotation [3, 3] of the axes right, forward, up: roll, then pitch, then yaw."""
+        """Return the rotation matrix [3, 3] for the axes (right, forward, up); it applies roll,
+        then pitch, then yaw.
+        """
         yaw, pitch, roll = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
         about_forward = np.array(
             [[math.cos(roll), 0, math.sin(roll)], [0, 1, 0], [-math.sin(roll), 0, math.cos(roll)]]
@@ -71,7 +75,7 @@ class Mount:
 
 
 def _about_up(angle: float) -> np.ndarray:
-    """Return the rotation by ``angle`` radians to the left."""
+    """Return the matrix of a rotation by ``angle`` radians to the left."""
     cos, sin = math.cos(angle), math.sin(angle)
     return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
 
@@ -84,18 +88,19 @@ def total(mounts: Iterable[Mount]) -> Mount:
 def warp(
     views: np.ndarray, mount: Mount, hfov: float, sensor: DepthSensor | None = None
 ) -> np.ndarray:
-    """Return the frames of displaced cameras, computed from those of the original cameras.
+    """Return the frames of displaced cameras, computed from the frames of the original cameras.
 
     Args:
-        views: RGB uint8 [V, H, W, 3], or depth float32 metres [V, H, W]. View k has yaw -30 k
-            degrees and is level.
+        views: RGB uint8 [V, H, W, 3], or depth float32 metres [V, H, W]. View k has a yaw of -30 *
+            k degrees and no pitch.
         mount: The displacement; its height is ignored.
         hfov: Horizontal field of view of the original cameras in degrees.
-        sensor: The depth sensor; None for RGB.
+        sensor: The depth sensor, or None for RGB.
 
     Returns:
-        RGB is interpolated bilinearly, depth is the nearest reading, converted to metres along the
-        new optical axis. Unseen pixels are black, or ``sensor.missing``.
+        RGB is interpolated bilinearly. Depth is the nearest reading, converted to metres along the
+        new optical axis. Pixels that the original camera did not see are black, or
+        ``sensor.missing``.
     """
     rotation = mount.rotation()
     turns = [_about_up(math.radians(-VIEW_STEP_DEGREES * view)) for view in range(len(views))]
@@ -112,7 +117,9 @@ def warp(
 
 @njit(inline="always")
 def _source(rotation, row, column, height, width, before, after):
-    """Return source row and column of a pixel, and the depth factor; 0 if it is behind."""
+    """Return the source row and column of a pixel and its depth factor, which is 0 if the pixel is
+    behind the original camera.
+    """
     x = (2 * column + 1 - width) / width * after
     z = (height - 1 - 2 * row) / width * after
     right = rotation[0, 0] * x + rotation[0, 1] + rotation[0, 2] * z
@@ -176,27 +183,27 @@ def _sign(key: Key, name: str) -> float:
 
 
 def camera_height(severity: float, key: Key) -> Mount:
-    """Return a camera that is higher or lower."""
+    """Return the displacement of a camera that is mounted higher or lower."""
     return Mount(height=severity * HEIGHT * _sign(key, "camera_height"))
 
 
 def camera_pitch(severity: float, key: Key) -> Mount:
-    """Return a camera that looks up or down."""
+    """Return the displacement of a camera that points up or down."""
     return Mount(pitch=severity * PITCH * _sign(key, "camera_pitch"))
 
 
 def camera_roll(severity: float, key: Key) -> Mount:
-    """Return a camera that is tilted to a side."""
+    """Return the displacement of a camera that is tilted to a side."""
     return Mount(roll=severity * ROLL * _sign(key, "camera_roll"))
 
 
 def camera_yaw(severity: float, key: Key) -> Mount:
-    """Return a camera that is turned to a side."""
+    """Return the displacement of a camera that is turned to a side."""
     return Mount(yaw=severity * YAW * _sign(key, "camera_yaw"))
 
 
 def camera_fov(severity: float, key: Key) -> Mount:
-    """Return a camera with a wider or narrower field of view."""
+    """Return the displacement of a camera with a wider or narrower field of view."""
     return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
 
 

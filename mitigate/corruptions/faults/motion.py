@@ -1,12 +1,12 @@
-"""Faults of motion: the robot does not execute its actions exactly.
+"""Motion faults: the robot does not execute its actions exactly.
 
-``draw(severity, key)`` of a record returns how the action of a step is executed, a ``Movement``;
-``key.frame`` is the number of the step. ``mitigate/worlds/motion.py`` documents what that means for
-each kind of action, and applies it.
+The function ``draw(severity, key)`` of a record returns a ``Movement``, which describes how the
+action of a step is executed; ``key.frame`` is the number of the step. ``mitigate/worlds/motion.py``
+applies the ``Movement`` and documents its effect on each kind of action.
 
-A repeated action is Machado et al.'s sticky action (JAIR 2018), whose probability of 0.25 is
-reached at severity 0.5. Drift turns the robot while it moves forward, as in RobustNav (ICCV 2021);
-its size and all others are heuristic.
+Repeated actions are the sticky actions of Machado et al. (JAIR 2018); severity 0.5 gives their
+probability of 0.25. Drift turns the robot while it moves forward, as in RobustNav (ICCV 2021). The
+size of the drift and all other sizes are heuristic.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from functools import partial
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import ACTION, MOTION, Record
 
-SLIP = 0.8  # largest part of a movement that is lost in a step at severity 1
+SLIP = 0.8  # maximum fraction of a movement that is lost in a step at severity 1
 DRIFT = 10.0  # degrees per forward step at severity 1
-GAIN = 0.5  # largest relative error at severity 1
-LOST = 0.5  # probability of a dropped, and of a repeated action at severity 1
+GAIN = 0.5  # maximum relative error of a gain at severity 1
+LOST = 0.5  # probability that an action is dropped, or repeated, at severity 1
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,12 @@ class Movement:
     """How the action of a step is executed.
 
     Attributes:
-        gain: Factor of the movement: metres of a forward step, a continuous action.
-        turn: Factor of the degrees of a turn.
-        drift: From -1 to 1: ``DRIFT`` degrees to the left per forward step; for continuous actions
-            a bias.
+        gain: Factor of the length of a forward step, or of a continuous action.
+        turn: Factor of the angle of a turn.
+        drift: Drift to the left, from -1 to 1, in units of ``DRIFT`` degrees per forward step. For
+            continuous actions, the drift is a bias.
         dropped: Whether the robot does not move.
-        repeated: Whether the previous action is executed again instead.
+        repeated: Whether the previous action is executed again instead of this one.
     """
 
     gain: float = 1.0
@@ -44,31 +44,33 @@ class Movement:
 
 
 def motion_slip(severity: float, key: Key) -> Movement:
-    """Return a movement that falls short by a random part in each step."""
+    """Return a movement that is too short, by a random fraction that differs in each step."""
     remaining = 1.0 - severity * SLIP * uniform(digest(key, "motion_slip", frame=True))
     return Movement(gain=remaining, turn=remaining)
 
 
 def motion_drift(severity: float, key: Key) -> Movement:
-    """Return a movement that drifts to one side, the same in the whole episode."""
+    """Return a movement that drifts to one side; the side is constant in an episode."""
     side = 1.0 if uniform(digest(key, "motion_drift")) < 0.5 else -1.0
     return Movement(drift=severity * side)
 
 
 def motion_gain(severity: float, key: Key) -> Movement:
-    """Return constant errors of the gains of forward movement and turns, drawn separately."""
+    """Return a movement whose gains for forward steps and turns have constant errors, sampled
+    separately.
+    """
     value = digest(key, "motion_gain")
     gain, turn = (1.0 + severity * GAIN * (2.0 * uniform(value, i) - 1.0) for i in range(2))
     return Movement(gain=gain, turn=turn)
 
 
 def dropped_action(severity: float, key: Key) -> Movement:
-    """Return whether the command of this step is lost."""
+    """Return a movement that may drop the command of this step."""
     return Movement(dropped=_happens(severity, key, "dropped_action"))
 
 
 def repeated_action(severity: float, key: Key) -> Movement:
-    """Return whether the previous command is executed again in this step."""
+    """Return a movement that may execute the previous command instead of the current one."""
     return Movement(repeated=_happens(severity, key, "repeated_action"))
 
 

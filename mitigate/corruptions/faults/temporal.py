@@ -1,13 +1,13 @@
-"""Faults in time: frames that arrive late, again or not at all.
+"""Temporal faults: frames that arrive late, repeatedly or not at all.
 
-``draw(severity, key)`` of a record returns the age of the frame that arrives, in frames: 0 is the
-current frame. It depends on the key only, so the arriving frame is a pure function of the key and
-the sequence of frames. The frame is corrupted further with the key of the instant at which it was
-taken, so that its noise is as old as its picture. All views and both sensors fail together, except
-in ``depth_lag``.
+The function ``draw(severity, key)`` of a record returns the age, in frames, of the frame that
+arrives; the current frame has age 0. The age depends only on the severity and the key, so the
+arriving frame is a pure function of severity, key and the sequence of frames. Other corruptions of
+an old frame use the key of the step at which it was taken, so its noise is as old as its image. All
+views and both sensors fail together, except in ``depth_lag``.
 
-All durations are heuristic: no published model fits all robots. A frame is an observation of the
-sequence; in the apartments and in Habitat one step of 0.25 m or 15 degrees.
+All durations are heuristic: no published model fits all robots. Each step of an episode gives one
+frame. In the apartments and in Habitat, a step is 0.25 m or 15 degrees.
 """
 
 from __future__ import annotations
@@ -25,28 +25,30 @@ FREEZE_PERIOD, LONGEST_FREEZE = 20, 15  # in frames; each period has one freeze
 BURST_PERIOD, LONGEST_BURST = 8, 6  # in frames; each period has one burst
 ACTIVE_PERIOD, ACTIVE = 20, 10  # in frames; each period has one interval of ``intermittent``
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
-GAMMA = 2.2  # sRGB as a power law
-OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # largest age in frames that a draw can give
-GATE = "intermittent"  # the first part of a pair, which limits the second part to intervals
+GAMMA = 2.2  # exponent of a power law that approximates sRGB
+OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # maximum age in frames that a fault can sample
+# as the first name of a pair, it limits the second corruption to intervals
+GATE = "intermittent"
 
 
 def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) -> int:
-    """Return how many frames of the current interval have passed, with this one; 0 outside.
+    """Return the number of frames of the current interval so far, including this one, or 0 outside
+    of intervals.
 
-    Time is divided into periods, with one interval in each. A longer interval begins at the same
-    frame.
+    Time is divided into periods, and each period contains one interval. The first frame of an
+    interval does not depend on the interval's length.
 
     Args:
-        name: Name of the draw.
+        name: Name of the random number.
         period: Frames per period.
-        longest: Largest length.
+        longest: Maximum length of an interval in frames.
         length: Frames per interval.
         key: Seed, episode and frame.
     """
     phase = int(period * uniform(digest(key, name)))
     number, place = divmod(key.frame + phase, period)
     draw = uniform(digest(Key(key.seed, key.episode, number), name, frame=True))
-    begin = 1 + int(draw * (period - longest))  # a good frame separates two intervals
+    begin = 1 + int(draw * (period - longest))  # at least one good frame separates two intervals
     return place - begin + 1 if begin <= place < begin + length else 0
 
 
@@ -56,13 +58,15 @@ def _burst(severity: float, key: Key) -> int:
 
 
 def frozen_frame(severity: float, key: Key) -> int:
-    """Return the age during a freeze: the last frame before it is repeated."""
+    """Return the age of the frame that arrives; a freeze repeats the last frame before it."""
     length = round(severity * LONGEST_FREEZE)
     return _frames_inside("frozen_frame", FREEZE_PERIOD, LONGEST_FREEZE, length, key)
 
 
 def repeated_frames(severity: float, key: Key) -> int:
-    """Return the age during a burst of lost frames: the last frame before it is repeated."""
+    """Return the age of the frame that arrives; a burst of lost frames repeats the last frame
+    before it.
+    """
     return _burst(severity, key)
 
 
@@ -72,14 +76,14 @@ def frame_delay(severity: float, key: Key) -> int:
 
 
 def depth_lag(severity: float, key: Key) -> int:
-    """Return a constant age, for depth only."""
+    """Return a constant age, which applies to depth only."""
     return round(severity * DELAY)
 
 
 def dropped_frames(
     views: np.ndarray, severity: float, key: Key, context: DepthSensor | float | None
 ) -> np.ndarray:
-    """Return black RGB, or depth without a reading, in the bursts of ``repeated_frames``."""
+    """During the bursts of ``repeated_frames``, return black RGB, or depth without readings."""
     if not _burst(severity, key):
         return views.copy()
     if isinstance(context, DepthSensor):
@@ -98,9 +102,9 @@ def exposure_flicker(
 
 
 def is_active(severity: float, key: Key) -> bool:
-    """Return whether the second corruption of a pair with ``intermittent`` is active now.
+    """Return whether the corruption that is paired with ``intermittent`` is active in this frame.
 
-    The severity does not matter.
+    The result does not depend on the severity.
     """
     return _frames_inside(GATE, ACTIVE_PERIOD, ACTIVE, ACTIVE, key) > 0
 

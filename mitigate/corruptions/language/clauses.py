@@ -1,4 +1,4 @@
-"""Split instructions into clauses of one command each, without joining words."""
+"""Split instructions into clauses, each with one command. Words that join clauses are removed."""
 
 from __future__ import annotations
 
@@ -15,9 +15,10 @@ COMMANDS = (
     "position|locate|end|search"
 )
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
-# maximum number of adverbs before a command (heuristic: speech has no longer sequences)
+# maximum number of adverbs before a command (heuristic; people do not use longer sequences)
 MOST_ADVERBS = 8
-# White space matches only from its start and in one way, so that matching takes linear time.
+# The pattern matches a run of white space only from its start and in only one way, so that matching
+# takes linear time.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"
@@ -43,14 +44,18 @@ _NO_COMMAND_AFTER = listed("no_command_after")
 
 @dataclass(frozen=True)
 class Clause:
-    """One command ``main`` with its condition ``when`` ("once you reach the bed", or empty)."""
+    """One command (``main``) and its condition (``when``), such as "once you reach the bed", or
+    "".
+    """
 
     when: str
     main: str
 
 
 def clauses(text: str) -> list[Clause]:
-    """Return the clauses of ``text`` in order, without joining words and final punctuation."""
+    """Return the clauses of ``text`` in order, without words that join clauses and without final
+    punctuation.
+    """
     parsed = []
     for sentence in _SENTENCE.split(text.strip()):
         pending = ""
@@ -69,7 +74,7 @@ def clauses(text: str) -> list[Clause]:
 
 
 def _hanging(part: str) -> bool:
-    """Return whether ``part`` is only the condition of the next command."""
+    """Return whether ``part`` contains only a condition for the next command."""
     return bool(_BEGINS_CONDITION.match(part)) and _divided(part) is None
 
 
@@ -87,7 +92,9 @@ def _led(text: str) -> str:
 
 
 def _divided(body: str) -> tuple[str, str] | None:
-    """Return (condition, command) of text such as "at the bench, turn left", or None."""
+    """Split text such as "at the bench, turn left" into (condition, command); return None for other
+    text.
+    """
     if not _BEGINS_CONDITION.match(body):
         return None
     for match in _COMMAND.finditer(body):

@@ -1,4 +1,4 @@
-"""Extract the directions of an instruction in order, and its numbers, ordinals and distances.
+"""Extract from an instruction its directions, numbers, ordinals and distances, each in order.
 
 Directions are left, right, around, straight, up, down and stop. "down the stairs" means down, but
 "down the hall" does not. "right before" and "you left the room" are not turns. "wait there" after
@@ -39,7 +39,9 @@ _AROUND = re.compile(
 
 
 def about_turns(tokens: list[Token]) -> dict[int, int]:
-    """Return {first index: last index} for every phrase that means turning around."""
+    """For every phrase that means turning around, map the index of its first token to the index of
+    its last one.
+    """
     text, starts = "", {}
     for index, token in enumerate(tokens):
         starts[len(text)] = index
@@ -52,7 +54,8 @@ def about_turns(tokens: list[Token]) -> dict[int, int]:
 
 
 def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the directions in order; repetitions without a movement in between count once.
+    """Return the directions in order. A direction that is repeated without a movement in between
+    counts once.
 
     ``turned`` is the result of :func:`about_turns`.
     """
@@ -72,7 +75,7 @@ def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
 
 
 def turns(tokens: list[Token], turned: dict[int, int]) -> int:
-    """Count the turns, which are given by a turning verb or phrases such as "take a left"."""
+    """Count the commands to turn: turning verbs, and phrases such as "take a left"."""
     count = len(turned)
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     for place, token in enumerate(tokens):
@@ -116,7 +119,9 @@ def _direction(tokens: list[Token], place: int) -> str | None:
 
 
 def _vertical(tokens: list[Token], place: int, before: str) -> str | None:
-    """Return "up" or "down" if the word changes the level, or None if it means along or near."""
+    """Return "up" or "down" if the word means another floor, or None if it means "along" or
+    "near".
+    """
     if before in _NO_CLIMB:
         return None
     for token in tokens[place + 1 : place + 7]:
@@ -136,7 +141,7 @@ def _stops(tokens: list[Token], place: int) -> bool:
 
 
 def at(tokens: list[Token], place: int) -> str:
-    """Return the word at an index in lower case, or "" outside the text."""
+    """Return the word at an index in lower case, or "" if the index is outside the text."""
     return tokens[place].lower if 0 <= place < len(tokens) else ""
 
 
@@ -161,7 +166,8 @@ def quantities(tokens: list[Token], turned: dict[int, int]) -> list[str]:
     """Return the numbers, ordinals and distances in order, such as "two", "first", "two step",
     "meter".
 
-    ``turned`` is the result of :func:`about_turns`, whose 180 degrees are not a quantity.
+    ``turned`` is the result of :func:`about_turns`; numbers in these phrases (180 degrees) are
+    skipped.
     """
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     names = []
@@ -185,7 +191,9 @@ def _unit(word: str) -> str:
 
 
 def _orders_sentences(tokens: list[Token], place: int) -> bool:
-    """Return whether "first" or "last" orders sentences ("first, turn left"; "at last")."""
+    """Return whether "first" or "last" gives the order of sentences, as in "first, turn left" and
+    "at last".
+    """
     before, after = at(tokens, place - 1), tokens[place + 1] if place + 1 < len(tokens) else None
     loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")
     begins = place == 0 or before in SENTENCE_ENDS or before in ("and", ",", "at")

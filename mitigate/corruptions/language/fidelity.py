@@ -1,7 +1,7 @@
-"""Check that a rewritten instruction keeps the meaning of the original (fidelity gate).
+"""Check that a rewritten instruction keeps the meaning of the original (the fidelity gate).
 
 :func:`facts` extracts the directions, landmarks, numbers, compass words, attributes, relations and
-denials of a text. :func:`check` lists the differences between two texts.
+negations of a text. :func:`check` lists the differences between two texts.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class Facts:
 
     Attributes:
         directions: left, right, around, straight, up, down and stop, in order.
-        landmarks: canonical nouns in order, repeated as in the text.
+        landmarks: canonical nouns in order, with repetitions.
         numbers: numbers, ordinals and distances ("two", "first", "two step").
         compass: compass words.
         attributes: colours, shapes and sizes.
@@ -53,7 +53,9 @@ class Facts:
 
 @dataclass(frozen=True)
 class _Reading:
-    """The facts of a text, its words in canonical form, and the first clause of each landmark."""
+    """The facts of a text, its words in canonical form, and the number of the clause in which each
+    landmark first occurs.
+    """
 
     facts: Facts
     words: frozenset[str]
@@ -66,14 +68,15 @@ def facts(text: str) -> Facts:
 
 
 def check(original: str, rewritten: str) -> list[str]:
-    """Return the changes of meaning from ``original`` to ``rewritten``, or an empty list.
+    """List the changes of meaning from ``original`` to ``rewritten``.
 
     Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
     invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
     "denial".
     Synonyms in ``landmarks.py`` are treated as equal. The number of turns is not compared, because
-    their directions are already compared. Landmarks may be reordered within a clause.
+    the directions of the turns are already compared. The order of landmarks may change within a
+    clause.
     """
     before, after = _read(original), _read(rewritten)
     old, old_words = before.facts, before.words
@@ -101,8 +104,8 @@ def _changes(
     old_words: Iterable[str],
     new_words: Iterable[str],
 ) -> list[str]:
-    """List names in ``old`` that ``new_words`` lacks, and names in ``new`` that ``old_words``
-    lacks.
+    """List names in ``old`` that are missing in ``new_words``, and names in ``new`` that are
+    missing in ``old_words``.
     """
     lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in new_words]
     return lost + [
@@ -111,7 +114,9 @@ def _changes(
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """List names that occur less often in ``new``, and names that occur only in ``new``."""
+    """List names that occur less often in ``new`` than in ``old``, and names that occur only in
+    ``new``.
+    """
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
 
@@ -146,7 +151,7 @@ def _read(text: str) -> _Reading:
 
 
 def _clauses(tokens: list[Token]) -> list[int]:
-    """Return the clause number of every token; a clause is one command."""
+    """Return the clause number of every token; each clause contains one command."""
     ends = [
         token.lower in SENTENCE_ENDS
         or token.lower == "then"
@@ -174,7 +179,9 @@ def _same(token: Token) -> str:
 
 
 def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return (index, canonical name, whether it is a landmark) for every word or known phrase."""
+    """Return, for every word or known phrase, its index, its canonical name, and whether it is a
+    landmark.
+    """
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(tokens):
@@ -206,7 +213,8 @@ def _is_landmark(tokens: list[Token], place: int) -> bool:
     word = token.lower
     if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
         return False
-    if word in ("step", "steps"):  # steps are a distance, unless they are stairs
+    # "steps" may mean a distance or stairs; only stairs are a landmark
+    if word in ("step", "steps"):
         return not any(
             t.tag == "NUM" or t.lower in ("a", "few", "couple", "more", "small")
             for t in tokens[max(0, place - 3) : place]

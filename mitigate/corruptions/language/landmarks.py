@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from mitigate.corruptions.language.words import WORDS, listed
 
-# maps a canonical name to its synonyms; phrases of several words are matched before single nouns
+# maps a canonical name to its synonyms; phrases are matched before single nouns
 SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
-# nouns that are not landmarks: parts of a route, of speech and of polite phrases
+# nouns that are not landmarks, such as parts of a route and words in polite phrases
 PLAIN = listed("no_landmarks")
 
 CANONICAL = {form: name for name, forms in SYNONYMS.items() for form in forms if " " not in form}
@@ -21,7 +21,7 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 
 def normal(noun: str) -> str:
-    """Return the canonical name of a noun, which is the first synonym in lower case and
+    """Return the canonical name of a noun: the main name of its synonyms, in lower case and
     singular.
     """
     word = noun.lower().removesuffix("'s").removesuffix("s'")

@@ -1,6 +1,7 @@
-"""Load the phrases of the four styles: patterns, templates, frames, openers, closers and nouns.
+"""Define patterns for kinds of clauses, and load the phrases with which each style rewrites them.
 
-Templates begin with an infinitive, so that each fits into a frame such as "you'll want to {}".
+Templates begin with an infinitive, so that every template fits into a frame such as "you'll want to
+{}".
 """
 
 from __future__ import annotations
@@ -80,8 +81,8 @@ PATTERNS = {
 
 @dataclass(frozen=True)
 class Voice:
-    """The phrases of one style: templates by kind of clause, frames by place, openers and
-    closers.
+    """The phrases of one style: openers, frames by position, templates (``commands``) by kind of
+    clause, closers, and synonyms of nouns.
     """
 
     openers: tuple[str, ...]
@@ -98,7 +99,7 @@ def swap_nouns(text: str, nouns: dict[str, str]) -> str:
 
 
 def _voice(entry: dict[str, Any]) -> Voice:
-    """Build the phrases of a style from an entry of ``voices.json``, with lists as tuples."""
+    """Convert an entry of ``voices.json`` to the phrases of a style; lists become tuples."""
     frames, commands = (
         {name: tuple(options) for name, options in entry[part].items()}
         for part in ("frames", "commands")

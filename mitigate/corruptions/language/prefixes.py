@@ -1,7 +1,8 @@
 """Load the misleading sentences that an attacker puts before an instruction.
 
 No kind of attack occurs in two splits, so a safeguard that is trained on ``train`` is tested on new
-kinds. All sentences were written for this project; the kinds follow NavTrust's malicious prompts.
+kinds. All sentences were written for this project; the kinds of attack follow NavTrust's malicious
+prompts.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ def prefixes(split: str) -> dict[str, tuple[str, ...]]:
     """
     if split not in _BANK:
         raise ValueError(
-            f"The prefix bank has no split {split!r}. Choose one of: {', '.join(SPLITS)}; a "
-            "safeguard learns from train and is judged on test."
+            f"split must be one of {', '.join(SPLITS)}, got {split!r}. Safeguards are trained on "
+            "train and evaluated on test."
         )
     return {kind: tuple(sentences) for kind, sentences in _BANK[split].items()}

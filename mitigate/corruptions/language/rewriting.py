@@ -1,8 +1,8 @@
 """Rewrite instructions in a style with a language model, as in the paper, and cache all answers.
 
 The model is any function (system prompt, text) -> answer, for example a chat endpoint or a local
-model. Answers are cached by (text, style, model, prompt, seed), so a file of corrupted episodes can
-be reproduced exactly without the model.
+model. The cache key is (text, style, model, prompt, seed). A file of corrupted episodes can
+therefore be reproduced exactly without the model.
 """
 
 from __future__ import annotations
@@ -30,18 +30,18 @@ PROMPT = (
     "no distance, no compass word and no object. Answer with the rewritten instruction alone."
 )
 LONGEST_LINE = 1 << 20  # maximum bytes of a cached answer (heuristic)
-_HALF = re.compile("[\ud800-\udfff]")  # lone surrogates, which a text file cannot contain
+_HALF = re.compile("[\ud800-\udfff]")  # lone surrogates; a text file cannot contain them
 
 
 class Rewriter:
-    """Rewrites texts in a style with a model, and caches the answers.
+    """Callable that rewrites texts in a style with a model, and caches the answers.
 
     Args:
         ask: function (system prompt, text) -> answer.
-        model: name of the model, part of the cache key.
+        model: name of the model; it is part of the cache key.
         cache: a JSONL file with one line per answer. Invalid lines, such as an incomplete last
             line, are ignored.
-        seed: part of the cache key, for models whose answers vary.
+        seed: a number in the cache key, which separates different answers of the same model.
 
     Raises:
         ValueError: ``cache`` is a folder.
@@ -52,7 +52,9 @@ class Rewriter:
     ) -> None:
         self._ask, self._model, self._cache, self._seed = ask, model, Path(cache), seed
         if self._cache.is_dir():
-            raise ValueError(f"{cache} is a folder: name the file that keeps the answers.")
+            raise ValueError(
+                f"cache must be a file, got the folder {cache}. Name a file for the answers."
+            )
         self._known = dict(_read(self._cache))
 
     def __call__(self, text: str, manner: str) -> str:
@@ -62,7 +64,7 @@ class Rewriter:
         answer is not cached, so the next call asks the model again.
         """
         if manner not in TONES:
-            raise ValueError(f"There is no manner {manner!r}. Choose one of: {', '.join(MANNERS)}.")
+            raise ValueError(f"manner must be one of {', '.join(MANNERS)}, got {manner!r}.")
         prompt = PROMPT.format(tone=TONES[manner])
         request = {
             "text": text,
@@ -77,8 +79,8 @@ class Rewriter:
             if not _is_valid(answer):
                 raise ValueError(
                     f"The model {self._model!r} answered {answer!r:.60} for {text!r:.60}: an "
-                    "answer is a text that is not blank. It is not kept; ask again, or another "
-                    "model."
+                    "answer must be text that is not blank. It was not cached. Ask again, or use "
+                    "another model."
                 )
             self._known[key] = answer
             self._append(request | {"answer": answer})
@@ -102,7 +104,7 @@ def _is_valid(answer: object) -> bool:
 
 
 def _read(cache: Path) -> list[tuple[str, str]]:
-    """Return (key, answer) of every valid line."""
+    """Return the pair (key, answer) for every valid line."""
     answers: list[tuple[str, str]] = []
     if not cache.is_file():
         return answers

@@ -1,9 +1,9 @@
 """Rewrite instructions with rules in four styles: friendly, novice, professional and formal.
 
-Each clause of an instruction is recognised (turn, climb, pass, enter and others) and rewritten with
-a template of the style. An unknown clause is not reworded but inserted into a phrase of the style
-("frame"). The fidelity gate checks each clause and the whole text. A rejected text is rewritten
-with fewer changes.
+Each clause of an instruction is classified (turn, climb, pass, enter and others) and rewritten with
+a template of the style. A clause of an unknown kind keeps its words and is inserted into a phrase
+of the style ("frame"). The fidelity gate checks each clause and the whole text. If the gate rejects
+a text, the instruction is rewritten again with fewer changes.
 """
 
 from __future__ import annotations
@@ -19,22 +19,22 @@ from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.text import check_text
 
 MANNERS = ("friendly", "novice", "professional", "formal")
-TRIES = 3  # maximum rewrites of an instruction before the original is used (heuristic)
+TRIES = 3  # maximum number of attempts before the original text is used (heuristic)
 Rewrite = Callable[[str, str], str]
 
 
 @dataclass(frozen=True)
 class Restyled:
-    """A rewritten instruction with the decisions of the fidelity gate.
+    """A rewritten instruction, and what the fidelity gate decided.
 
     Attributes:
-        text: the rewritten instruction, or the original.
+        text: the rewritten instruction, or the original one.
         tries: number of rewrites that the gate checked.
         passed: whether a rewrite was accepted; if not, ``text`` is the original.
-        plain: number of clauses that kept their words, because no template matched or the gate
-            rejected its result.
+        plain: number of clauses that kept their words: no template matched, or the gate rejected
+            the result.
         clauses: number of clauses.
-        refused: the problems of rejected rewrites.
+        refused: the problems that the gate found in rejected rewrites.
     """
 
     text: str
@@ -48,9 +48,9 @@ class Restyled:
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:
     """Rewrite ``text`` in a style and check the result with the fidelity gate.
 
-    If ``rewrite`` (a function (text, style) -> text, such as a language model) is set, it is used
-    first. If the gate rejects its answer, the text is rewritten by rules. Raises ValueError for a
-    text without a word.
+    The optional function ``rewrite`` (text, style) -> text, such as a language model, is tried
+    first. If the gate rejects its answer, rules rewrite the text. Raises ValueError for a text
+    without a word.
     """
     check_text(text)
     refused: list[str] = []
@@ -73,7 +73,7 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
 
 
 class _Draw:
-    """Generates random choices from one stream of numbers."""
+    """Makes random choices from one stream of random numbers."""
 
     def __init__(self, stream: int) -> None:
         self._stream, self._count = stream, 0
@@ -86,7 +86,8 @@ class _Draw:
 def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int, int]:
     """Return the rewritten text, the number of unchanged clauses, and the number of all clauses.
 
-    The first attempt uses templates and synonyms, the second only templates, the third only frames.
+    The first attempt uses templates and synonyms. The second uses only templates, and the third
+    only frames.
     """
     draw, voice = _Draw(stream), phrases.VOICES[manner]
     parts = clauses(text)
@@ -108,7 +109,9 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str | None:
-    """Return the command of ``clause`` rewritten in the style, or None to keep its words."""
+    """Rewrite the command of ``clause`` in the style; return None if the command must keep its
+    words.
+    """
     if attempt >= 2:
         return None
     for kind, pattern in phrases.PATTERNS.items():
@@ -130,7 +133,7 @@ def _lowered(text: str) -> str:
 
 
 def _framed(frame: str, when: str, command: str) -> str:
-    """Return one sentence; a frame is used only for a command that begins with a verb."""
+    """Return one sentence; the frame is used only if the command begins with a verb."""
     if not re.match(phrases.BARE_VERB, command, re.IGNORECASE):
         frame = "{}"
     body = command if frame == "{}" else frame.format(_lowered(command))

@@ -1,8 +1,8 @@
 """Tag parts of speech (Universal POS) in instructions, with a built-in tagger or with spaCy.
 
-The built-in tagger ("own") knows all function words, and the verbs, adjectives and adverbs that are
-common in navigation (``words.py``). For words with two classes, it decides by the neighbouring
-words. Every other word is tagged as a noun.
+The built-in tagger ("own") has lists of all function words, and of the verbs, adjectives and
+adverbs that are common in navigation (``words.py``). If a word may belong to two classes, the
+neighbouring words decide. Every other word is tagged as a noun.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _BEFORE_NOUN = frozenset({"DET", "ADJ", "NUM"})
 
 @dataclass(frozen=True)
 class Token:
-    """A word or punctuation mark with its text, start, lower-case form and tag."""
+    """A word or punctuation mark: its text, start index, lower-case form and tag."""
 
     text: str
     start: int
@@ -39,12 +39,14 @@ class Token:
 
     @property
     def is_word(self) -> bool:
-        """Whether this is a word, rather than punctuation or a ``[MASK]``."""
+        """Whether this token is a word, and not punctuation or ``[MASK]``."""
         return bool(WORD.match(self.text))
 
 
 def tokens(text: str) -> list[Token]:
-    """Split ``text`` into untagged words, punctuation and tokens such as ``[MASK]``."""
+    """Split ``text`` into untagged tokens: words, punctuation and special tokens such as
+    ``[MASK]``.
+    """
     return [
         Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
         for m in TOKEN.finditer(text)
@@ -63,13 +65,13 @@ def tag(text: str) -> list[Token]:
 
 
 def named(name: str = "own") -> Callable[[str], list[Token]]:
-    """Return the tagger ``name``: "own" (:func:`tag`), or "spacy", an installed English pipeline.
+    """Return the tagger ``name``: "own" (:func:`tag`) or "spacy" (an installed English pipeline).
 
     The default is "own", so that equal keys change the same words on every machine.
     Raises ValueError for an unknown name, or if no pipeline is installed.
     """
     if name not in TAGGERS:
-        raise ValueError(f"There is no tagger {name!r}. Choose one of: {', '.join(TAGGERS)}.")
+        raise ValueError(f"tagger must be one of {', '.join(TAGGERS)}, got {name!r}.")
     if name == "own":
         return tag
     pipeline = _spacy()
@@ -78,7 +80,7 @@ def named(name: str = "own") -> Callable[[str], list[Token]]:
 
 @lru_cache(maxsize=1)
 def _spacy() -> Any:
-    """Load the installed English spaCy pipeline whose name comes first."""
+    """Load an installed English spaCy pipeline; if there are several, the first one by name."""
     try:
         import spacy
 
@@ -87,7 +89,7 @@ def _spacy() -> Any:
         names = []
     if not names:
         raise ValueError(
-            "tagger=spacy needs spaCy and an English pipeline, and none is installed: install the "
+            "tagger=spacy needs spaCy and an English pipeline, and none is installed. Install the "
             "extra nlp (pip install -e '.[nlp]') and a pipeline such as en_core_web_sm, or use "
             "tagger=own."
         )
@@ -95,8 +97,8 @@ def _spacy() -> Any:
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
-    """Return our tokens with the tags of ``pipeline``, except for words that it often tags
-    wrongly.
+    """Return the tokens of the built-in tagger with the tags of ``pipeline``; words that the
+    pipeline often tags wrongly keep the built-in tag.
     """
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
@@ -135,8 +137,8 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
 
 
 def _by_context(word: str, before: Token | None, after: Token | None) -> str:
-    """Tag a word with two classes by its neighbours; for example, after a determiner it is a
-    noun.
+    """Choose between the two classes of a word by its neighbours: after a determiner, for example,
+    it is a noun.
     """
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
@@ -158,7 +160,7 @@ def _by_context(word: str, before: Token | None, after: Token | None) -> str:
 
 
 def _side(before: Token | None, after: Token | None) -> str:
-    """Tag "left" or "right"; after "the" or "your" it is a noun or an adjective."""
+    """Tag the word "left" or "right"; after "the" or "your", it is a noun or an adjective."""
     if before is not None and before.lower in words.POSSESSORS:
         return "ADJ" if _can_be_noun(after) else "NOUN"
     if before is not None and before.lower in ("have", "has", "you've", "having"):

@@ -15,16 +15,16 @@ def check_text(text: str) -> None:
     """Raise ValueError if ``text`` contains no word."""
     if not has_word(text):
         raise ValueError(
-            f"The instruction is empty: {text!r:.60} holds no word. Give the sentence that the "
-            "agent is to follow, or leave the episode out."
+            f"The instruction must contain a word, got {text!r:.60}. Give the sentence that the "
+            "agent should follow, or leave out the episode."
         )
 
 
 def is_english(language: str | None, text: str = "") -> bool:
-    """Return whether a language code or name means English.
+    """Return whether a text is in English, by its language code or language name.
 
-    For example, "en" and "en-US" mean English, in upper or lower case. If no language is given
-    (None or empty), at least half of the letters in ``text`` must be Latin.
+    The codes "en" and "en-US", for example, mean English, in upper or lower case. If no language is
+    given (None or empty), at least half of the letters in ``text`` must be Latin.
     """
     if language:
         return language.lower().startswith("en")
@@ -33,10 +33,11 @@ def is_english(language: str | None, text: str = "") -> bool:
     return 2 * latin >= len(letters)
 
 
-UNMARKED = "an unknown language (not in Latin script)"  # count of texts without a language code
+# label for texts without a language code in the counts per language
+UNMARKED = "an unknown language (not in Latin script)"
 
 
 def passed_through(languages: Mapping[str, int]) -> str:
-    """Return a message with the number of instructions per language that were not corrupted."""
+    """Return a message that lists, per language, how many instructions were not corrupted."""
     which = ", ".join(f"{count} in {language}" for language, count in languages.items())
     return f"instructions in other languages passed through unchanged: {which}"

@@ -11,22 +11,22 @@ _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
 class Tokenizer(Protocol):
-    """Protocol of tokenizers, which convert text to the token ids that an agent reads."""
+    """Interface of tokenizers, which convert text to the token ids that an agent reads."""
 
     mask_token: str | None
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Return the tokens and whether they were cut; with ``length`` they are padded or cut to
-        it.
+        """Return the token ids and whether they were truncated; if ``length`` is set, they are
+        padded or truncated to this length.
         """
         ...
 
 
 class FileVocabulary:
-    """Tokenizer with the ``instruction_vocab`` of an R2R-CE file, for lower-case words and
+    """Tokenizer that uses the ``instruction_vocab`` of an R2R-CE file: lower-case words and
     punctuation.
 
-    The vocabulary has no mask token, so "[MASK]" becomes the unknown word.
+    The vocabulary has no mask token, so "[MASK]" gets the id of unknown words.
     """
 
     mask_token: str | None = None
@@ -36,7 +36,9 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text``; unknown words get the unknown id, and unknown punctuation is removed."""
+        """Encode ``text``; unknown words get the id of unknown words, and unknown punctuation is
+        removed.
+        """
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())
@@ -53,21 +55,21 @@ class NamedTokenizer:
             from transformers import AutoTokenizer
         except ImportError as error:
             raise ValueError(
-                f"tokenizer={name} needs transformers, which is not installed ({error}): pip "
-                f"install transformers, or give tokenizer={VOCABULARY} for the file's own."
+                f"tokenizer={name} needs transformers, which is not installed ({error}). Run pip "
+                f"install transformers, or use the vocabulary of the file (tokenizer={VOCABULARY})."
             ) from error
         try:
             self._tokenizer = AutoTokenizer.from_pretrained(name, trust_remote_code=False)
         except (OSError, ValueError) as error:
             raise ValueError(
                 f"There is no tokenizer {name!r} ({' '.join(str(error).split())[:200]}): give "
-                f"'{VOCABULARY}' for the file's own, the folder of a tokenizer, or its hub name, "
-                "such as bert-base-uncased for ETPNav on R2R-CE."
+                f"'{VOCABULARY}' (the vocabulary of the file), the folder of a tokenizer, or its "
+                "hub name, such as bert-base-uncased for ETPNav on R2R-CE."
             ) from error
         self.mask_token: str | None = self._tokenizer.mask_token
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text`` with begin and end tokens, which are kept if the text is cut."""
+        """Encode ``text`` with begin and end tokens, which are kept if the text is truncated."""
         ids = list(self._tokenizer(text)["input_ids"])
         cut = length is not None and len(ids) > length
         if cut:
@@ -76,7 +78,7 @@ class NamedTokenizer:
 
 
 def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
-    """Return the tokenizer ``name`` for a file with the top-level keys ``extras``.
+    """Return the tokenizer ``name``; ``extras`` are the top-level entries of the episode file.
 
     Raises ValueError if the tokenizer does not exist, or the file has no vocabulary.
     """
@@ -85,9 +87,9 @@ def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:
     vocabulary = extras.get("instruction_vocab")
     if not _is_vocabulary(vocabulary):
         raise ValueError(
-            "tokenizer=vocabulary needs the key instruction_vocab with word2idx_dict (words and "
-            "their whole numbers), UNK_INDEX and PAD_INDEX (whole numbers) in the file, as R2R-CE "
-            "has it; this file lacks it. Leave the option out to have tokens removed, or name the "
+            "tokenizer=vocabulary needs the key instruction_vocab in the file, as in R2R-CE, with "
+            "word2idx_dict (a whole number for each word), UNK_INDEX and PAD_INDEX (whole "
+            "numbers). This file lacks it. Leave out the option to remove the tokens, or name the "
             "agent's tokenizer."
         )
     return FileVocabulary(vocabulary)

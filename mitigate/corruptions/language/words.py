@@ -1,6 +1,7 @@
-"""Define the classes of navigation words, and the words that masks never hide.
+"""Define the classes of navigation words, and the words that are never masked.
 
-All lists are in ``words.json``. They were written for this project, for indoor instructions.
+All word lists are in ``words.json``. They were written for this project and for indoor
+instructions.
 """
 
 from __future__ import annotations
@@ -24,12 +25,12 @@ WORDS = read_data("words.json")
 
 
 def listed(name: str) -> frozenset[str]:
-    """Return the words of a list of ``words.json``."""
+    """Return the words in the list ``name`` of ``words.json``."""
     return bag(" ".join(WORDS["lists"][name]))
 
 
 _CLASSES = {name: " ".join(lines) for name, lines in WORDS["classes"].items()}
-# words with two classes; the neighbouring words decide between them
+# words that may belong to two classes; the neighbouring words decide which one
 _TWO = {pair: " ".join(lines) for pair, lines in WORDS["two_classes"].items()}
 
 AMBIGUOUS: dict[str, tuple[str, str]] = {
@@ -39,13 +40,16 @@ TAGS = {word: name for name, text in reversed(_CLASSES.items()) for word in text
 VERBS = bag(_CLASSES["VERB"])
 AMBIGUOUS_NOUNS = frozenset(word for word, pair in AMBIGUOUS.items() if "NOUN" in pair)
 POSSESSORS = listed("possessors")
-# words that general taggers tag wrongly in instructions (turn, exit, left ...); these keep our tag
+# words that general taggers often tag wrongly in instructions (turn, exit, left ...); they keep the
+# tag of the built-in tagger
 OVERRIDES = listed("overrides")
 
-# words that are never masked: places, directions, identity, negation (and all words with n't)
+# words that are never masked: words for places, directions, identity and negation
 SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | listed("spatial")
 
 
 def is_kept(word: str) -> bool:
-    """Return whether ``word`` (lower case, straight apostrophe) is never masked."""
+    """Return whether ``word`` (lower case, straight apostrophe) is never masked, like all words
+    with n't.
+    """
     return word in SPATIAL or word.endswith("n't")

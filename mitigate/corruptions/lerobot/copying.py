@@ -1,7 +1,7 @@
-"""Write a copy of a LeRobot dataset with corrupted frames: the command ``mitigate corrupt``.
+"""Write a copy of a LeRobot dataset with corrupted frames, for the command ``mitigate corrupt``.
 
-The copy has the same metadata and rows. Only the corrupted cameras differ. The copy is resumable:
-a file whose checksum is in ``corrupt.json`` is not written again.
+The copy has the same metadata and rows; only the frames of the corrupted cameras differ. Copying
+can be resumed: files whose checksum is in ``corrupt.json`` are not written again.
 """
 
 from __future__ import annotations
@@ -38,9 +38,9 @@ from mitigate.corruptions.lerobot.videos import Encoding
 from mitigate.corruptions.registry import version
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
 
-UNUSED = ("episode", "unit", "no_reading")  # options for folders of frames only
-MAX_LISTED = 5  # files that are printed
-# keys of a feature's info that describe the encoder of the original video, as lerobot names them
+UNUSED = ("episode", "unit", "no_reading")  # options that apply only to folders of frames
+MAX_LISTED = 5  # maximum number of files that are printed
+# keys in the info of a feature with which lerobot describes the encoder of the original video
 ENCODER_KEYS = ("g", "crf", "preset", "fast_decode", "extra_options", "video_backend")
 
 
@@ -56,7 +56,7 @@ class Copy:
         encodings: Encoding of the videos of each camera.
         tolerance: Maximum seconds between a row and its video frame.
         summary: Content of ``corrupt.json``.
-        progress: Counts corrupted frames.
+        progress: Progress bar that counts corrupted frames.
     """
 
     dataset: Dataset
@@ -78,25 +78,27 @@ def run(
 ) -> dict[str, Any]:
     """Write a corrupted copy of a dataset.
 
-    The key of a frame is the seed, "episode-000003" and the number of the frame in its episode, so
-    all cameras of an instant get the same draws. The metadata keeps the statistics of the
-    original.
+    The key of a frame is the seed, the name of the episode (such as "episode-000003") and the frame
+    number in the episode. Therefore all cameras get the same random numbers at one time. The
+    metadata keeps the statistics of the original dataset.
 
     Args:
         source: Folder of the dataset.
         out: Folder of the copy.
-        settings: Corruption, seed and format. "png": lossless, images as PNG (depth keeps its
-            format) and videos as H.264 in RGB; "same": JPEG stays JPEG and videos keep their
-            codec, with the quality of lerobot.
-        cameras: Cameras to corrupt; None: all of the sensor that the corruption changes.
+        settings: Corruption, seed and format. The format "png" is lossless: images become PNG
+            (depth keeps its format), and videos become H.264 in RGB. With "same", JPEG stays JPEG,
+            and videos keep their codec, with the quality settings of lerobot.
+        cameras: Cameras to corrupt. None means all cameras of the modality that the corruption
+            changes.
         tolerance: Maximum seconds between a row and its video frame.
 
     Returns:
-        The summary, also written to ``out/corrupt.json``.
+        The summary, which is also written to ``out/corrupt.json``.
 
     Raises:
         FileNotFoundError: The folder or a file of the dataset is missing.
-        ValueError: The dataset is damaged, an option does not apply, or ``out`` has other content.
+        ValueError: The dataset is damaged, an option does not apply, or ``out`` contains other
+            files.
         OSError: ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
@@ -105,11 +107,11 @@ def run(
     for name in UNUSED:
         if getattr(settings, name) != getattr(defaults, name):
             raise ValueError(
-                f"{name}= does not apply to the LeRobot dataset {source}, whose metadata contain "
-                f"it. Remove {name}=."
+                f"{name}= does not apply to the LeRobot dataset {source}: its metadata determine "
+                f"this setting. Remove {name}=."
             )
     if not 0 < tolerance < 1:
-        raise ValueError(f"tolerance must be above 0 and below 1 second, got {tolerance:g}.")
+        raise ValueError(f"tolerance must be above 0 and below 1 (seconds), got {tolerance:g}.")
     dataset = open_dataset(source)
     work = Copy(dataset, out, settings, _choose_cameras(dataset, settings, cameras), tolerance)
     for camera in work.cameras:
@@ -119,7 +121,7 @@ def run(
         _begin(work)
         try:
             _copy(work)
-        finally:  # an interrupted run must not write its files again
+        finally:  # a resumed run then does not write finished files again
             _write_summary(work)
     return work.summary
 
@@ -148,8 +150,8 @@ def _encoding(dataset: Dataset, camera: Camera, form: str) -> Encoding:
     codec = videos.read_codec(dataset.path / file, camera)
     if codec not in videos.LOSSY:
         raise ValueError(
-            f"{dataset.path / file} has the codec {short(codec)}. format=same writes "
-            f"{', '.join(videos.LOSSY)}. Set format=png for lossless videos."
+            f"{dataset.path / file} has the codec {short(codec)}, but format=same can write "
+            f"only {', '.join(videos.LOSSY)}. Set format=png for lossless videos."
         )
     return videos.LOSSY[codec]
 
@@ -160,7 +162,7 @@ def _encoding(dataset: Dataset, camera: Camera, form: str) -> Encoding:
 def _copy(work: Copy) -> None:
     """Write every file of the copy.
 
-    meta/info.json is last, so that an incomplete copy cannot be opened.
+    meta/info.json is written last, so that an incomplete copy cannot be opened.
     """
     from_video = [camera for camera in work.cameras if camera.stored == VIDEO]
     in_rows = [camera for camera in work.cameras if camera.stored != VIDEO]
@@ -191,7 +193,7 @@ def _copy(work: Copy) -> None:
 
 
 def _frames_per_file(work: Copy) -> Counter[str]:
-    """Return the number of frames to corrupt in each file that has some."""
+    """Count the frames to corrupt in each file that contains such frames."""
     frames: Counter[str] = Counter()
     for episode in work.dataset.episodes.values():
         for camera in work.cameras:
@@ -202,7 +204,9 @@ def _frames_per_file(work: Copy) -> Counter[str]:
 
 
 def _files(source: Path) -> Iterator[str]:
-    """Yield the other files of a dataset by relative path, without hidden ones and ``INFO``."""
+    """Yield the relative paths of the files of a dataset, except hidden files, ``INFO`` and
+    ``SUMMARY``.
+    """
     listed = (Path(at, name) for at, inner, files in os.walk(source) for name in (*inner, *files))
     for path in sorted(listed):
         relative = path.relative_to(source)
@@ -212,7 +216,7 @@ def _files(source: Path) -> Iterator[str]:
 
 
 def _write(work: Copy, name: str, write: Callable[[Path], Any]) -> bool:
-    """Write a file and record its checksum; False if ``out`` already has the same file."""
+    """Write a file and record its checksum; return False if ``out`` already contains the file."""
     checksums = work.summary["checksums"]
     paths = (work.dataset.path / name, work.out / name)
     exists = is_regular(paths[1])
@@ -234,7 +238,7 @@ def _copy_file(source: Path, path: Path) -> None:
 
 
 def _checksum(*paths: Path) -> str:
-    """Return a checksum over a file and its copy, or "" if either cannot be read."""
+    """Return one checksum for a file and its copy, or "" if one of them cannot be read."""
     try:
         return _short_hash("".join(map(sha256, paths)))
     except OSError:
@@ -255,7 +259,7 @@ def _corrupt(work: Copy, camera: Camera, frame: np.ndarray, episode: str, number
         return corrupt(
             frame, settings.corruption, settings.severity, key=key, sensor=settings.sensor
         )
-    except ValueError as error:  # a shape or a unit that the suite does not support
+    except ValueError as error:  # the suite does not support the frame's shape or unit
         raise ValueError(f"{camera.name}, {episode}, frame {number}: {error}") from error
 
 
@@ -265,20 +269,22 @@ def _advance(work: Copy) -> None:
 
 
 def _name(episode: int) -> str:
-    """Return the name of an episode in the key of its frames."""
+    """Return the name of an episode, which is part of the keys of its frames."""
     return f"episode-{episode:06d}"
 
 
 @dataclass
 class Instants:
-    """The instants of the episodes in a video: increasing seconds, and (episode, frame) of each."""
+    """The times of all frames in a video, in increasing order, and the (episode, frame) at each
+    time.
+    """
 
     times: list[float] = field(default_factory=list)
     names: list[tuple[int, int]] = field(default_factory=list)
 
 
 def _instants(dataset: Dataset, cameras: Sequence[Camera]) -> dict[str, Instants]:
-    """Return the instants in each video of ``cameras``."""
+    """Return the times of the frames in each video of ``cameras``."""
     unsorted: dict[str, list[tuple[float, tuple[int, int]]]] = {}
     for episode, rows, _ in rows_of(dataset, list(dataset.episodes.values())):
         times = rows.times.tolist()
@@ -296,7 +302,7 @@ def _instants(dataset: Dataset, cameras: Sequence[Camera]) -> dict[str, Instants
 def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, path: Path) -> None:
     """Write a corrupted video.
 
-    Frames that no episode uses are corrupted too: readers find frames by their number.
+    Frames that belong to no episode are also corrupted, so that frame numbers do not change.
     """
     source = work.dataset.path / name
     used: set[int] = set()
@@ -324,12 +330,12 @@ def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, pa
             f"{source} must have a frame within {work.tolerance:g} s of "
             f"{instants.times[absent[0]]:.6f} s, for frame {index} of episode {episode}. "
             f"{len(absent)} of {len(instants.times)} frames are missing. Copy the dataset again, "
-            "or set tolerance= to a larger value if its clock is not exact."
+            "or set tolerance= to a larger value if its clock is inexact."
         )
 
 
 def _corrupt_rows(work: Copy, name: str, cameras: Sequence[Camera], path: Path) -> None:
-    """Write a file of data/ with corrupted images and the same row groups."""
+    """Write a file of data/ with corrupted images; its row groups stay the same."""
     source = work.dataset.path / name
     with open_table(source) as table:
         schema = table.schema_arrow
@@ -368,7 +374,7 @@ def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
 
 
 def _write_info(work: Copy, path: Path) -> None:
-    """Write meta/info.json with the codecs of the new videos."""
+    """Write meta/info.json, in which the codecs of the new videos are set."""
     info = copy.deepcopy(dict(work.dataset.info))
     for name, encoding in work.encodings.items():
         feature = info["features"][name]
@@ -382,7 +388,7 @@ def _write_info(work: Copy, path: Path) -> None:
 
 
 def _digest(dataset: Dataset) -> str:
-    """Return a hash of what determines the keys of frames: metadata and files of data/."""
+    """Return a hash of the metadata and the files of data/, which determine the keys of frames."""
     names = {INFO, *(episode.data for episode in dataset.episodes.values())}
     names |= {
         path.relative_to(dataset.path).as_posix()
@@ -394,7 +400,7 @@ def _digest(dataset: Dataset) -> str:
 
 
 def _begin(work: Copy) -> None:
-    """Check the results of an earlier run in ``out``, then write the settings there."""
+    """Check that the results of an earlier run in ``out`` match; then write the settings there."""
     settings = {k: v for k, v in asdict(work.settings).items() if k not in UNUSED}
     now = {
         "suite_version": SUITE_VERSION,
@@ -422,13 +428,13 @@ def _begin(work: Copy) -> None:
 
 
 def _earlier_checksums(out: Path, now: Mapping[str, Any]) -> dict[str, str]:
-    """Return the checksums of an earlier run; ValueError unless it had the same settings."""
+    """Return the checksums of an earlier run; raise ValueError if its settings differ."""
     fix = "Name another folder, or delete this one."
     try:
         earlier = read_object(out / SUMMARY, fix, LARGEST_LIST)
     except FileNotFoundError:
         raise ValueError(
-            f"{out} must be empty or have a {SUMMARY} of this program. {fix}"
+            f"{out} must be empty or contain {SUMMARY}, which this program writes. {fix}"
         ) from None
     try:
         before = dict(earlier["settings"])
@@ -450,7 +456,7 @@ def _write_summary(work: Copy) -> None:
 
 
 def report(summary: Mapping[str, Any], out: str) -> str:
-    """Return what a run did, for the command line."""
+    """Return a report of a run, which the command prints."""
     settings = summary["settings"]
     lines = [
         f"{counted(summary['frames'], 'frame')} of {', '.join(settings['cameras'])} corrupted; "

@@ -1,4 +1,4 @@
-"""Open a LeRobot dataset: metadata and rows, without its frames."""
+"""Open a LeRobot dataset and read its metadata and rows, but not its frames."""
 
 from __future__ import annotations
 
@@ -30,15 +30,15 @@ from mitigate.corruptions.lerobot.metadata import (
 )
 from mitigate.corruptions.lerobot.tables import FIX, integers, numbers, read_columns
 
-# columns of every row of data/: DEFAULT_FEATURES of lerobot
+# columns that every file of data/ has (DEFAULT_FEATURES of lerobot)
 COLUMNS = ("episode_index", "frame_index", "timestamp", "task_index")
-TOLERANCE = 1e-4  # seconds between a row and its video frame: tolerance_s of lerobot
-MAX_SIGNAL = 1 << 12  # maximum numbers per row of a feature that is read as a signal
+TOLERANCE = 1e-4  # maximum seconds between a row and its video frame (tolerance_s of lerobot)
+MAX_SIGNAL = 1 << 12  # maximum size of a feature that is read as a signal, in numbers per row
 
 
 @dataclass(frozen=True)
 class Rows:
-    """The rows of some episodes in one file of data/, in the order of the file.
+    """Rows of one file of data/, in the order of the file.
 
     Attributes:
         episodes: int64 [N], number of the episode.
@@ -62,7 +62,7 @@ class Dataset:
         info: Content of meta/info.json.
         fps: Frames per second.
         cameras: Cameras by name.
-        other_cameras: Reason why a camera cannot be used, by name.
+        other_cameras: For each camera that cannot be used, the reason.
         episodes: The episodes, by their number.
         tasks: Text of each task, by its number.
     """
@@ -82,7 +82,9 @@ class Dataset:
 
     @cached_property
     def signals(self) -> dict[str, int]:
-        """Number of values per row of the features that hold numbers, without ``COLUMNS``."""
+        """The number of values per row, for each feature that contains numbers, except
+        ``COLUMNS``.
+        """
         sizes = {
             name: math.prod(feature["shape"])
             for name, feature in self.features.items()
@@ -91,7 +93,8 @@ class Dataset:
         return {name: size for name, size in sizes.items() if size <= MAX_SIGNAL}
 
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
-        """Return the cameras of a kind ("rgb", "depth"), or the ``names`` of this kind.
+        """Return the cameras of a kind ("rgb" or "depth"); if ``names`` is given, only those in
+        ``names``.
 
         Raises:
             ValueError: A name is unknown, or its camera cannot be used.
@@ -108,12 +111,14 @@ class Dataset:
         return [c for c in chosen if not names or c.name in names]
 
     def choose_episodes(self, numbers: Sequence[int] | None) -> list[Episode]:
-        """Return the episodes with these numbers; None: all. ValueError for an unknown number."""
+        """Return the episodes with these numbers, or all episodes if ``numbers`` is None. Raise
+        ValueError for an unknown number.
+        """
         for number in numbers or ():
             if number not in self.episodes:
                 raise ValueError(
-                    f"{self.path} has no episode {number}. Choose from {min(self.episodes)} to "
-                    f"{max(self.episodes)}."
+                    f"{self.path} has no episode {number}. Choose a number from "
+                    f"{min(self.episodes)} to {max(self.episodes)}."
                 )
         chosen = self.episodes if numbers is None else dict.fromkeys(numbers)
         return [self.episodes[number] for number in sorted(chosen)]
@@ -123,7 +128,8 @@ class Dataset:
 
         Raises:
             FileNotFoundError: The file is missing.
-            ValueError: The file is damaged, or an episode lacks rows, or has them out of order.
+            ValueError: The file is damaged, or the rows of an episode are incomplete or not in
+                order.
         """
         path = self.path / data
         table = read_columns(path, COLUMNS)
@@ -149,10 +155,10 @@ class Dataset:
             )
 
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
-        """Read the numbers of each row of a file of data/, such as state and action.
+        """Read the features of a file of data/ that hold numbers, such as state and action.
 
         Returns:
-            For each feature of ``signals``: float64 [N, size].
+            For each feature of ``signals``, an array float64 [N, size].
 
         Raises:
             FileNotFoundError: The file is missing.
@@ -168,7 +174,7 @@ class Dataset:
 
 
 def is_dataset(folder: Path | str) -> bool:
-    """Return whether a folder holds a LeRobot dataset, of any version."""
+    """Return whether a folder contains a LeRobot dataset of any version."""
     return (Path(folder) / INFO).is_file()
 
 
@@ -176,7 +182,7 @@ def open_dataset(folder: Path | str) -> Dataset:
     """Open a dataset and check its metadata.
 
     Args:
-        folder: A dataset of version 3.
+        folder: Folder of a dataset of version 3.
 
     Returns:
         The dataset.
@@ -194,7 +200,7 @@ def open_dataset(folder: Path | str) -> Dataset:
     check_version(file, info)
     fps = info.get("fps")
     if isinstance(fps, bool) or not isinstance(fps, (int, float)) or not 0 < fps <= MAX_FPS:
-        raise ValueError(f"{file}: fps must be above 0, at most {MAX_FPS:g}, got {short(fps)}.")
+        raise ValueError(f"{file}: fps must be above 0 and at most {MAX_FPS:g}, got {short(fps)}.")
     features = check_features(file, info)
     cameras: dict[str, Camera] = {}
     other: dict[str, str] = {}
@@ -211,19 +217,22 @@ def open_dataset(folder: Path | str) -> Dataset:
 
 
 def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:
-    """Return a column of numbers, or of lists of ``size`` numbers, as float64 [N, size]."""
+    """Convert a column, whose entries are numbers or lists of ``size`` numbers, to float64 [N,
+    size].
+    """
     import pyarrow
 
     array = pyarrow.chunked_array(column).combine_chunks() if column.num_chunks else column
-    if isinstance(array.type, pyarrow.BaseExtensionType):  # if `datasets` is imported: arrays
+    # arrays have this type if `datasets` is imported
+    if isinstance(array.type, pyarrow.BaseExtensionType):
         array = array.storage
     while _is_list(array.type):
         array = array.flatten()
     values = np.asarray(array.to_numpy(zero_copy_only=False))
     if values.dtype.kind not in "fiub" or len(values) != size * len(column):
         raise ValueError(
-            f"{path}: each row of {short(name)} must hold {size} numbers, as {INFO} says, got "
-            f"{len(values)} for {len(column)} rows ({short(str(column.type))}). {FIX}"
+            f"{path}: each row of {short(name)} must hold {size} numbers, according to {INFO}, but "
+            f"{len(column)} rows hold {len(values)} numbers ({short(str(column.type))}). {FIX}"
         )
     return values.astype(np.float64).reshape(len(column), size)
 
@@ -237,11 +246,14 @@ def _is_list(kind: Any) -> bool:
 def rows_of(
     dataset: Dataset, episodes: Sequence[Episode]
 ) -> Iterator[tuple[Episode, Rows, np.ndarray]]:
-    """Yield each episode, its rows, and where they are in their file (bool [rows of the file])."""
+    """Yield each episode, its rows, and a mask that marks these rows in their file (bool [rows of
+    the file]).
+    """
     read: dict[str, Rows] = {}
     for episode in episodes:
         if episode.data not in read:
-            read = {episode.data: dataset.read_rows(episode.data)}  # keep one file in memory
+            # only one file is kept in memory
+            read = {episode.data: dataset.read_rows(episode.data)}
         rows = read[episode.data]
         mine = rows.episodes == episode.index
         yield episode, Rows(*(values[mine] for values in vars(rows).values())), mine

@@ -1,4 +1,4 @@
-"""Depth of LeRobot datasets: 12-bit codes in videos."""
+"""Depth videos of LeRobot datasets, which store depth as 12-bit codes."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ import numpy as np
 
 from mitigate.core.names import short
 
-MAX_CODE = 4095  # DEPTH_QMAX of lerobot: 12 bits
-MAX_METRES = 1e4  # heuristic limit of the parameters
+MAX_CODE = 4095  # maximum of 12 bits (DEPTH_QMAX of lerobot)
+MAX_METRES = 1e4  # limit for parameters in metres (heuristic)
 
 
 @dataclass(frozen=True)
 class DepthCode:
     """How a depth video encodes metres.
 
-    A code c of 0 to ``MAX_CODE`` is ``near + (far - near) * c / MAX_CODE`` metres, or with
-    ``log`` the same for the logarithm of (metres + ``shift``): ``quantize_depth`` of lerobot. The
-    defaults come from lerobot (``DepthEncoderConfig``).
+    A code c from 0 to ``MAX_CODE`` means ``near + (far - near) * c / MAX_CODE`` metres. If ``log``
+    is true, the logarithm of (metres + ``shift``) is interpolated in the same way. The function
+    ``quantize_depth`` of lerobot defines the codes, and its ``DepthEncoderConfig`` the defaults.
 
-    Code 0 means no reading here: lerobot gives this code to pixels without a reading, and to depth
-    up to ``near``.
+    Here, code 0 means no reading. lerobot writes this code both for pixels without a reading and
+    for depth up to ``near``.
 
     Attributes:
-        near: Metres of code 0.
-        far: Depth in metres that the code ``MAX_CODE`` stands for.
-        shift: Metres added before the logarithm.
+        near: Depth in metres that code 0 stands for.
+        far: Depth in metres that code ``MAX_CODE`` stands for.
+        shift: Metres that are added before the logarithm is taken.
         log: Whether codes are logarithmic.
     """
 
@@ -40,10 +40,10 @@ class DepthCode:
 
     @classmethod
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
-        """Return the encoding of depth that the ``info`` of a feature describes.
+        """Return the depth encoding that the ``info`` of a feature describes.
 
         Raises:
-            ValueError: A parameter is missing its meaning; the message begins with ``place``.
+            ValueError: A parameter is invalid; the message begins with ``place``.
         """
         names = ("depth_min", "depth_max", "shift")
         defaults = (cls.near, cls.far, cls.shift)
@@ -54,7 +54,7 @@ class DepthCode:
             is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not (is_number and abs(value) <= MAX_METRES):
                 raise ValueError(
-                    f"{place}: video.{name} must be a number up to {MAX_METRES:g} metres, got "
+                    f"{place}: video.{name} must be a number of at most {MAX_METRES:g} metres, got "
                     f"{short(value)}."
                 )
             values.append(float(value))
@@ -70,7 +70,7 @@ class DepthCode:
         return cls(near, far, shift, log)
 
     def metres(self, codes: np.ndarray) -> np.ndarray:
-        """Return the metres of codes, float32; 0 for no reading."""
+        """Convert codes to metres (float32); 0 means no reading."""
         share = np.minimum(codes, MAX_CODE).astype(np.float64) / MAX_CODE
         if self.log:
             low, high = math.log(self.near + self.shift), math.log(self.far + self.shift)
@@ -80,7 +80,7 @@ class DepthCode:
         return np.where(codes == 0, 0, np.clip(metres, self.near, self.far)).astype(np.float32)
 
     def codes(self, metres: np.ndarray) -> np.ndarray:
-        """Return the nearest codes of float32 metres, uint16; 0 only for no reading."""
+        """Convert float32 metres to the nearest codes (uint16); only missing depth becomes 0."""
         valid = np.isfinite(metres) & (metres > 0)
         depth = np.clip(np.where(valid, metres, self.near), self.near, self.far)
         if self.log:

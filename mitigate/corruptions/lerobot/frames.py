@@ -29,15 +29,16 @@ def read_frames(
         episode: The episode.
         cameras: Cameras to read.
         chosen: Frame numbers, in increasing order.
-        times: Seconds from the start of the episode to each chosen frame.
+        times: For each chosen frame, the seconds since the start of the episode.
         tolerance: Maximum time in seconds between a row and its video frame.
 
     Yields:
-        uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading, by camera.
+        A dict with the frame of each camera: uint8 [H, W, 3], or float32 metres [H, W] with 0 for
+        no reading.
 
     Raises:
         FileNotFoundError: A file is missing.
-        ValueError: A file is damaged, or a video has no frame near a time.
+        ValueError: A file is damaged, or a video has no frame near one of the times.
     """
     streams: list[Iterator[dict[str, np.ndarray]]] = []
     for camera in cameras:
@@ -81,7 +82,7 @@ def _image_frames(
 
 
 def _batches(path: Path, file: Any, episode: int, names: Sequence[str]) -> Iterator[Any]:
-    """Yield the rows of the row groups that an episode is in, a few at a time."""
+    """Yield the rows of all row groups that contain the episode, in small batches."""
     for group in range(file.num_row_groups):
         column = file.read_row_group(group, columns=["episode_index"])
         if episode in integers(column, "episode_index", path):
@@ -90,7 +91,7 @@ def _batches(path: Path, file: Any, episode: int, names: Sequence[str]) -> Itera
 
 
 def check_images(path: Path, schema: Any, cameras: Sequence[Camera]) -> None:
-    """Raise ValueError unless each camera has a column of images with their bytes."""
+    """Raise ValueError unless the table has, for each camera, a column with the bytes of images."""
     from pyarrow import types
 
     check_columns(path, schema.names, [camera.name for camera in cameras])
@@ -111,7 +112,7 @@ def _is_binary(kind: Any) -> bool:
 
 
 def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) -> np.ndarray:
-    """Return an image of a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    """Return an image in a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
     stored, _ = stored_image(path, table, row, camera, number)
     return images.as_frame(stored, camera)
 
@@ -119,10 +120,10 @@ def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) ->
 def stored_image(
     path: Path, table: Any, row: int, camera: Camera, number: int
 ) -> tuple[np.ndarray, str]:
-    """Return an image of a table as it is stored, and the format of its file.
+    """Return an image in a table without conversion, and the format of its file.
 
     Raises:
-        ValueError: It is damaged, or has another type or size than the camera.
+        ValueError: The image is damaged, or its type or size differs from the camera's.
     """
     value = table.column(camera.name)[row].as_py()
     try:

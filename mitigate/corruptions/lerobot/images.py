@@ -1,4 +1,6 @@
-"""Images in the rows of a LeRobot dataset: RGB as PNG or JPEG, depth as TIFF or 16-bit PNG."""
+"""Decode and encode the images in the rows of a LeRobot dataset: RGB is PNG or JPEG, depth is TIFF
+or 16-bit PNG.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +15,8 @@ from mitigate.corruptions.frame_files import JPEG_QUALITY, MAX_PIXELS, PNG_LEVEL
 from mitigate.corruptions.lerobot.metadata import Camera
 
 FORMATS = {"rgb": ("PNG", "JPEG"), "depth": ("PNG", "TIFF")}
-MODES = {"rgb": ("RGB",), "depth": ("I;16", "F")}  # lerobot: uint16 is I;16, float32 is F
+# Pillow modes of lerobot's depth images: I;16 is uint16, F is float32
+MODES = {"rgb": ("RGB",), "depth": ("I;16", "F")}
 MILLIMETRE = 0.001
 
 
@@ -22,17 +25,19 @@ def decode(data: object, camera: Camera) -> tuple[np.ndarray, str]:
 
     Args:
         data: The bytes of the file.
-        camera: The camera that it must belong to.
+        camera: The camera of the image, which determines its type and size.
 
     Returns:
-        uint8 [H, W, 3], uint16 [H, W] or float32 [H, W], and the format of the file.
+        The image (uint8 [H, W, 3], uint16 [H, W] or float32 [H, W]) and the format of the file.
 
     Raises:
-        ValueError: It is damaged, or of another format, type or size; the message is the end of a
-            sentence.
+        ValueError: The image is damaged, or has a wrong format, type or size. The message is a
+            predicate without a subject, which the caller adds.
     """
     if not isinstance(data, bytes):
-        raise ValueError("must hold the bytes of an image. A file outside of the row is not read")
+        raise ValueError(
+            "must contain the bytes of an image; files outside of the row are not read"
+        )
     try:
         with Image.open(io.BytesIO(data), formats=FORMATS[camera.kind]) as image:
             if math.prod(image.size) > MAX_PIXELS:
@@ -54,15 +59,15 @@ def decode(data: object, camera: Camera) -> tuple[np.ndarray, str]:
 
 
 def metres(stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return a depth image in float32 metres, 0 for no reading."""
+    """Convert a depth image to float32 metres; 0 means no reading."""
     depth = stored.astype(np.float32) * np.float32(_unit(stored, camera))
     return np.where(np.isfinite(depth) & (depth > 0), depth, 0)
 
 
 def store_depth(depth: np.ndarray, stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return corrupted metres in the type and unit of ``stored``.
+    """Convert corrupted metres to the type and unit of ``stored``.
 
-    Pixels that equal :func:`metres` of ``stored`` keep their stored values.
+    Pixels that the corruption did not change keep their stored values.
     """
     unit = _unit(stored, camera)
     new = counts(depth, unit) if stored.dtype == np.uint16 else depth / np.float32(unit)
@@ -76,12 +81,13 @@ def _unit(stored: np.ndarray, camera: Camera) -> float:
 
 
 def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
-    """Encode an image in the array format that :func:`decode` returns.
+    """Encode an image, which is an array as :func:`decode` returns it.
 
     Args:
         pixels: The image.
         form: Format of the original file.
-        keep_format: Whether RGB from a JPEG becomes a JPEG; otherwise a PNG, which is lossless.
+        keep_format: Whether an image from a JPEG is written as JPEG. If false, it is written as
+            PNG, which is lossless.
     """
     with io.BytesIO() as file:
         image = Image.fromarray(pixels)
@@ -95,5 +101,5 @@ def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
 
 
 def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Return a stored image as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
+    """Convert a stored image to a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
     return stored if camera.kind == RGB else metres(stored, camera)

@@ -1,4 +1,4 @@
-"""Metadata of a LeRobot dataset: features, cameras, tasks and episodes, checked."""
+"""Read and check the metadata of a LeRobot dataset: features, cameras, tasks and episodes."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ TASKS = "meta/tasks.parquet"
 EPISODES = "meta/episodes"
 VIDEO = "video"
 IMAGE = "image"
-# dtypes of lerobot: the dtypes of numpy, and what src/lerobot/datasets/feature_utils.py adds
+# dtypes of lerobot: those of numpy, and those in src/lerobot/datasets/feature_utils.py
 NUMBERS = (
     *("float16", "float32", "float64", "bool"),
     *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),
@@ -36,10 +36,10 @@ NUMBERS = (
 DTYPES = (*NUMBERS, IMAGE, VIDEO, "string", "language")
 # Heuristic limits.
 MAX_FEATURES = 1 << 12
-MAX_NAME = 200  # characters of the name of a feature
-MAX_TEMPLATE = 200  # characters of a path template
-MAX_TASK = 1 << 16  # characters of a task
-MAX_INDEX = 10**6  # of chunks and files
+MAX_NAME = 200  # maximum characters in the name of a feature
+MAX_TEMPLATE = 200  # maximum characters in a path template
+MAX_TASK = 1 << 16  # maximum characters in a task
+MAX_INDEX = 10**6  # maximum index of chunks and files
 MAX_FPS = 1000.0
 
 _FIELD = re.compile(r"\{(chunk_index|file_index|video_key)(?::0([1-9])d)?\}")
@@ -53,11 +53,11 @@ class Camera:
     Attributes:
         name: Name of the feature, such as "observation.images.front".
         kind: "rgb" or "depth".
-        stored: "video" or "image" (encoded images in the rows of data/).
+        stored: "video", or "image" for encoded images in the rows of data/.
         height: Pixels.
         width: Pixels.
-        code: How a depth video encodes metres; None for other cameras.
-        unit: Metres per unit of depth images; None: 0.001 for whole numbers, 1 for others.
+        code: How a depth video encodes metres, or None for other cameras.
+        unit: Metres per unit of depth images. None means 0.001 for integer images and 1 for others.
     """
 
     name: str
@@ -71,14 +71,14 @@ class Camera:
 
 @dataclass(frozen=True)
 class Episode:
-    """Where the parts of an episode are.
+    """The files that contain an episode.
 
     Attributes:
         index: Number of the episode.
         length: Number of frames.
-        data: Path of the file with its rows, relative to the dataset.
-        videos: For each camera that is stored as video: path of the file, and seconds from the
-            start of that file to the episode.
+        data: Path of the file with the episode's rows, relative to the dataset.
+        videos: For each camera that is stored as video, the path of the file and the time in
+            seconds at which the episode starts in it.
     """
 
     index: int
@@ -97,7 +97,7 @@ def check_version(file: Path, info: Mapping[str, Any]) -> None:
         before = "" if number[0].lstrip("v").startswith("2.1") else "Convert it to v2.1 first. "
         raise ValueError(
             f"{file.parent.parent} is a LeRobot dataset of version {short(version)}, but v3.0 is "
-            f"needed. {before}In the environment of lerobot: {CONVERTER}"
+            f"needed. {before}Run, in the environment of lerobot: {CONVERTER}"
         )
     if int(number[1]) > 3:
         raise ValueError(
@@ -114,7 +114,7 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
             f"{file}: features must be an object with 1 to {MAX_FEATURES} entries. {FIX}"
         )
     for name, feature in features.items():
-        # lerobot forbids a slash too (_validate_feature_names)
+        # lerobot also forbids slashes (_validate_feature_names)
         if not 0 < len(name) <= MAX_NAME or re.search(r"^\.|[/\\\0]", name):
             raise ValueError(
                 f"{file}: the name of a feature must have 1 to {MAX_NAME} characters without / and "
@@ -137,7 +137,9 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | str:
-    """Return the camera of a feature, or why it cannot be used (the end of a sentence)."""
+    """Return the camera of a feature, or the reason why it cannot be used, as a predicate without
+    subject.
+    """
     shape, names = feature["shape"], feature.get("names")
     info = {
         key: value
@@ -171,14 +173,14 @@ def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | s
 def read_tasks(path: Path) -> dict[int, str]:
     """Read the text of each task.
 
-    pandas writes the text as the index of the table, with or without a name.
+    pandas writes the text of a task as the index of the table; the index may have no name.
     """
     tasks: dict[int, str] = {}
     with open_table(path) as file:
         names = file.schema_arrow.names
         text = "__index_level_0__" if "task" not in names else "task"
         check_columns(path, names, ("task_index", text))
-        # a batch at a time: a column of equal texts may be far larger than its file
+        # read in batches, because a column of equal texts may be far larger in memory than its file
         for batch in file.iter_batches(BATCH_ROWS, columns=["task_index", text]):
             values = batch.column(text).to_pylist()
             for number, task in zip(integers(batch, "task_index", path), values, strict=True):
@@ -221,15 +223,15 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
             number, length = columns["episode_index"][row], columns["length"][row]
             if number in episodes or number < 0 or length < 1:
                 raise ValueError(
-                    f"{table_path}: episodes must have different numbers and at least 1 frame, got "
-                    f"episode {number} with {length} frames. {FIX}"
+                    f"{table_path}: each episode must have its own number and at least 1 frame, "
+                    f"got episode {number} with {length} frames. {FIX}"
                 )
             episodes[number] = Episode(number, length, place(data_path, "data"), parts)
     total = info.get("total_episodes")
     if total != len(episodes) or not episodes:
         raise ValueError(
-            f"{path} is incomplete: {INFO} announces {short(total)} episodes, {EPISODES} has "
-            f"{len(episodes)}. {FIX}"
+            f"{path} is incomplete: {INFO} announces {short(total)} episodes, but "
+            f"{EPISODES} has {len(episodes)}. {FIX}"
         )
     return dict(sorted(episodes.items()))
 
@@ -238,15 +240,15 @@ def _template(file: Path, key: str, template: object) -> str:
     """Return a path template of meta/info.json after checking it.
 
     Raises:
-        ValueError: It is not a relative path, leaves the dataset, or has other fields than
-            chunk_index, file_index and, for videos, video_key.
+        ValueError: The template is not a relative path, leads outside of the dataset, or has a
+            field other than chunk_index, file_index and (for videos) video_key.
     """
     is_video = key == "video_path"
     fields = "{chunk_index:03d}, {file_index:03d}" + ", {video_key}" * is_video
     if isinstance(template, str) and len(template) <= MAX_TEMPLATE:
         plain = _FIELD.sub("0", template)
         has_fields = is_video or "{video_key" not in template
-        # no part may be empty, hidden or "..", so that each file has one name
+        # no part of the path may be empty, hidden or "..", so that each file has exactly one path
         if has_fields and re.fullmatch(r"[^./{}\\\0][^/{}\\\0]*(/[^./{}\\\0][^/{}\\\0]*)*", plain):
             return template
     raise ValueError(
@@ -263,23 +265,23 @@ def _place(
     prefix: str,
     video: str = "",
 ) -> str:
-    """Return the path of a part of an episode.
+    """Return the path of the file that contains an episode's rows, or its frames of one camera.
 
     Args:
-        columns: Columns of meta/episodes.
+        columns: Columns of a file in meta/episodes.
         row: Row of the episode.
-        path: The file of the columns.
+        path: The file that contains the columns.
         template: A checked template.
         prefix: "data", or "videos/" and the name of the camera.
         video: Name of the camera.
 
     Raises:
-        ValueError: A number of a chunk or a file is out of range.
+        ValueError: The index of a chunk or file is out of range.
     """
     values = {name: columns[f"{prefix}/{name}"][row] for name in ("chunk_index", "file_index")}
     if not all(0 <= value < MAX_INDEX for value in values.values()):
         raise ValueError(
-            f"{path}: chunk_index and file_index must be 0 to {MAX_INDEX - 1}, got "
+            f"{path}: chunk_index and file_index must be between 0 and {MAX_INDEX - 1}, got "
             f"{values['chunk_index']} and {values['file_index']}. {FIX}"
         )
 

@@ -1,4 +1,4 @@
-"""Read parquet files from untrusted sources within limits."""
+"""Read parquet files from untrusted sources, with limits on their size."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from mitigate.core.files import FREE, RATIO, lfs_problem
 from mitigate.core.names import escaped
 from mitigate.core.output import is_regular
 
-MAX_ROWS = 1 << 24  # rows per file (heuristic): 150 hours at 30 Hz
-BATCH_ROWS = 16  # rows with images that are read at once (heuristic)
+MAX_ROWS = 1 << 24  # maximum rows per file (heuristic), enough for 150 hours at 30 Hz
+BATCH_ROWS = 16  # number of rows with images per batch (heuristic)
 INSTALL = "pip install -e '.[lerobot]'"
 FIX = "Copy the dataset again."
 
 
 def parquet() -> Any:
-    """Return the module ``pyarrow.parquet``; ValueError if it is not installed."""
+    """Return the module ``pyarrow.parquet``; raise ValueError if it is not installed."""
     try:
         import pyarrow.parquet
     except ModuleNotFoundError as error:
         raise ValueError(
-            f"LeRobot datasets need pyarrow, which is not installed: {INSTALL}"
+            f"LeRobot datasets need pyarrow, which is not installed. Run {INSTALL}"
         ) from error
     return pyarrow.parquet
 
@@ -32,8 +32,8 @@ def check_file(path: Path) -> None:
     """Check that a file of a dataset exists.
 
     Raises:
-        FileNotFoundError: It is missing.
-        ValueError: It is a pointer of Git LFS, a FIFO or a device.
+        FileNotFoundError: The file is missing.
+        ValueError: The path is a Git LFS pointer, a FIFO or a device.
     """
     if not is_regular(path):
         raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
@@ -43,7 +43,7 @@ def check_file(path: Path) -> None:
 
 @contextmanager
 def open_table(path: Path) -> Iterator[Any]:
-    """Open a parquet file, and explain the errors of reading it.
+    """Open a parquet file; errors during reading get a message that explains them.
 
     Yields:
         A ``pyarrow.parquet.ParquetFile``.
@@ -61,7 +61,8 @@ def open_table(path: Path) -> Iterator[Any]:
             _check_size(path, file.metadata)
             yield file
     except (pyarrow.ArrowException, OSError, UnicodeDecodeError) as error:
-        if isinstance(error, OSError) and error.strerror is not None:  # of the system
+        # an error of the operating system
+        if isinstance(error, OSError) and error.strerror is not None:
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
@@ -71,7 +72,9 @@ def open_table(path: Path) -> Iterator[Any]:
 
 
 def _check_size(path: Path, metadata: Any) -> None:
-    """Raise ValueError for too many rows, or for far more bytes than the file has."""
+    """Raise ValueError if a file has too many rows, or would expand to far more bytes than it
+    has.
+    """
     if metadata.num_rows > MAX_ROWS:
         raise ValueError(f"{path} must have at most {MAX_ROWS} rows, got {metadata.num_rows}.")
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
@@ -82,8 +85,8 @@ def _check_size(path: Path, metadata: Any) -> None:
     )
     if size > FREE + RATIO * path.stat().st_size:
         raise ValueError(
-            f"{path} expands to {size >> 20} MiB, over {RATIO} times its size, which no dataset "
-            "does. Do not use it."
+            f"{path} expands to {size >> 20} MiB, more than {RATIO} times its size. No valid "
+            "dataset does so. Do not use this file."
         )
 
 
@@ -106,7 +109,7 @@ def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = (
         names = file.schema_arrow.names
         check_columns(path, names, columns)
         chosen = [*columns, *(name for name in optional if name in names)]
-        # a name also selects the columns that begin with it and a dot
+        # reading the column "a" also returns columns such as "a.b", which select() drops
         return file.read(columns=chosen).select(chosen)
 
 
@@ -121,7 +124,9 @@ def check_columns(path: Path, names: Sequence[str], columns: Sequence[str]) -> N
 
 
 def integers(table: Any, column: str, path: Path) -> list[int]:
-    """Return an integer column as a list; ValueError for another type or missing values."""
+    """Return an integer column as a list; raise ValueError for another type or for missing
+    values.
+    """
     import pyarrow
 
     values = table.column(column)
@@ -134,7 +139,7 @@ def integers(table: Any, column: str, path: Path) -> list[int]:
 
 
 def numbers(table: Any, column: str, path: Path) -> list[float]:
-    """Return a column of finite numbers as a list; ValueError for anything else."""
+    """Return a column of finite numbers as a list; raise ValueError for other columns."""
     import numpy as np
     import pyarrow
 

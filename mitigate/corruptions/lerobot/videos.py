@@ -17,11 +17,11 @@ from mitigate.core.output import open_output
 from mitigate.corruptions.lerobot.metadata import Camera
 from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
-# Only this container is read, because a playlist could name other files or addresses.
+# No other container is read, because a playlist could name other files or addresses.
 CONTAINER = "mp4"
 RGB_PIXELS = "rgb24"
 DEPTH_PIXELS = "gray12le"
-GROUP = "2"  # frames per key frame, as lerobot writes them, for fast random access
+GROUP = "2"  # frames between key frames, as in lerobot; the small number makes random access fast
 
 
 class Encoding(NamedTuple):
@@ -30,7 +30,7 @@ class Encoding(NamedTuple):
     Attributes:
         codec: Name of the encoder in FFmpeg.
         name: Name of the codec in meta/info.json.
-        pixels: Pixel format that the encoder gets.
+        pixels: Pixel format of the frames that the encoder receives.
         stored: Pixel format of the video, for meta/info.json.
         options: Options of the encoder.
     """
@@ -42,8 +42,8 @@ class Encoding(NamedTuple):
     options: dict[str, str]
 
 
-# H.264 in RGB with quantiser 0 keeps every pixel. The preset is the fastest: it wrote noisy frames
-# four times as fast as "veryfast", for 12 % more bytes.
+# H.264 in RGB with quantiser 0 keeps every pixel. The fastest preset is used: noisy frames were
+# written four times as fast as with "veryfast", and files were 12 % larger.
 LOSSLESS = Encoding(
     "libx264rgb", "h264", "rgb24", "gbrp", {"qp": "0", "preset": "ultrafast", "g": GROUP}
 )
@@ -55,7 +55,7 @@ DEPTH = Encoding(
     DEPTH_PIXELS,
     {"x265-params": "lossless=1:log-level=none", "preset": "ultrafast", "g": GROUP},
 )
-# lerobot's encodings of RGB (RGBEncoderConfig), by the codec of the original
+# lerobot's encodings of RGB (RGBEncoderConfig); the keys are codecs of original videos
 LOSSY = {
     "av1": Encoding(
         "libsvtav1", "av1", "yuv420p", "yuv420p", {"crf": "30", "preset": "12", "g": GROUP}
@@ -72,7 +72,7 @@ LOSSY = {
 
 
 def video_library() -> Any:
-    """Return the module ``av``; ValueError if it is not installed."""
+    """Return the module ``av``; raise ValueError if it is not installed."""
     try:
         import av
     except ModuleNotFoundError as error:
@@ -84,14 +84,14 @@ def video_library() -> Any:
 
 @contextmanager
 def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
-    """Open a video and explain the errors of decoding it.
+    """Open a video; errors during decoding get a message that explains them.
 
     Yields:
         The container and its video stream.
 
     Raises:
         FileNotFoundError: The file is missing.
-        ValueError: It is damaged, or has another size than ``camera``.
+        ValueError: The file is damaged, or its frames have a different size than ``camera``.
     """
     av = video_library()
     check_file(path)
@@ -107,7 +107,8 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
                 stream.thread_type = "AUTO"
                 yield container, stream
         except (av.FFmpegError, OSError) as error:
-            # a damaged file makes FFmpeg seek to places before its start: EINVAL
+            # in a damaged file, FFmpeg may seek to a position before its start, which fails with
+            # EINVAL
             if not isinstance(error, av.FFmpegError) and error.errno != errno.EINVAL:
                 raise
             cause = escaped(" ".join(str(error).split()))
@@ -120,8 +121,8 @@ def _check_size(path: Path, camera: Camera, height: int, width: int) -> None:
     if (height, width) != (camera.height, camera.width):
         raise ValueError(
             f"{path}: frames of {camera.name} must have {camera.width} x {camera.height} pixels, "
-            f"as meta/info.json says, got {width} x {height}. Correct the shape there, or copy the "
-            "dataset again."
+            f"as in meta/info.json, got {width} x {height}. Correct the shape in this file, or "
+            "copy the dataset again."
         )
 
 
@@ -134,12 +135,12 @@ def read_codec(path: Path, camera: Camera) -> str:
 def decode(
     path: Path, camera: Camera, times: Sequence[float], tolerance: float
 ) -> Iterator[np.ndarray]:
-    """Yield the frame nearest to each time, in order.
+    """Yield the nearest frame for each time, in the order of ``times``.
 
     Args:
         path: The video.
         camera: Its camera.
-        times: Increasing seconds.
+        times: Times in seconds, in increasing order.
         tolerance: Maximum seconds between a time and its frame.
 
     Yields:
@@ -147,14 +148,14 @@ def decode(
 
     Raises:
         FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or has no frame near a time.
+        ValueError: The file is damaged, or has no frame near one of the times.
     """
     if not times:
         return
     pending = list(times)[::-1]
-    before: tuple[float, Any] | None = None  # the frame before, and its time
+    before: tuple[float, Any] | None = None  # time and content of the previous frame
     with open_video(path, camera) as (container, stream):
-        # start one frame earlier, because rounding can make the first frame's time too small
+        # decoding starts one tick earlier, because rounding could otherwise skip the first frame
         container.seek(max(0, round(pending[-1] / stream.time_base) - 1), stream=stream)
         for frame in container.decode(stream):
             if frame.pts is None:
@@ -177,7 +178,7 @@ def _pixels(
         raise ValueError(
             f"{path} must have a frame at {time:.6f} s, but the nearest frame is {distance:.6f} s "
             f"away, more than the tolerance of {tolerance:g} s. Copy the dataset again, or set "
-            "tolerance= to a larger value if its clock is not exact."
+            "tolerance= to a larger value if its clock is inexact."
         )
     return _as_frame(path, camera, frame[1])
 
@@ -191,13 +192,15 @@ def _as_frame(path: Path, camera: Camera, frame: Any) -> np.ndarray:
 
 
 def read_codes(path: Path, frame: Any) -> np.ndarray:
-    """Return the codes of a depth frame, uint16 [H, W]; ValueError for another pixel format."""
+    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for another pixel
+    format.
+    """
     name = frame.format.name
     if not frame.format.components[0].bits == 12:
         raise ValueError(
             f"{path}: a depth video must have 12 bits per pixel ({DEPTH_PIXELS}), got "
-            f"{short(name)}. Older datasets store pictures of depth, from which no metres can be "
-            "read."
+            f"{short(name)}. Older datasets store images that only visualise depth; they cannot be "
+            "converted to metres."
         )
     return frame.to_ndarray(format=DEPTH_PIXELS)
 
@@ -247,8 +250,8 @@ def corrupt_video(
         target: The file to write.
         camera: Its camera.
         encoding: How the frames are encoded.
-        corrupt: Takes a frame (uint8 [H, W, 3] or float32 metres [H, W]), its time in seconds and
-            its number in the video, and returns the corrupted frame.
+        corrupt: Function that corrupts a frame. Its arguments are the frame (uint8 [H, W, 3] or
+            float32 metres [H, W]), the time in seconds, and the frame number in the video.
 
     Raises:
         ValueError: The original is damaged.
@@ -256,7 +259,7 @@ def corrupt_video(
     av = video_library()
     with (
         open_video(source, camera) as (container, stream),
-        # a file of Python, so that a full disk is not reported as a damaged video
+        # Python opens the file, so that a full disk is not reported as a damaged video
         open_output(target, "wb") as file,
         av.open(file, "w", format=CONTAINER) as output,
     ):
@@ -266,7 +269,7 @@ def corrupt_video(
         for number, frame in enumerate(container.decode(stream)):
             clean = _as_frame(source, camera, frame)
             if frame.pts is None:
-                raise ValueError(f"{source}: frame {number} has no time. {FIX}")
+                raise ValueError(f"{source}: frame {number} has no timestamp. {FIX}")
             corrupted = corrupt(clean, float(frame.pts * stream.time_base), number)
             new = _encoded(av, frame, clean, corrupted, camera, source)
             new.pts, new.time_base = frame.pts, stream.time_base
@@ -277,7 +280,7 @@ def corrupt_video(
 def _encoded(
     av: Any, frame: Any, clean: np.ndarray, corrupted: np.ndarray, camera: Camera, source: Path
 ) -> Any:
-    """Return a corrupted frame for the encoder. Depth that is unchanged keeps its code."""
+    """Convert a corrupted frame to the format of the encoder. Unchanged depth keeps its code."""
     if camera.kind == RGB:
         return av.VideoFrame.from_ndarray(corrupted, format=RGB_PIXELS)
     assert camera.code is not None

@@ -1,10 +1,12 @@
 """Corrupt batches of torch tensors on their device, with the random numbers of the numpy suite.
 
-``corrupt_tensors`` applies one corruption to a batch, and ``corrupt_observations`` applies a
-corruption per row to RGB and depth. Only this package of ``mitigate.corruptions`` imports torch.
+``corrupt_tensors`` applies one corruption to a batch of frames. ``corrupt_observations`` applies a
+different corruption to each row of a batch of RGB and depth frames. No other package in
+``mitigate.corruptions`` imports torch.
 
 Each function of ``rgb``, ``depth``, ``unseen_rgb`` and ``unseen_depth`` has the name of a
-corruption and computes a batch on its device. Other corruptions are computed on the host.
+corruption and computes it for a batch on the device. All other corruptions are computed on the
+host.
 """
 
 from mitigate.corruptions.tensors.observations import corrupt_observations

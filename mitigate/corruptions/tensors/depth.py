@@ -1,7 +1,8 @@
-"""The four depth corruptions of the standard suite for batches float32 metres [B, V, H, W].
+"""The four depth corruptions of the standard suite for batches [B, V, H, W] in float32 metres.
 
-Every function of ``FUNCTIONS`` takes the views and what corrupts their rows, and returns a new
-batch. ``mitigate/corruptions/depth.py`` has the formulas, and draws what a row needs.
+Every function of ``FUNCTIONS`` takes the views and the parameters of their rows, and returns a new
+batch. The formulas are in ``mitigate/corruptions/depth.py``, which also samples the random numbers
+per row.
 """
 
 from __future__ import annotations
@@ -17,9 +18,9 @@ from mitigate.corruptions.tensors.pixels import clip_valid, farthest, is_valid, 
 
 
 def gaussian_noise(views: Tensor, rows: Rows) -> Tensor:
-    """Add s (0.02 + 0.02 z^2) N(0, 1) to each pixel."""
+    """Add severity * (0.02 + 0.02 z^2) * N(0, 1) to each pixel."""
     count = views.shape[2] * views.shape[3]
-    counters = torch.arange(-(-count // 4), device=views.device)  # a word has four numbers
+    counters = torch.arange(-(-count // 4), device=views.device)  # each word gives four numbers
     words = view_words(rows, "gaussian_noise", views, counters)
     noise = normals(words, count).reshape(views.shape)
     base, square = (
@@ -31,7 +32,7 @@ def gaussian_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def missing_data(views: Tensor, rows: Rows) -> Tensor:
-    """Remove depth where a random field is in its top 0.5 s."""
+    """Remove depth at a fraction 0.5 * severity of the pixels, where a random field is highest."""
     count, height, width = views.shape[1:]
     digests = rows.digests("missing_data")
     smooth, cells = fields(digests, height, width, depth.HOLE_CORRELATION, views)
@@ -51,7 +52,7 @@ def missing_data(views: Tensor, rows: Rows) -> Tensor:
 
 
 def multipath(views: Tensor, rows: Rows) -> Tensor:
-    """Over-estimate depth next to farther surfaces."""
+    """Overestimate depth next to farther surfaces."""
     reach = depth.echo_reach(*views.shape[2:])
     gap = (farthest(views, reach) - views).clamp(0.0, depth.ECHO_GAP)
     polynomials = [depth.echo_polynomial(severity) for severity in rows.severities]
@@ -62,7 +63,7 @@ def multipath(views: Tensor, rows: Rows) -> Tensor:
 
 
 def quantization(views: Tensor, rows: Rows) -> Tensor:
-    """Round depth to multiples of 0.5 s metres."""
+    """Round depth to multiples of 0.5 * severity metres."""
     step = on_device([depth.depth_step(severity) for severity in rows.severities], views, 3)
     return clip_valid(views, (views / step).round() * step, rows.sensor)
 

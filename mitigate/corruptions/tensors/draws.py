@@ -1,9 +1,10 @@
-"""Keyed random numbers on a device, with the same bits as in ``mitigate/corruptions/keying.py``.
+"""Generate keyed random numbers on a device, with the same bits as
+``mitigate/corruptions/keying.py``.
 
-Random numbers per row or view (an angle, an offset) are few, so the functions of the numpy suite
-draw them on the host. Random numbers per pixel are hashed on the device. Devices have no
-unsigned 64-bit integers, so a word is an int64 with the same bits: sums and products wrap around,
-and right shifts are masked.
+There are few random numbers per row or view, such as angles and offsets, so the functions of the
+numpy suite sample them on the host. Random numbers per pixel are hashed on the device. Devices have
+no unsigned 64-bit integers, so a word is stored as an int64 with the same bits. Sums and products
+wrap around, and right shifts are masked.
 """
 
 from __future__ import annotations
@@ -36,13 +37,13 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Rows:
-    """The parameters of the corruption of each row of a batch.
+    """The parameters of one corruption for each row of a batch.
 
     Attributes:
         severities: Severity of each row, in (0, 1].
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown.
-        sensor: Depth range, and the value that marks a missing reading.
+        headings: Heading of each row in radians, or None for rows without a known heading.
+        sensor: Depth range, and the value that marks missing depth.
     """
 
     severities: Sequence[float]
@@ -65,11 +66,11 @@ class Rows:
         return [function(severity, key, *size) for severity, key in pairs]
 
     def scaled(self, factor: float) -> np.ndarray:
-        """Return ``factor`` times the severities, float64 [B]."""
+        """Return the severities multiplied by ``factor``, float64 [B]."""
         return np.array(self.severities) * factor
 
     def digests(self, name: str, *, frame: bool = False) -> list[int]:
-        """Return the digest of each row for the random number called ``name``."""
+        """Return one digest per row for the random number ``name``."""
         return [digest(key, name, frame=frame) for key in self.keys]
 
 
@@ -79,12 +80,12 @@ def signed(value: int) -> int:
 
 
 def shifted(word: Tensor, bits: int) -> Tensor:
-    """Return words shifted to the right, with zeros from the left."""
+    """Shift words to the right and fill with zeros from the left."""
     return (word >> bits) & ((1 << (64 - bits)) - 1)
 
 
 def mix(streams: Tensor, counters: Tensor) -> Tensor:
-    """Return ``keying.mix`` of int64 tensors that broadcast."""
+    """Compute ``keying.mix`` for int64 tensors, which are broadcast."""
     word = streams + (counters + 1) * signed(GOLDEN)
     word = (word ^ shifted(word, 30)) * signed(MIX_A)
     word = (word ^ shifted(word, 27)) * signed(MIX_B)
@@ -95,8 +96,8 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
     """Copy numbers to the device of ``like``.
 
     Args:
-        values: One number per row, or one array per row, all of equal shape. float64 becomes
-            float32, and uint64 becomes int64 with the same bits.
+        values: One number per row, or one array per row; all arrays have the same shape. float64
+            becomes float32, and uint64 becomes int64 with the same bits.
         like: A tensor on the device.
         trailing: Number of axes of length 1 that are appended, for broadcasting.
     """
@@ -110,16 +111,18 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return the random words of each view for the random number called ``name``.
+    """Return the random words of each view for the random number ``name``.
 
-    There is one word per counter: int64 [B, V, *counters.shape].
+    There is one word per counter; the result is int64 [B, V, *counters.shape].
     """
     streams = np.stack([view_streams(key, name, views.shape[1]) for key in rows.keys])
     return mix(on_device(streams, views, counters.dim()), counters)
 
 
 def pixel_words(rows: Rows, name: str, views: Tensor) -> Tensor:
-    """Return one random word per pixel, int64 [B, V, H, W]; the counter is the pixel's index."""
+    """Return one random word per pixel, int64 [B, V, H, W]; the index of the pixel is the
+    counter.
+    """
     size = views.shape[2:4]
     counters = torch.arange(size.numel(), device=views.device).reshape(size)
     return view_words(rows, name, views, counters)
@@ -131,15 +134,17 @@ def _normal_table(device: torch.device) -> Tensor:
 
 
 def normals(words: Tensor, count: int) -> Tensor:
-    """Return ``count`` standard normal numbers, four per word, float32 [..., count]."""
-    quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits come first
+    """Convert words, which give four numbers each, to ``count`` standard normal numbers, float32
+    [..., count].
+    """
+    quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits of a word come first
     places = (quarters >> 4) & 0xFFF
     return _normal_table(words.device).index_select(0, places.flatten()).reshape(places.shape)
 
 
 @lru_cache(maxsize=32)
 def _smoothing(cells: int, correlation: float, device: torch.device) -> Tensor:
-    """Return the smoothing of a torus along one axis as a matrix, float32 [cells, cells]."""
+    """Return the matrix that smooths a torus along one axis, float32 [cells, cells]."""
     weights = field_weights(correlation)
     matrix = np.zeros((cells, cells), np.float32)
     for offset, weight in enumerate(weights, start=-(weights.size // 2)):
@@ -149,7 +154,9 @@ def _smoothing(cells: int, correlation: float, device: torch.device) -> Tensor:
 
 @lru_cache(maxsize=32)
 def _resizing(cells: int, pixels: int, device: torch.device) -> Tensor:
-    """Return linear interpolation on a torus along one axis, float32 [pixels, cells]."""
+    """Return the matrix of linear interpolation on a torus along one axis, float32 [pixels,
+    cells].
+    """
     place = (np.arange(pixels) + 0.5) * cells / pixels - 0.5 + cells
     first = place.astype(int)
     share = (place - first).astype(np.float32)
@@ -162,7 +169,9 @@ def _resizing(cells: int, pixels: int, device: torch.device) -> Tensor:
 def fields(
     values: Sequence[int], height: int, width: int, correlation: float, like: Tensor
 ) -> tuple[Tensor, Tensor]:
-    """Return ``keying.field`` of each row: the fields float32 [B, H, W] and sorted cells [B, n]."""
+    """Compute ``keying.field`` for each row; return the fields (float32 [B, H, W]) and their sorted
+    cells ([B, n]).
+    """
     rows, columns = field_grid(height, width)
     streams = on_device(np.array(values, np.uint64), like, 1)
     words = mix(streams, torch.arange(-(-rows * columns // 4), device=like.device))
@@ -175,7 +184,9 @@ def fields(
 
 
 def levels(cells: Tensor, shares: Sequence[float] | np.ndarray) -> Tensor:
-    """Return ``keying.top_share`` of each row, from sorted cells [B, n], float32 [B, 1, 1]."""
+    """Compute ``keying.top_share`` for each row from sorted cells [B, n]; the result is float32 [B,
+    1, 1].
+    """
     count = cells.shape[1]
     places = [top_place(count, share) for share in shares]
     reached = cells.gather(1, on_device(np.minimum(places, count - 1), cells, 1))

@@ -30,24 +30,28 @@ def corrupt_observations(
     normalised: bool = False,
     backend: str | None = None,
 ) -> dict[str, Tensor]:
-    """Corrupt the frames of a batch of observations, such as the next step of vector environments.
+    """Corrupt the frames of a batch of observations, for example one step of vectorised
+    environments.
 
     Args:
-        frames: Any of ``rgb`` uint8 [B, V, H, W, 3] and ``depth`` float32 [B, V, H, W, 1].
-        corruptions: Corruption, pair of corruptions or CLEAN of each row, for example from
-            ``Schedule.draw``. Corruptions of instructions change nothing here.
+        frames: Frames by modality: ``rgb`` (uint8 [B, V, H, W, 3]), ``depth`` (float32 [B, V, H, W,
+            1]) or both.
+        corruptions: For each row, a corruption, a pair of corruptions or CLEAN, for example from
+            ``Schedule.draw``. Corruptions of instructions are ignored.
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown.
-        sensor: Depth range, and the value that marks a missing reading.
-        normalised: Whether depth is in [0, 1] over the sensor's range instead of in metres.
+        headings: Heading of each row in radians, or None for rows without a known heading.
+        sensor: Depth range, and the value that marks missing depth.
+        normalised: Whether depth is normalised to [0, 1] over the sensor's range; otherwise it is
+            in metres.
         backend: As in ``corrupt_tensors``.
 
     Returns:
-        A new dict; entries that no row corrupts are the same objects.
+        A new dict; entries that are not corrupted in any row are the same objects as in ``frames``.
 
     Raises:
         ValueError: A modality is missing, normalised depth is above 1, the number of corruptions,
-            keys or headings is not that of the rows, or an error of ``corrupt_tensors``.
+            keys or headings differs from the number of rows, or ``corrupt_tensors`` raises an
+            error.
     """
     result = dict(frames)
     if headings is None:
@@ -95,19 +99,21 @@ def _check_normalised(depth: Tensor, sensor: DepthSensor) -> None:
     most = float(depth.masked_fill(~is_valid(depth), 0.0).amax())
     if most > 1.0:
         raise ValueError(
-            f"Normalised depth must be in 0-1, got {most:g}. For depth in metres, set "
+            f"Normalised depth must be between 0 and 1, got {most:g}. For depth in metres, set "
             "normalised=False."
         )
 
 
 def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return normalised depth in metres, with 0 at invalid pixels, as ``corrupt_normalised``."""
+    """Convert normalised depth to metres, with 0 at invalid pixels, as in
+    ``corrupt_normalised``.
+    """
     metres = sensor.z_min + depth * (sensor.z_max - sensor.z_min)
     return metres.masked_fill(~is_valid(depth), 0.0)
 
 
 def _normalise(corrupted: Tensor, metres: Tensor, clean: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return depth in [0, 1]; pixels that did not change keep their clean values."""
+    """Convert depth to [0, 1]; pixels that did not change keep their clean values."""
     unit = (corrupted - sensor.z_min) / (sensor.z_max - sensor.z_min)
     unit = unit.clamp(float(LEAST), 1.0).masked_fill(corrupted <= 0, 0.0)
     return torch.where(corrupted == metres, clean, unit)

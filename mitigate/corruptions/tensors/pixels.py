@@ -1,7 +1,8 @@
-"""Operations on the pixels of batches of views that several corruptions share.
+"""Pixel operations on batches of views, which several corruptions use.
 
-Batches of RGB are uint8 [B, V, H, W, 3], and batches of depth float32 metres [B, V, H, W]. Several
-functions work on rows of 3 W colour values, because broadcasting over a last axis of 3 is slow.
+Batches of RGB are uint8 [B, V, H, W, 3]. Batches of depth are float32 metres [B, V, H, W]. Several
+functions work on image rows of 3 * W colour values, because broadcasting over a last axis of size 3
+is slow.
 """
 
 from __future__ import annotations
@@ -14,17 +15,17 @@ from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
 
 
 def per_colour(pixels: Tensor) -> Tensor:
-    """Return values of pixels [..., W] for their colour values, [..., 3 W]."""
+    """Repeat the value of each pixel [..., W] for its three colours, [..., 3 W]."""
     return pixels.repeat_interleave(3, -1)
 
 
 def colour_rows(colours: Tensor, width: int) -> Tensor:
-    """Return image rows of one colour each, [B, 1, 1, 3 W], from colours [B, 3]."""
+    """Return one image row per colour: [B, 1, 1, 3 W], from colours [B, 3]."""
     return colours.repeat(1, width)[:, None, None]
 
 
 def grey_levels(values: Tensor) -> Tensor:
-    """Return the nearest grey levels of values in [0, 255], uint8."""
+    """Round values in [0, 255] to the nearest grey levels, uint8."""
     return (values + 0.5).to(torch.uint8)
 
 
@@ -33,7 +34,7 @@ def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
 
     Args:
         views: uint8 [B, V, H, W, 3].
-        opacity: In [0, 1], float32 [B, V or 1, H, 3 W].
+        opacity: Opacity in [0, 1], float32 [B, V or 1, H, 3 W].
         colours: float32 [B or 1, 3].
     """
     source = views.flatten(3).float()
@@ -47,7 +48,9 @@ def look_up(table: Tensor, places: Tensor) -> Tensor:
 
 
 def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
-    """Return pixels of [B, V, H, W, ...] at rows and columns that broadcast to [B, V, h, w]."""
+    """Return the pixels of ``views`` [B, V, H, W, ...] at ``rows`` and ``columns``, which are
+    broadcast to [B, V, h, w].
+    """
     batch, count = views.shape[:2]
     row = torch.arange(batch, device=views.device).reshape(-1, 1, 1, 1)
     view = torch.arange(count, device=views.device).reshape(1, -1, 1, 1)
@@ -55,7 +58,8 @@ def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
 
 
 def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return [B, V, H, W, ...] at (y + down, x + right), with repeated edges.
+    """Return, for each pixel (y, x) of ``views`` [B, V, H, W, ...], the pixel at (y + down, x +
+    right); edges are repeated.
 
     ``down`` and ``right`` are int64 [B, 1, 1, 1].
     """
@@ -66,7 +70,8 @@ def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return maps [B, H, W] at (y + down, x + right) on a torus, [B, V, H, W].
+    """Return, for each pixel (y, x) of each view, the value of ``maps`` [B, H, W] at (y + down, x +
+    right) on a torus, as [B, V, H, W].
 
     ``down`` and ``right`` are int64 [B, V, 1, 1].
     """
@@ -78,9 +83,10 @@ def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def displaced(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return RGB at (y + down, x + right), bilinear, as in ``unseen.optics.displaced``.
+    """Return, for each pixel (y, x), the RGB value at (y + down, x + right), interpolated
+    bilinearly as in ``unseen.optics.displaced``.
 
-    ``down`` and ``right`` are float32 in pixels and broadcast with [B, V, H, W].
+    ``down`` and ``right`` are float32, in pixels, and are broadcast to [B, V, H, W].
     """
     height, width = views.shape[2:4]
     y = 256 * torch.arange(height, device=views.device).reshape(-1, 1)
@@ -101,26 +107,30 @@ def is_valid(depth: Tensor) -> Tensor:
 
 
 def clip_valid(views: Tensor, changed: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return ``changed``, clipped to the range, where ``views`` is valid, else ``views``."""
+    """Return ``changed``, clipped to the sensor's range, where ``views`` is valid, and ``views``
+    elsewhere.
+    """
     return torch.where(is_valid(views), changed.clamp(float(NEAREST), sensor.z_max), views)
 
 
 def farthest(views: Tensor, reach: int) -> Tensor:
-    """Return the maximum of valid depth [B, V, H, W] in squares of 2 reach + 1, -inf if none is
-    valid.
+    """Return, for each pixel, the maximum of valid depth [B, V, H, W] in the square of side 2 *
+    reach + 1 around it, or -inf if no depth there is valid.
     """
     return _largest(views.masked_fill(~is_valid(views), -torch.inf), reach)
 
 
 def nearest(views: Tensor, reach: int) -> Tensor:
-    """Return the minimum of valid depth [B, V, H, W] in squares of 2 reach + 1, inf if none is
-    valid.
+    """Return, for each pixel, the minimum of valid depth [B, V, H, W] in the square of side 2 *
+    reach + 1 around it, or inf if no depth there is valid.
     """
     return -_largest((-views).masked_fill(~is_valid(views), -torch.inf), reach)
 
 
 def _largest(values: Tensor, reach: int) -> Tensor:
-    """Return the maximum in squares of 2 reach + 1, by doubling the window."""
+    """Return, for each pixel, the maximum in the square of side 2 * reach + 1; the window is
+    doubled repeatedly.
+    """
     values = functional.pad(values, (reach,) * 4, value=-torch.inf)
     for axis in (2, 3):
         window = 1

@@ -1,7 +1,8 @@
-"""The eight RGB corruptions of the standard suite for batches uint8 [B, V, H, W, 3].
+"""The eight RGB corruptions of the standard suite for uint8 batches [B, V, H, W, 3].
 
-Every function of ``FUNCTIONS`` takes the views and what corrupts their rows, and returns a new
-batch. ``mitigate/corruptions/rgb.py`` has the formulas, and draws what a row needs.
+Every function of ``FUNCTIONS`` takes the views and the parameters of their rows, and returns a new
+batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also samples the random numbers
+per row.
 """
 
 from __future__ import annotations
@@ -24,13 +25,16 @@ from mitigate.corruptions.tensors.draws import (
 )
 from mitigate.corruptions.tensors.pixels import cover, grey_levels, look_up, per_colour
 
-UNIT = 32768  # an opacity of 1 in the masks of numpy
+UNIT = 32768  # opacity of 1 in the masks of the numpy suite
 HAT = np.array([[0.25, 0.5, 0.25]])
-ONE_TAP = np.array([0]), np.array([0]), np.array([1])  # a line that is shorter than a pixel
+# taps of a line that is shorter than one pixel
+ONE_TAP = np.array([0]), np.array([0]), np.array([1])
 
 
 def motion_blur(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with a line blur. Sums of integers below 2^24 are exact in float32."""
+    """Blend views with a line blur. float32 is exact here, because all sums are integers below
+    2^24.
+    """
     lines = rows.draw(rgb.blur_line, views.shape[3])
     steps = np.array([rgb.tap_step(length) for length, _ in lines])
     taps = [
@@ -57,23 +61,27 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
 
 
 def _planes(views: Tensor) -> Tensor:
-    """Return the colours of RGB as channels, float32 [1, B V 3, H, W]."""
+    """Return one plane per view and colour, as channels of one image: float32 [1, B * V * 3, H,
+    W].
+    """
     return views.permute(0, 1, 4, 2, 3).flatten(0, 2).float().unsqueeze(0)
 
 
 def _per_plane(values: np.ndarray, views: Tensor) -> Tensor:
-    """Copy values of rows [B, ...] to the device, once for each plane, [B V 3, ...]."""
+    """Copy one value per row [B, ...] to the device, and repeat it for each plane: [B * V * 3,
+    ...].
+    """
     return on_device(values, views).repeat_interleave(3 * views.shape[1], 0)
 
 
 def _frames(planes: Tensor, views: Tensor) -> Tensor:
-    """Return integer planes [1, B V 3, H, W] as a batch of the shape of ``views``."""
+    """Convert integer planes [1, B * V * 3, H, W] to a batch with the shape of ``views``."""
     apart = planes.to(torch.uint8).reshape(*views.shape[:2], 3, *views.shape[2:4])
     return apart.permute(0, 1, 3, 4, 2).contiguous()
 
 
 def _filtered(planes: Tensor, kernels: Tensor) -> Tensor:
-    """Correlate each plane of [1, n, h, w] with its kernel of [n, 1, y, x]."""
+    """Correlate each plane (of [1, n, h, w]) with its own kernel (of [n, 1, y, x])."""
     return functional.conv2d(planes, kernels, groups=len(kernels))
 
 
@@ -96,7 +104,7 @@ def low_light(views: Tensor, rows: Rows) -> Tensor:
 
 
 def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
-    """Darken and add sensor noise. The tables of all severities are joined."""
+    """Darken and add sensor noise. The look-up tables of all severities are concatenated."""
     each = sorted(set(rows.severities))
     tables = [eld.tables(severity) for severity in each]
     number = on_device([each.index(severity) for severity in rows.severities], views, 3)
@@ -108,7 +116,7 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     decode = on_device([np.pad(t.decode, (0, span - t.decode.size)) for t in tables], views)
     offsets = on_device([256 * table.offset + 128 for table in tables], views).int()[number]
 
-    # in integers, because a different signal level may change the grey level by more than one
+    # computed in integers, because another signal level may change the grey level by more than one
     light = UNIT - (darkness(views, rows) * UNIT + 0.5).clamp_(max=UNIT - 1.0).int()
     lines = torch.arange(views.shape[2], device=views.device).unsqueeze(1)
     place = shifted(view_words(rows, "row_noise", views, lines), 52)
@@ -117,7 +125,8 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     out = torch.empty_like(views)
     number = number.int()
     for colour in range(3):
-        level = (views[..., colour].int() * light).add_(4096) >> 13  # in quarters of a grey level
+        # unit: a quarter of a grey level
+        level = (views[..., colour].int() * light).add_(4096) >> 13
         bits = (words >> (20 * colour)).int()
         place = ((level + number * eld.LEVELS) << eld.PHOTON_BITS) + (bits & 0xFF)
         digital = look_up(photons, place).add_(shift)
@@ -128,7 +137,9 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def spatter(views: Tensor, rows: Rows) -> Tensor:
-    """Cover the image with mud or water where a random field is in its top 0.45 s."""
+    """Cover a fraction 0.45 * severity of the image with mud or water, where a random field is
+    highest.
+    """
     height, width = views.shape[2:4]
     digests = rows.digests("spatter")
     smooth, cells = fields(digests, height, width, masks.SPATTER_CORRELATION, views)
@@ -140,10 +151,10 @@ def spatter(views: Tensor, rows: Rows) -> Tensor:
 
 
 def flare(views: Tensor, rows: Rows) -> Tensor:
-    """Add a glow to the views that see the light."""
+    """Add the glow of a light to the views that show it."""
     count, height, width = views.shape[1:4]
     batch = len(views)
-    scales = np.zeros((batch, count, 1, 3))  # 0 in views that do not see the light
+    scales = np.zeros((batch, count, 1, 3))  # 0 in views that do not show the light
     down = np.zeros((batch, count, height, 1), np.float32)
     right = np.zeros((batch, count, 1, width), np.float32)
     values = zip(rows.digests("flare"), rows.headings, strict=True)
@@ -162,16 +173,16 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 
 
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
-    """Return the rest of the kernel of ``blur.gaussian`` along one axis, float64 [n].
+    """Return the remaining kernel of ``blur.gaussian`` along one axis, float64 [n].
 
-    The kernel follows the smoothing at the levels before ``first``. Its taps are 2^first pixels
-    apart, and their sum is 1.
+    The kernel is applied after the smoothing at the levels below ``first``. Its taps are 2^first
+    pixels apart, and their sum is 1.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)
     half, count = rgb.gaussian_weights(sigma)
     weights = half.astype(float)
-    weights[0] *= 2.0  # the table has half of the centre weight
+    weights[0] *= 2.0  # the table contains half of the centre weight
     taps = np.concatenate([weights[:0:-1], weights])
     kernel = np.zeros((taps.size - 1) * 2 ** (count - first) + 1)
     kernel[:: 2 ** (count - first)] = taps / taps.sum()
@@ -183,7 +194,7 @@ def blur_kernel(sigma: float, first: int) -> np.ndarray:
 
 
 def _correlated(values: Tensor, weights: Tensor, step: int, axis: int) -> Tensor:
-    """Correlate with weights [B or 1, n] whose taps are ``step`` values apart along an axis."""
+    """Correlate along one axis with weights [B or 1, n], whose taps are ``step`` values apart."""
     size = values.shape[axis] - step * (weights.shape[1] - 1)
     taps = weights[..., None, None, None].unbind(1)
     total = values.narrow(axis, 0, size) * taps[0]
@@ -193,7 +204,7 @@ def _correlated(values: Tensor, weights: Tensor, step: int, axis: int) -> Tensor
 
 
 def defocus(views: Tensor, rows: Rows) -> Tensor:
-    """Blur with a Gaussian kernel, which is that of the numpy filter; rounding may differ."""
+    """Blur with the Gaussian kernel of the numpy filter; rounding may differ."""
     sigmas = rows.draw(rgb.defocus_sigma, *views.shape[2:4])
     first = min(0 if s < rgb.DEFOCUS_LEAST else rgb.gaussian_weights(s)[1] for s in sigmas)
     kernels = [blur_kernel(sigma, first) for sigma in sigmas]
@@ -221,7 +232,7 @@ def foreign_object(views: Tensor, rows: Rows) -> Tensor:
 
 
 def black_out(views: Tensor, rows: Rows) -> Tensor:
-    """Make views black."""
+    """Make random views black."""
     values = rows.digests("black_out", frame=True)
     visible = [
         [uniform(scramble(value, view)) >= severity for view in range(views.shape[1])]

@@ -1,4 +1,6 @@
-"""Apply one corruption to a batch of views, on its device or with the numpy suite on the host."""
+"""Apply one corruption to a batch of views, either on the device of the batch or with the numpy
+suite on the host.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,7 @@ from mitigate.corruptions.tensors.draws import Rows
 from mitigate.corruptions.tensors.pixels import is_valid
 
 BACKENDS = ("numpy", "torch")
-# pixels of one pass, so that its temporary tensors need about a gigabyte (heuristic)
+# maximum pixels per pass (heuristic); the temporary tensors then need about a gigabyte
 MAX_PIXELS = 1 << 23
 FUNCTIONS: dict[str, Callable[[Tensor, Rows], Tensor]] = {
     function.__name__: function
@@ -47,33 +49,37 @@ def corrupt_tensors(
     sensor: DepthSensor = SENSOR,
     backend: str | None = None,
 ) -> Tensor:
-    """Corrupt a batch of frames of one modality. Row b equals ``corrupt(frames[b], ...)``.
+    """Corrupt a batch of frames of one modality; row b of the result equals ``corrupt(frames[b],
+    ...)``.
 
-    The numpy backend gives the same bits. The torch backend uses the same random numbers, and
-    differs by at most one grey level or 0.1 mm on 99.9 % of the pixels.
+    The numpy backend gives exactly these bits. The torch backend uses the same random numbers; on
+    99.9 % of the pixels, it differs by at most one grey level or 0.1 mm.
 
     Args:
-        frames: uint8 [B, V, H, W, 3] for RGB names, or float32 metres [B, V, H, W, 1] for depth
-            names. A row is one instant of one environment, with V views.
-        name: One of NAMES, or another known corruption of frames that is not a fault.
-        severity: s in [0, 1], one for all rows or one per row; rows with 0 are copied.
+        frames: For corruptions of RGB, uint8 [B, V, H, W, 3]. For corruptions of depth, float32
+            metres [B, V, H, W, 1]. A row contains the V views of one environment in one time step.
+        name: One of NAMES, or another registered corruption of frames that is not a fault.
+        severity: Severity in [0, 1], either one number for all rows or one per row. Rows with
+            severity 0 are copied.
         keys: Key of each row.
-        headings: Heading of each row in radians, or None where it is unknown (see ``corrupt``).
-        sensor: Depth range, and the value that marks a missing reading.
+        headings: Heading of each row in radians, or None for rows without a known heading (see
+            ``corrupt``).
+        sensor: Depth range, and the value that marks missing depth.
         backend: "torch" computes on the device of ``frames``, "numpy" on the host. None selects
-            the numpy backend for tensors on the CPU, where it is faster, and else torch. A
-            corruption without a function in ``FUNCTIONS`` always runs on the host.
+            "numpy" for tensors on the CPU, where it is faster, and "torch" for others. A corruption
+            without a function in ``FUNCTIONS`` always runs on the host.
 
     Returns:
         A new tensor of the same shape and dtype on the same device, without gradient.
 
     Raises:
-        ValueError: An argument is invalid, the corruption is a fault, or over nine tenths of the
-            depth of a row are beyond three times the sensor's z_max (probably millimetres).
+        ValueError: An argument is invalid, or the corruption is a fault, or more than nine tenths
+            of the depth values of a row exceed three times the sensor's z_max (and are probably in
+            millimetres).
     """
     if fault := registry.family(name):
         raise ValueError(
-            f"corrupt_tensors corrupts single instants, and {name!r} is a {fault} fault. Pass the "
+            f"corrupt_tensors does not support faults, got the {fault} fault {name!r}. Pass the "
             "frames of each environment in order to a FrameStream (docs/faults.md)."
         )
     modality = registry.modality(check_name(name))
@@ -124,14 +130,14 @@ def _corrupt_on_device(frames: Tensor, name: str, rows: Rows) -> Tensor:
 
 def _apply(name: str, frames: Tensor, rows: Rows) -> Tensor:
     is_depth = registry.modality(name) == "depth"
-    # reduced precision would change random fields and thresholds
+    # autocast would reduce precision, which changes random fields and thresholds
     with torch.autocast(frames.device.type, enabled=False):
         changed = FUNCTIONS[name](frames.squeeze(-1) if is_depth else frames, rows)
     return changed.unsqueeze(-1) if is_depth else changed
 
 
 def check_backend(backend: str | None) -> str | None:
-    """Return ``backend``, or raise ValueError if it is unknown."""
+    """Return ``backend``; raise ValueError if it is unknown."""
     if backend not in (None, *BACKENDS):
         raise ValueError(unknown("backend", str(backend), BACKENDS))
     return backend
@@ -139,16 +145,16 @@ def check_backend(backend: str | None) -> str | None:
 
 @lru_cache
 def _warn_host(name: str) -> None:
-    """Warn once per corruption."""
+    """Warn, once per corruption, that it is computed on the host."""
     warnings.warn(
-        f"{name!r} has no torch function, so it is computed on the CPU, with the pixels of numpy. "
-        "Frames are copied from their device and back.",
+        f"{name!r} has no torch function, so numpy computes it on the CPU. Frames are copied "
+        "from their device and back.",
         stacklevel=3,
     )
 
 
 def _per_row(values: object, count: int, name: str) -> list:
-    """Return a value per row; None and a number are used for all rows."""
+    """Return one value per row; None or a single number is repeated for all rows."""
     if isinstance(values, Tensor | np.ndarray):
         values = values.tolist()
     if values is None or (name == "severity" and not isinstance(values, Sequence)):
@@ -156,14 +162,13 @@ def _per_row(values: object, count: int, name: str) -> list:
     if isinstance(values, str) or not isinstance(values, Sequence) or len(values) != count:
         actual = len(values) if isinstance(values, Sequence) else values
         raise ValueError(
-            f"{name} must have one entry per row of the batch, which has {count} rows, got "
-            f"{actual!r}."
+            f"{name} must have one entry per row of the batch ({count} rows), got {actual!r}."
         )
     return list(values)
 
 
 def _check_frames(frames: Tensor, name: str, modality: str) -> None:
-    """Raise ValueError unless ``frames`` is a batch of the modality."""
+    """Raise ValueError unless ``frames`` is a batch of frames of the modality."""
     channels, dtype = (3, torch.uint8) if modality == "rgb" else (1, torch.float32)
     if not isinstance(frames, Tensor):
         raise ValueError(
@@ -174,11 +179,11 @@ def _check_frames(frames: Tensor, name: str, modality: str) -> None:
     if frames.dim() != 5 or shape[-1] != channels or 0 in shape[1:] or shape[1] > MAX_VIEWS:
         raise ValueError(
             f"Frames for {name!r} must be [rows, views, H, W, {channels}] with at most "
-            f"{MAX_VIEWS} views, got {list(shape)}. Move the channels last; add an axis for a "
-            "single view: frames[:, None]."
+            f"{MAX_VIEWS} views, got {list(shape)}. The channels must be the "
+            "last axis. For a single view, add an axis: frames[:, None]."
         )
     if frames.dtype != dtype:
-        fix = "(frames * 255).round().byte() if they are in 0-1"
+        fix = "(frames * 255).round().byte() if they are from 0 to 1"
         if modality == "depth":
             fix = "depth.float(), divided by 1000 for millimetres"
         raise ValueError(
@@ -187,7 +192,7 @@ def _check_frames(frames: Tensor, name: str, modality: str) -> None:
 
 
 def _check_unit(frames: Tensor, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth of a row is far beyond z_max, as ``check_unit`` does."""
+    """Raise ValueError if nearly all depth of a row is far beyond z_max, like ``check_unit``."""
     pixels = frames.flatten(1)
     sample = pixels[:, :: pixels.shape[1] // UNIT_SAMPLES + 1]
     valid = is_valid(sample)

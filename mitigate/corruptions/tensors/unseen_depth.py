@@ -1,4 +1,4 @@
-"""The unseen depth corruptions for batches float32 metres [B, V, H, W].
+"""The unseen depth corruptions for batches [B, V, H, W] in float32 metres.
 
 Functions have the same arguments and results as in ``depth.py`` of this package. The formulas are
 in ``calibration``, ``edges`` and ``returns`` of ``mitigate/corruptions/unseen``.
@@ -34,20 +34,20 @@ from mitigate.corruptions.unseen import calibration, edges, returns
 
 
 def scale_error(views: Tensor, rows: Rows) -> Tensor:
-    """Scale depth."""
+    """Multiply depth by a wrong factor."""
     factors = on_device(rows.draw(calibration.scale_factor), views, 3)
     return clip_valid(views, views * factors, rows.sensor)
 
 
 def misalignment(views: Tensor, rows: Rows) -> Tensor:
-    """Shift depth at pixels whose source is valid."""
+    """Shift depth; pixels whose source is invalid keep their depth."""
     offsets = on_device(rows.draw(calibration.depth_offset, views.shape[3]), views, 3)
     source = moved(views, *offsets.unbind(1))
     return clip_valid(views, torch.where(is_valid(source), source, views), rows.sensor)
 
 
 def wiggling(views: Tensor, rows: Rows) -> Tensor:
-    """Add a sine of depth, sampled at the cells of the numpy table."""
+    """Add a sine of depth; depth is rounded to the cells of the numpy table."""
     phases = on_device([uniform(value) for value in rows.digests("wiggling")], views, 3)
     amplitudes = on_device(rows.scaled(calibration.WIGGLE), views, 3)
     clean = views.clamp(0.0, rows.sensor.z_max)
@@ -58,7 +58,7 @@ def wiggling(views: Tensor, rows: Rows) -> Tensor:
 
 
 def fattening(views: Tensor, rows: Rows) -> Tensor:
-    """Set each pixel to the smallest depth nearby, one row at a time."""
+    """Set each pixel to the smallest depth nearby; rows are computed one at a time."""
     smallest = torch.empty_like(views)
     for row, severity in enumerate(rows.severities):
         reach = edges.FATTENING * severity * min(views.shape[2:])
@@ -87,7 +87,7 @@ def edge_shadow(views: Tensor, rows: Rows) -> Tensor:
 
 
 def flying_pixels(views: Tensor, rows: Rows) -> Tensor:
-    """Set pixels to random depths between the nearest and farthest around them."""
+    """Set random pixels to a depth between the nearest and farthest depth around them."""
     reach = edges.footprint(*views.shape[2:])
     words = pixel_words(rows, "flying_pixels", views)
     near, far = nearest(views, reach), farthest(views, reach)
@@ -97,7 +97,7 @@ def flying_pixels(views: Tensor, rows: Rows) -> Tensor:
 
 
 def ripple(views: Tensor, rows: Rows) -> Tensor:
-    """Add waves to walls."""
+    """Add a random field to depth, which makes walls look wavy."""
     count, height, width = views.shape[1:]
     digests = rows.digests("ripple")
     waves = fields(digests, height, width, returns.RIPPLE_CORRELATION, views)[0]
@@ -109,7 +109,7 @@ def ripple(views: Tensor, rows: Rows) -> Tensor:
 
 
 def range_limit(views: Tensor, rows: Rows) -> Tensor:
-    """Remove depth beyond a limit."""
+    """Remove depth beyond a maximum range."""
     limits = [rows.sensor.z_max * returns.RANGE_LEFT**severity for severity in rows.severities]
     near = clip_valid(views, views, rows.sensor)
     removed = is_valid(views) & (near > on_device(limits, views, 3))
@@ -117,7 +117,7 @@ def range_limit(views: Tensor, rows: Rows) -> Tensor:
 
 
 def mismatches(views: Tensor, rows: Rows) -> Tensor:
-    """Set patches of pixels to random depths."""
+    """Set random patches of pixels to random depths."""
     height, width = views.shape[2:]
     side = returns.speckle_side(height, width)
     down, right = (torch.arange(size, device=views.device) // side for size in (height, width))
@@ -129,7 +129,7 @@ def mismatches(views: Tensor, rows: Rows) -> Tensor:
 
 
 def glossy_floor(views: Tensor, rows: Rows) -> Tensor:
-    """Set parts of the floor to the depth of the room that the floor mirrors."""
+    """Set parts of the floor to the depth of the mirror image in the floor."""
     count, height, width = views.shape[1:]
     digests = rows.digests("glossy_floor")
     smooth, cells = fields(digests, height, width, returns.GLOSS_CORRELATION, views)

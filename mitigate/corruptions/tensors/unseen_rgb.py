@@ -1,4 +1,4 @@
-"""The unseen RGB corruptions for batches uint8 [B, V, H, W, 3].
+"""The unseen RGB corruptions for uint8 batches [B, V, H, W, 3].
 
 Functions have the same arguments and results as in ``rgb.py`` of this package. The formulas are in
 ``light``, ``optics``, ``signal`` and ``codec`` of ``mitigate/corruptions/unseen``.
@@ -29,24 +29,24 @@ from mitigate.corruptions.unseen import codec, light, optics, signal
 
 
 def _by_tables(views: Tensor, tables: list[list[np.ndarray]]) -> Tensor:
-    """Map each colour channel of a row with its own table of 256 grey levels."""
+    """Map each colour channel of each row by its own table of 256 grey levels."""
     first = torch.arange(0, 768 * len(views), 256, dtype=torch.int32, device=views.device)
     places = views.flatten(3).int() + colour_rows(first.reshape(-1, 3), views.shape[3])
     return look_up(on_device(np.array(tables), views).flatten(), places).reshape(views.shape)
 
 
 def white_balance(views: Tensor, rows: Rows) -> Tensor:
-    """Apply gains of red, green and blue."""
+    """Multiply red, green and blue by different gains."""
     return _by_tables(views, rows.draw(light.balance_tables))
 
 
 def overexposure(views: Tensor, rows: Rows) -> Tensor:
-    """Multiply light, and clip it at white."""
+    """Multiply light by a factor, and clip it at white."""
     return _by_tables(views, rows.draw(light.exposure_tables))
 
 
 def haze(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with haze."""
+    """Blend each view with haze."""
     count, height, width = views.shape[1:4]
     total = torch.zeros((), device=views.device)
     for octave, (correlation, weight) in enumerate(light.HAZE_OCTAVES):
@@ -74,7 +74,7 @@ def hue_shift(views: Tensor, rows: Rows) -> Tensor:
 
 
 def ghosting(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with a shifted image."""
+    """Blend each view with a shifted copy of itself."""
     offsets = [optics.ghost_offset(key, *views.shape[2:4]) for key in rows.keys]
     down, right = on_device(offsets, views, 3).unbind(1)
     weight = on_device([optics.ghost_weight(severity) for severity in rows.severities], views, 4)
@@ -119,21 +119,21 @@ def scratches(views: Tensor, rows: Rows) -> Tensor:
 
 
 def rolling_shutter(views: Tensor, rows: Rows) -> Tensor:
-    """Shift each row."""
+    """Shift each image row sideways."""
     shifts = rows.draw(signal.wobble, *views.shape[2:4])
     right = on_device(np.stack(shifts), views, 1)[:, None]
     return displaced(views, torch.zeros_like(right), right)
 
 
 def flicker_bands(views: Tensor, rows: Rows) -> Tensor:
-    """Scale the brightness of each row."""
+    """Scale the brightness of each image row."""
     gains = rows.draw(signal.band_gains, *views.shape[1:3])
     scaled = (views.int() * on_device(np.stack(gains), views, 2) + 2048) >> 12
     return scaled.clamp(max=255).to(torch.uint8)
 
 
 def impulse_noise(views: Tensor, rows: Rows) -> Tensor:
-    """Set colours of pixels to 0 or 255."""
+    """Set the colours of random pixels to 0 or 255."""
     words = pixel_words(rows, "impulse_noise", views).unsqueeze(-1)
     limits = on_device([signal.impulse_limit(severity) for severity in rows.severities], views, 4)
     levels = 255 * ((words >> torch.arange(3, device=views.device)) & 1)
@@ -141,7 +141,7 @@ def impulse_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def compression(views: Tensor, rows: Rows) -> Tensor:
-    """Remove the DCT coefficients of blocks that lie in a dead zone."""
+    """Set small DCT coefficients of image blocks to 0."""
     batch, count, height, width, _ = views.shape
     side = codec.block_side(height, width)
     colours = on_device(codec.opponents(), views)
@@ -160,7 +160,7 @@ def compression(views: Tensor, rows: Rows) -> Tensor:
 
 
 def lost_slices(views: Tensor, rows: Rows) -> Tensor:
-    """Replace parts of rows by grey."""
+    """Replace parts of image rows by grey."""
     width = views.shape[3]
     first = np.full(views.shape[:3], width)
     for starts, parts in zip(first, rows.draw(codec.lost_parts, *views.shape[1:4]), strict=True):

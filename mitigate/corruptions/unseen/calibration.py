@@ -1,4 +1,5 @@
-"""Unseen depth corruptions from wrong calibration: scale, misalignment with RGB, and wiggling.
+"""Unseen depth corruptions from wrong calibration: wrong scale, misalignment with RGB, and
+wiggling.
 
 Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
@@ -15,12 +16,12 @@ from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # as a fraction of the depth, at s = 1
-ASIDE = 0.12  # horizontal shift as a fraction of W, at s = 1
+SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # limits of the error as a fraction of depth, at severity 1
+ASIDE = 0.12  # horizontal shift as a fraction of the image width, at severity 1
 ASIDE_DOWN = 0.25  # vertical shift as a fraction of the horizontal shift
-WIGGLE = 0.30  # in metres, at s = 1
+WIGGLE = 0.30  # amplitude in metres, at severity 1
 WIGGLE_HERTZ = 20e6
-# period in metres, for four samples of the phase
+# period of the error in metres, for a sensor that takes four samples of the phase
 WIGGLE_PERIOD = LIGHT_SPEED / (2.0 * WIGGLE_HERTZ) / 4.0
 WIGGLE_CELLS = 4096
 
@@ -31,35 +32,39 @@ def valid(views: np.ndarray) -> np.ndarray:
 
 
 def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """Return ``moved``, clipped to the sensor's range, at pixels where ``views`` is valid, else
-    ``views``.
+    """Return ``moved``, clipped to the sensor's range, where ``views`` is valid, and ``views``
+    elsewhere.
     """
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
 
 def scale_factor(severity: float, key: Key) -> float:
-    """Return the factor of ``scale_error``."""
+    """Return the factor by which ``scale_error`` multiplies depth."""
     value = digest(key, "scale_error")
     change = SCALE_LEAST + (SCALE_MOST - SCALE_LEAST) * uniform(value, 0)
     return 1.0 + severity * change * (1 if uniform(value, 1) < 0.5 else -1)
 
 
 def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Scale depth by 1 +- s k, with sign and k ~ U(0.25, 0.4) per episode."""
+    """Multiply depth by 1 +- severity * k; the sign and k ~ U(0.25, 0.4) are fixed per episode."""
     factor = scale_factor(severity, key)
     return clip_valid(views, np.where(valid(views), views, 0) * np.float32(factor), sensor)
 
 
 def depth_offset(severity: float, key: Key, width: int) -> tuple[int, int]:
-    """Return from how many pixels below and to the right ``misalignment`` takes its depth."""
+    """Return the offset (down, right) in pixels of the source from which ``misalignment`` takes
+    depth.
+    """
     value = digest(key, "misalignment")
     reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
     return round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0)), round(reach)
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Shift depth by 0.12 s W at pixels whose source is valid; edges are repeated."""
+    """Shift depth by 0.12 * severity * W; edges are repeated, and pixels whose source is invalid
+    keep their depth.
+    """
     _, height, width = views.shape
     down, across = depth_offset(severity, key, width)
     rows = np.clip(np.arange(height) + down, 0, height - 1)
@@ -70,15 +75,17 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 @lru_cache(maxsize=32)
 def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
-    """Return the depth offsets in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS + 1]."""
+    """Return a table of depth errors in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS +
+    1].
+    """
     z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
     turns = z / WIGGLE_PERIOD + phase
     return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)
 
 
 def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add 0.3 s sin(2 pi (z/P + p)), the error from harmonics of a time-of-flight camera's
-    light.
+    """Add 0.3 * severity * sin(2 pi (z / P + p)); in time-of-flight cameras, harmonics of the light
+    cause this error.
     """
     phase = uniform(digest(key, "wiggling"))
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)

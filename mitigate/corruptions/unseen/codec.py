@@ -15,12 +15,13 @@ from numba import njit
 from mitigate.corruptions.keying import Key, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-BLOCKS = (4, 8, 16, 32)  # block sides in pixels, as in the transforms of H.264 and H.265
-BLOCKS_ACROSS = 28  # number of blocks along the shorter side: 8 px at 224
-DEAD_ZONE = 0.40  # width of the dead zone as a fraction of white, at s = 1
+# possible sides of a block in pixels, as in the transforms of H.264 and H.265
+BLOCKS = (4, 8, 16, 32)
+BLOCKS_ACROSS = 28  # number of blocks along the shorter side; blocks have 8 px at 224
+DEAD_ZONE = 0.40  # width of the dead zone as a fraction of white, at severity 1
 CHROMA = 2.0  # dead zone of the colour channels, relative to the dead zone of grey
-SLICES = 14  # number of slices per frame height: macroblocks of 16 px at 224
-LOST = 0.8  # fraction of lost slices at s = 1
+SLICES = 14  # number of slices per frame height; a macroblock has 16 px at 224
+LOST = 0.8  # fraction of lost slices at severity 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
 
 
@@ -34,15 +35,17 @@ def cosines(side: int) -> np.ndarray:
 
 
 def block_side(height: int, width: int) -> int:
-    """Return the block side whose ratio to 1/28 of the frame's shorter side is nearest to 1."""
+    """Return the block side in ``BLOCKS`` that is nearest, by ratio, to 1/28 of the frame's shorter
+    side.
+    """
     target = math.log(min(height, width) / BLOCKS_ACROSS)
     return min(BLOCKS, key=lambda side: abs(math.log(side) - target))
 
 
 @lru_cache(maxsize=1)
 def opponents() -> np.ndarray:
-    """Return an orthonormal colour matrix float32 [3, 3]: grey, red - blue, and green against
-    both.
+    """Return an orthonormal colour matrix, float32 [3, 3]; its rows are grey, red minus blue, and
+    green minus red and blue.
     """
     rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
     return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
@@ -50,7 +53,9 @@ def opponents() -> np.ndarray:
 
 @njit(cache=True)
 def _both_ways(matrix, cells, spare):
-    """Replace each of the n blocks in ``cells`` [b, b, n] by matrix @ block @ matrix^T."""
+    """Replace each of the n blocks in ``cells`` ([b, b, n]), in place, by matrix @ block @
+    matrix^T.
+    """
     side, _, count = cells.shape
     for k in range(side):
         for x in range(side):
@@ -74,7 +79,7 @@ def _both_ways(matrix, cells, spare):
 
 @njit(cache=True)
 def _lose(cells, least):
-    """Set DCT coefficients below ``least`` to 0 in place, except the mean."""
+    """Set DCT coefficients whose magnitude is below ``least`` to 0, in place, except the mean."""
     mean = cells[0, 0].copy()
     flat = cells.reshape(-1)
     for i in range(flat.size):
@@ -84,9 +89,10 @@ def _lose(cells, least):
 
 @njit(cache=True)
 def _gather(view, weights, cells):
-    """Fill ``cells`` [b, b, n] with the blocks of one opponent colour of a view, uint8 [H, W, 3].
+    """Fill ``cells`` ([b, b, n]) with the blocks of one opponent colour of ``view`` (uint8 [H, W,
+    3]).
 
-    Pixels outside the view repeat its edge.
+    Blocks that extend beyond the view repeat its edge pixels.
     """
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])
@@ -122,13 +128,17 @@ def _code(views, colours, matrix, back, least, out):
 
 
 def dead_zones(severity: float, side: int) -> np.ndarray:
-    """Return the smallest DCT coefficients that remain, for each opponent colour, float32 [3]."""
+    """Return, for each opponent colour, the smallest magnitude of DCT coefficients that are kept,
+    float32 [3].
+    """
     zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
     return zones.astype(np.float32)
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Remove the DCT coefficients of blocks that lie in a dead zone of width 0.4 s."""
+    """Set those DCT coefficients of image blocks to 0 that lie in a dead zone of width 0.4 *
+    severity.
+    """
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)
     matrix, out = cosines(side), np.empty_like(views)
@@ -139,7 +149,7 @@ def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> n
 def lost_parts(
     severity: float, key: Key, views: int, height: int, width: int
 ) -> Iterator[tuple[int, slice, int]]:
-    """Yield each part of ``lost_slices``: its view, its rows and its first column."""
+    """Yield each part that ``lost_slices`` removes, as its view, its rows and its first column."""
     edges = np.rint(np.linspace(0, height, SLICES + 1)).astype(int)
     for view, stream in enumerate(view_streams(key, "lost_slices", views)):
         for number in range(SLICES):
@@ -149,8 +159,8 @@ def lost_parts(
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Replace a fraction 0.8 s of the 14 slices of every view by grey, starting at a random
-    column.
+    """Replace a fraction 0.8 * severity of the 14 slices of every view by grey, from a random
+    column to the end.
     """
     out = views.copy()
     for view, rows, start in lost_parts(severity, key, *views.shape[:3]):

@@ -18,10 +18,12 @@ from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-FATTENING = 0.08  # as a fraction of the side, at s = 1
-# half side of the square over which a flying pixel mixes, as a fraction of the side
+FATTENING = 0.08  # reach as a fraction of the shorter side, at severity 1
+# half the side of the square from which a flying pixel mixes depth, as a fraction of the shorter
+# side
 FOOTPRINT = 0.03
-BASELINE = 0.50  # baseline in metres at s = 1; a Kinect has 0.075, a ZED 0.12
+# baseline in metres at severity 1; the baseline of a Kinect is 0.075, that of a ZED 0.12
+BASELINE = 0.50
 
 _U = np.uint64
 
@@ -40,7 +42,9 @@ def _fatten(views, reach, share, z_max, out):
 
 
 def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set each pixel to the smallest depth within 0.08 s of the side, as a matching window does."""
+    """Set each pixel to the smallest depth within a distance of 0.08 * severity of the shorter
+    side, as stereo matching with a window does.
+    """
     reach = FATTENING * severity * min(views.shape[1:])
     out, whole = np.empty_like(views), math.floor(reach)
     _fatten(views, whole, np.float32(reach - whole), np.float32(sensor.z_max), out)
@@ -64,12 +68,14 @@ def _fly(views, streams, reach, least, z_max, out):
 
 
 def footprint(height: int, width: int) -> int:
-    """Return half the side of the square over which ``flying_pixels`` mixes depth, in pixels."""
+    """Return half the side, in pixels, of the square from which ``flying_pixels`` mixes depth."""
     return max(1, round(FOOTPRINT * min(height, width)))
 
 
 def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction s of pixels to random depths between the nearest and farthest around them."""
+    """Set a fraction ``severity`` of the pixels to a random depth between the nearest and farthest
+    depth around them.
+    """
     reach = footprint(*views.shape[1:])
     streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
     _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
@@ -78,7 +84,9 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 
 @njit(cache=True)
 def _shade(views, offset, side, missing, z_max, out):
-    """Remove pixels that no projector ray reaches; a ray meets the image row at x + offset / z."""
+    """Remove pixels that no projector ray reaches; the ray to column x at depth z has the position
+    x + offset / z in its row.
+    """
     width = views.shape[2]
     for v in range(views.shape[0]):
         for y in range(views.shape[1]):
@@ -96,16 +104,16 @@ def _shade(views, offset, side, missing, z_max, out):
 
 
 def projector(severity: float, key: Key, width: int) -> tuple[float, int]:
-    """Return the offset of the projector of ``edge_shadow`` in pixels at one metre, and its side
-    (1 or -1).
+    """Return the offset of the projector for ``edge_shadow``, in pixels at a depth of one metre,
+    and its side (1 or -1).
     """
     focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
     return BASELINE * severity * focal, 1 if uniform(digest(key, "edge_shadow")) < 0.5 else -1
 
 
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove pixels in the shadow of nearer surfaces, for a projector that is 0.5 s metres to the
-    side.
+    """Remove pixels in the shadow of nearer surfaces; the projector is 0.5 * severity metres to the
+    side of the camera.
     """
     offset, side = projector(severity, key, views.shape[2])
     missing, z_max, out = np.float32(sensor.missing), np.float32(sensor.z_max), np.empty_like(views)

@@ -1,4 +1,4 @@
-"""Unseen RGB corruptions of light and colour: white balance, exposure, haze, hue.
+"""Unseen RGB corruptions of light and colour: white balance, overexposure, haze and hue.
 
 Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
@@ -15,20 +15,20 @@ from mitigate.corruptions.eld import GAMMA
 from mitigate.corruptions.keying import Key, cached, digest, field, scramble, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at s = 1, and their relative spread
-CAST = 2.0  # stops between red and blue at s = 1: Afifi & Brown 2019 have 2800 to 10000 K
-TINT = 0.5  # cast between green and the other two colours, as a multiple of CAST
-HAZE_DEPTH = 1.5  # optical depth at s = 1, in places with average haze
-# pairs of correlation length (as a fraction of the side) and weight
+STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at severity 1, and their relative spread
+CAST = 2.0  # stops between red and blue at severity 1; Afifi & Brown 2019 use 2800 to 10000 K
+TINT = 0.5  # colour cast between green and the other two colours, as a multiple of CAST
+HAZE_DEPTH = 1.5  # optical depth at severity 1 where haze is average
+# pairs of a correlation length (as a fraction of the shorter side) and a weight
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))
-HAZE_UNEVEN = 0.4  # standard deviation of the haze relative to its mean
-HAZE_THIN, HAZE_THICK = 0.25, 2.5  # limits of the haze, as multiples of the mean
+HAZE_UNEVEN = 0.4  # standard deviation of haze relative to its mean
+HAZE_THIN, HAZE_THICK = 0.25, 2.5  # limits of haze, as multiples of its mean
 HAZE_COLOUR = (205, 208, 212)
-HUE_DEGREES = 180.0  # maximum rotation of the hue, at s = 1
+HUE_DEGREES = 180.0  # rotation of the hue at severity 1
 
 
 def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
-    """Map each colour channel of uint8 [V, H, W, 3] with its own uint8 [256] table."""
+    """Map each colour channel of views (uint8 [V, H, W, 3]) by its own table (uint8 [256])."""
     out = np.empty_like(views)
     for colour, table in enumerate(tables):
         out[..., colour] = table[views[..., colour]]
@@ -36,12 +36,14 @@ def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _amplified(stops: float) -> np.ndarray:
-    """Return a table uint8 [256] that adds ``stops`` of light to grey levels, clipped at white."""
+    """Return a table (uint8 [256]) that maps grey levels to levels with ``stops`` more light,
+    clipped at white.
+    """
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
 def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
-    """Return the tables of red, green and blue of ``white_balance``, each uint8 [256]."""
+    """Return the tables of ``white_balance`` for red, green and blue, each uint8 [256]."""
     angle = 2.0 * math.pi * uniform(digest(key, "white_balance"))
     warm, green = 0.5 * CAST * math.cos(angle), 0.5 * CAST * TINT * math.sin(angle)
     stops = (warm - green, green, -warm - green)
@@ -49,24 +51,30 @@ def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
 
 
 def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Apply gains of red, green and blue for a wrong light colour, fixed per episode."""
+    """Multiply red, green and blue by gains, as for a wrong light colour that is fixed per
+    episode.
+    """
     return _by_table(views, balance_tables(severity, key))
 
 
 def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
-    """Return the three equal tables of ``overexposure``, each uint8 [256]."""
+    """Return the tables of ``overexposure`` for the three colours, which are equal, each uint8
+    [256].
+    """
     spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
     return [_amplified(STOPS * spread * severity)] * 3
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply light by 2^(2 s u), with u ~ U(0.8, 1.2) per episode, and clip at white."""
+    """Multiply light by 2^(2 * severity * u), with u ~ U(0.8, 1.2) per episode, and clip it at
+    white.
+    """
     return _by_table(views, exposure_tables(severity, key))
 
 
 @cached
 def haze_density(value: int, height: int, width: int) -> np.ndarray:
-    """Return the haze divided by its mean, which is a fractal field float32 [H, W]."""
+    """Return the density of the haze relative to its mean, a fractal field (float32 [H, W])."""
     parts = [
         weight * field(scramble(value, octave), height, width, correlation)[0]
         for octave, (correlation, weight) in enumerate(HAZE_OCTAVES)
@@ -84,13 +92,13 @@ def haze_mask(value: int, severity: float, height: int, width: int) -> np.ndarra
 
 
 def haze_offset(key: Key, view: int, width: int) -> int:
-    """Return by how many columns the haze of a view is moved to the right."""
+    """Return the number of columns by which the haze is shifted to the right in a view."""
     return int(uniform(scramble(digest(key, "haze"), view)) * width)
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend each view with haze, x t + A (1 - t), as from smoke; views show different parts of the
-    field.
+    """Blend each view with haze, as from smoke: out = x * t + A * (1 - t); views show different
+    parts of the random field.
     """
     count, height, width, _ = views.shape
     out = np.empty_like(views)
@@ -103,14 +111,16 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
 
 
 def hue_degrees(severity: float, key: Key) -> float:
-    """Return the angle of ``hue_shift`` in degrees."""
+    """Return the angle in degrees by which ``hue_shift`` rotates hues."""
     sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
     return sign * HUE_DEGREES * severity
 
 
 @lru_cache(maxsize=32)
 def hue_matrix(degrees: float) -> np.ndarray:
-    """Return a rotation of colours about grey (Rodrigues), int32 [3, 3] in units of 1/4096."""
+    """Return the matrix that rotates colours about the grey axis (Rodrigues' formula), int32 [3, 3]
+    in units of 1/4096.
+    """
     angle = math.radians(degrees)
     third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
     cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
@@ -119,7 +129,9 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Rotate all hues by +-180 s degrees, with the sign fixed per episode; grey does not change."""
+    """Rotate all hues by +-180 * severity degrees, with a sign that is fixed per episode; grey does
+    not change.
+    """
     matrix = hue_matrix(hue_degrees(severity, key))
     colours = [views[..., c].astype(np.int32) for c in range(3)]
     out = np.empty_like(views)

@@ -1,4 +1,4 @@
-"""Unseen RGB corruptions by objects before the sensor: window panes, drops and scratches.
+"""Unseen RGB corruptions by objects in front of the sensor: window panes, drops and scratches.
 
 Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
@@ -15,21 +15,22 @@ from mitigate.corruptions import masks
 from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
-GHOST = 0.5  # weight of the ghost image at s = 1
-# position of the ghost image, as fractions of W, W and H
+GHOST = 0.5  # weight of the ghost image at severity 1
+# limits of the ghost image's offset: the first two are fractions of the width, the third of the
+# height
 GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04
-DROPS = 0.06  # correlation length of the surface as a fraction of the side
-BEND = 0.045  # rms displacement as a fraction of the side, at s = 1
-SCRATCHES = 14  # number of scratches at s = 1
-SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths as fractions of the side
+DROPS = 0.06  # correlation length of the wet surface as a fraction of the shorter side
+BEND = 0.045  # rms displacement as a fraction of the shorter side, at severity 1
+SCRATCHES = 14  # number of scratches at severity 1
+SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths as fractions of the shorter side
 SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
 SCRATCH_PARTS = ((SCRATCH_CORE, SCRATCH_OPACITY), (SCRATCH_GLOW, GLOW_OPACITY))
-SCRATCH_LONG = (0.3, 1.0)  # length as a fraction of the side
+SCRATCH_LONG = (0.3, 1.0)  # limits of the length as fractions of the shorter side
 SCRATCH_COLOUR = (226, 226, 222)
 
 
 def ghost_offset(key: Key, height: int, width: int) -> tuple[int, int]:
-    """Return the offset of the ghost image in pixels, down and to the right."""
+    """Return the offset (down, right) of the ghost image in pixels."""
     value = digest(key, "ghosting")
     away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
     across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))
@@ -42,7 +43,9 @@ def ghost_weight(severity: float) -> int:
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend (1 - a) x + a x' with a = 0.5 s, where x' is the shifted image with repeated edges."""
+    """Blend each view x with a shifted copy x' (with repeated edges): out = (1 - a) * x + a * x',
+    where a = 0.5 * severity.
+    """
     _, height, width, _ = views.shape
     down, across = ghost_offset(key, height, width)
     rows = np.clip(np.arange(height) + down, 0, height - 1)
@@ -54,9 +57,11 @@ def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.n
 
 @njit(cache=True)
 def displaced(view, down, right, out):
-    """Displace a view: out[y, x] = view at (y + down, x + right), bilinear, with repeated edges.
+    """Displace a view: out[y, x] is the view at (y + down, x + right), interpolated bilinearly,
+    with repeated edges.
 
-    ``view`` is uint8 [H, W, 3]. Displacements are float32 [H, W] in pixels, rounded down to 1/256.
+    ``view`` is uint8 [H, W, 3]. The displacements are float32 [H, W], in pixels, and are rounded
+    down to multiples of 1/256.
     """
     height, width, _ = view.shape
     for y in range(height):
@@ -73,8 +78,8 @@ def displaced(view, down, right, out):
 
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertical and horizontal slopes of a random surface, float32 [H, W], with joint rms
-    1.
+    """Return the vertical and horizontal slopes of a random surface, both float32 [H, W]; their
+    joint rms is 1.
     """
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
@@ -83,8 +88,8 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 s of the
-    side.
+    """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 *
+    severity of the shorter side.
     """
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
@@ -96,13 +101,13 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
 
 
 def scratch_strength(severity: float, number: int) -> float:
-    """Return the visibility of a scratch, in [0, 1]."""
+    """Return the visibility of a scratch as a number in [0, 1]."""
     return min(max(SCRATCHES * severity - number, 0.0), 1.0)
 
 
 def scratch_line(value: int, number: int) -> tuple[float, float, float, float]:
-    """Return the centre of a scratch (row and column as fractions of the image), its angle in
-    radians and half its length in image sides.
+    """Return the centre of a scratch (row and column as fractions of the image size), its angle in
+    radians, and half its length as a fraction of the shorter side.
     """
     draw = [uniform(value, 5 * number + part) for part in range(4)]
     half = 0.5 * (SCRATCH_LONG[0] + (SCRATCH_LONG[1] - SCRATCH_LONG[0]) * draw[3])
@@ -110,8 +115,8 @@ def scratch_line(value: int, number: int) -> tuple[float, float, float, float]:
 
 
 def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the distances to a scratch's line and beyond its ends, float64 [H, W], in image
-    sides.
+    """Return, for each pixel, the distances across a scratch's line and along it beyond its ends,
+    float64 [H, W], as fractions of the shorter side.
     """
     row, column, angle, half = scratch_line(value, number)
     side = min(height, width)
@@ -137,7 +142,7 @@ def scratch_mask(value: int, severity: float, height: int, width: int) -> np.nda
 
 
 def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Draw the first 14 s scratches of the episode as bright lines with a glow."""
+    """Draw the first 14 * severity scratches of the episode as bright lines with a glow."""
     height, width = views.shape[1:3]
     mask = scratch_mask(digest(key, "scratches"), severity, height, width)
     out = np.empty_like(views)

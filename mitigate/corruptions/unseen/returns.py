@@ -1,4 +1,5 @@
-"""Unseen depth corruptions of the returned signal: ripple, range limit, mismatches, glossy floors.
+"""Unseen depth corruptions of the signal that returns to the sensor: ripple, range limit,
+mismatches and glossy floors.
 
 Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
 pixels in the same way.
@@ -25,21 +26,23 @@ from mitigate.corruptions.keying import (
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.calibration import clip_valid, valid
 
-RIPPLE = 0.06  # per metre, at s = 1; the standard deviation of z is 0.06 z^2
-RIPPLE_CORRELATION = 0.04  # as a fraction of the side
-RANGE_LEFT = 0.10  # fraction of z_max that remains at s = 1
-WRONG = 0.30  # fraction of pixels with wrong depth at s = 1
-SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image side
-GLOSS_CORRELATION = 0.08  # as a fraction of the side
-FLOOR = 0.92  # pixels farther below the camera than this fraction of its height are floor
-# factor on the floor's depth, for a mirrored ceiling that is twice as high as the camera
+RIPPLE = 0.06  # amplitude per metre at severity 1; the standard deviation of z is 0.06 z^2
+RIPPLE_CORRELATION = 0.04  # correlation length as a fraction of the shorter side
+RANGE_LEFT = 0.10  # fraction of z_max that remains at severity 1
+WRONG = 0.30  # fraction of pixels with wrong depth at severity 1
+SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image's shorter side
+GLOSS_CORRELATION = 0.08  # correlation length as a fraction of the shorter side
+# a pixel is floor if it is farther below the camera than this fraction of the camera's height
+FLOOR = 0.92
+# ratio of the depth of the mirrored ceiling to that of the floor, if the ceiling is twice as high
+# as the camera
 UPSIDE_DOWN = 3.0
 
 _U = np.uint64
 
 
 def ripple_offsets(key: Key, views: int, height: int, width: int) -> list[tuple[int, int]]:
-    """Return by how many pixels the field of each view is moved, down and to the right."""
+    """Return the shift (down, right) of the random field in each view, in pixels."""
     return [
         (int(uniform(int(stream), 0) * height), int(uniform(int(stream), 1) * width))
         for stream in view_streams(key, "ripple_offset", views)
@@ -47,8 +50,8 @@ def ripple_offsets(key: Key, views: int, height: int, width: int) -> list[tuple[
 
 
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add waves to walls: the error is 0.06 s z^2 F for a random field F. The field F is shifted
-    for every view and frame.
+    """Add waves to walls: the error is 0.06 * severity * z^2 * F for a random field F, which is
+    shifted for every view and frame.
     """
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
@@ -61,7 +64,7 @@ def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) ->
 
 
 def range_limit(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove depth beyond z_max 0.1^s, from where too little light returns to the camera."""
+    """Remove depth beyond z_max * 0.1^severity, because too little light returns from there."""
     limit = np.float32(sensor.z_max * RANGE_LEFT**severity)
     near = clip_valid(views, views, sensor)
     return np.where(valid(views) & (near > limit), np.float32(sensor.missing), near)
@@ -80,12 +83,14 @@ def _mismatch(views, streams, cell, least, z_max, out):
 
 
 def speckle_side(height: int, width: int) -> int:
-    """Return the side of a patch of ``mismatches``, in pixels."""
+    """Return the side of the patches of ``mismatches`` in pixels."""
     return max(1, round(SPECKLE * min(height, width)))
 
 
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction 0.3 s of the pixels, in patches of 0.02 of the side, to random depths."""
+    """Set a fraction 0.3 * severity of the pixels to random depths; they form square patches whose
+    side is 0.02 of the image's shorter side.
+    """
     cell = speckle_side(*views.shape[1:])
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
     least = _U(round(WRONG * severity * 2**32))
@@ -94,9 +99,10 @@ def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
 
 
 def below_camera(views: np.ndarray) -> np.ndarray:
-    """Return the distance of pixels below a level camera (<= 0 above it), float32 [V, H, W].
+    """Return how far each pixel is below a level camera, float32 [V, H, W]; values are <= 0 for
+    pixels above the camera.
 
-    The unit is half the image width at a depth of one metre.
+    The unit is half the width that the image covers at a depth of one metre.
     """
     _, height, width = views.shape
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
@@ -104,12 +110,12 @@ def below_camera(views: np.ndarray) -> np.ndarray:
 
 
 def gloss_offset(key: Key, view: int, width: int) -> int:
-    """Return by how many columns the gloss of a view is moved to the right."""
+    """Return the number of columns by which the glossy areas are shifted to the right in a view."""
     return int(uniform(scramble(digest(key, "glossy_floor"), view)) * width)
 
 
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction s of the floor to the depth of the room that the floor mirrors."""
+    """Set a fraction ``severity`` of the floor to the depth of the mirror image in the floor."""
     _, height, width = views.shape
     value, out, depth = (
         digest(key, "glossy_floor"),

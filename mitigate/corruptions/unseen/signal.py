@@ -1,4 +1,4 @@
-"""Unseen RGB corruptions of sensor read-out: rolling shutter, flicker and bit errors.
+"""Unseen RGB corruptions during sensor read-out: rolling shutter, flicker and bit errors.
 
 Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
@@ -15,13 +15,13 @@ from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import displaced
 
-WOBBLE = 0.05  # maximum shift as a fraction of W, at s = 1
-WOBBLE_WAVES = (1.0, 2.5)  # number of waves per frame height
-FLICKER = 0.8  # change of brightness at s = 1
-# number of bands per frame height: the light flickers at 100 Hz, and the sensor reads out a frame
-# in 1/50 to 1/25 s
+WOBBLE = 0.05  # maximum shift as a fraction of the image width, at severity 1
+WOBBLE_WAVES = (1.0, 2.5)  # limits of the number of waves per frame height
+FLICKER = 0.8  # maximum relative change of brightness at severity 1
+# limits of the number of bands per frame height, for light that flickers at 100 Hz and a sensor
+# that reads out a frame in 1/50 to 1/25 s
 BANDS = (2.0, 4.0)
-IMPULSES = 0.3  # fraction of the pixels at s = 1
+IMPULSES = 0.3  # fraction of the pixels that change at severity 1
 
 _U = np.uint64
 
@@ -31,7 +31,7 @@ def _between(value: int, counter: int, ends: tuple[float, float]) -> float:
 
 
 def wobble(severity: float, key: Key, height: int, width: int) -> np.ndarray:
-    """Return the shift of each row of ``rolling_shutter`` in pixels, float32 [H]."""
+    """Return the shift of each image row for ``rolling_shutter`` in pixels, float32 [H]."""
     waves = _between(digest(key, "rolling_shutter"), 0, WOBBLE_WAVES)
     phase = uniform(digest(key, "rolling_shutter", frame=True))
     row = (np.arange(height) + 0.5) / height
@@ -40,7 +40,9 @@ def wobble(severity: float, key: Key, height: int, width: int) -> np.ndarray:
 
 
 def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Shift each row by 0.05 s W sin(...), as if the camera vibrated during read-out."""
+    """Shift each image row sideways by 0.05 * severity * W * sin(...), as if the camera vibrated
+    during read-out.
+    """
     _, height, width, _ = views.shape
     right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
     level, out = np.zeros_like(right), np.empty_like(views)
@@ -50,7 +52,7 @@ def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) 
 
 
 def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray:
-    """Return the gain of each row of ``flicker_bands``, int32 [V, H] in units of 1/4096."""
+    """Return the gain of each image row for ``flicker_bands``, int32 [V, H] in units of 1/4096."""
     bands = _between(digest(key, "flicker_bands"), 0, BANDS)
     value = digest(key, "flicker_bands", frame=True)
     phase = np.array([uniform(value, view) for view in range(views)])
@@ -60,14 +62,18 @@ def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray
 
 
 def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Scale the brightness of each row by 1 + 0.8 s cos(...), as from lamps on mains power."""
+    """Multiply the brightness of each image row by 1 + 0.8 * severity * cos(...), as under lamps on
+    mains power.
+    """
     gain = band_gains(severity, key, *views.shape[:2])[:, :, None, None]
     return np.minimum((views * gain + 2048) >> 12, 255).astype(np.uint8)
 
 
 @njit(cache=True)
 def _strike(views, streams, least, out):
-    """Set colour values of pixels [V, P, 3] to 0 or 255 if their 32-bit hash is below ``least``."""
+    """Set the colours of pixels [V, P, 3] to 0 or 255 if the 32-bit hash of the pixel is below
+    ``least``.
+    """
     for v in range(views.shape[0]):
         for i in range(views.shape[1]):
             word = mix(streams[v], _U(i))
@@ -78,13 +84,15 @@ def _strike(views, streams, least, out):
 
 
 def impulse_limit(severity: float) -> int:
-    """Return the 32-bit hash below which ``impulse_noise`` changes a pixel."""
+    """Return the threshold for the 32-bit hash of a pixel, below which ``impulse_noise`` changes
+    it.
+    """
     return round(IMPULSES * severity * 2**32)
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set a fraction 0.3 s of the pixels of every frame to 0 or 255, separately per colour
-    channel.
+    """Set the colours of a fraction 0.3 * severity of the pixels of every frame to 0 or 255,
+    separately per channel.
     """
     out, count = np.empty_like(views), len(views)
     least = _U(impulse_limit(severity))

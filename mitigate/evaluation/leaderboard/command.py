@@ -29,11 +29,11 @@ from mitigate.evaluation.rows import Row
 FOLDER = "docs/leaderboard"
 OUT = Path("runs/leaderboard.html")
 NOT_COMPUTED = ("sensors", "training_data", "link", "version")
-CLOSE = 1e-5  # tolerance, because entries round figures to six digits
+CLOSE = 1e-5  # tolerance, because figures in entries are rounded to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return the rows in the file that ``entry`` names, including rows of other agents.
+    """Return all rows in the file that ``entry`` names, including those of other agents.
 
     Raises:
         FileNotFoundError: the file is not available.
@@ -42,7 +42,7 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
     file = entry.rows["file"]
     path = find(file)
     if file and path.exists() and not path.is_file():
-        raise ValueError(f"{entry.name} must name one file of rows, got {file}, not a file.")
+        raise ValueError(f"{entry.name} must name one file of rows, but {file} is not a file.")
     if not file or not path.exists():
         raise FileNotFoundError(
             f"The rows of {entry.name} are not available ({file or 'the entry names no file'}): "
@@ -52,7 +52,7 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
 
 
 def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
-    """Return the differences between ``entry`` and the figures of its rows, one line each."""
+    """Return one line per difference between ``entry`` and the figures computed from its rows."""
     again = entry_of(
         _rows_behind(entry, rows),
         entry.name,
@@ -83,13 +83,13 @@ def _equal(one: Any, other: Any) -> bool:
 
 
 def show(paths: Sequence[Path | str] = (), out: Path | str = OUT) -> Path:
-    """Write the page of the entries in files and folders; return its path."""
+    """Write the page of the entries in ``paths`` (files or folders), and return its path."""
     document.check_out(out)
     return document.write(render([load(file) for file in _files(paths)]), out)
 
 
 def render(entries: Sequence[LeaderboardEntry]) -> str:
-    """Return the report of the rows of ``entries``, sorted by mean SR (highest first).
+    """Return the leaderboard page of ``entries``, sorted by mean SR (highest first).
 
     Figures are computed from the rows and not taken from the entries. Raises as :func:`rows_of`.
     """
@@ -126,8 +126,9 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
 
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
-    """Return the files of entries in ``paths``, or in ``docs/leaderboard`` if there are no
-    paths.
+    """Return the entry files in ``paths``.
+
+    If ``paths`` is empty, return the files in ``docs/leaderboard``.
     """
     folders = [Path(path) for path in paths] or [find(FOLDER)]
     files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
@@ -137,7 +138,7 @@ def _files(paths: Sequence[Path | str]) -> list[Path]:
 
 
 def check(paths: Sequence[Path | str] = ()) -> list[str]:
-    """Print for each entry whether its rows give the same figures; return the problems."""
+    """Print whether the rows of each entry give the same figures; return the differences."""
     wrong = []
     for file in _files(paths):
         name, verdict, omitted = str(file), "not a valid entry", ""
@@ -173,7 +174,7 @@ def add(
         **values: severity, split, sensors, training_data and link, as in ``entry_of``.
 
     Raises:
-        ValueError: the file exists, or ``entry_of`` raises it.
+        ValueError: the file exists already, or ``entry_of`` rejects the rows.
     """
     stem = re.sub(r"[^\w.-]+", "-", name).strip(".-")
     file = Path(folder) / f"{stem or 'entry'}.json"
@@ -190,8 +191,9 @@ def add(
 
 @command("leaderboard")
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run from the command line; return the exit status (2 for invalid input, 1 for a wrong
-    entry).
+    """Run from the command line, and return the exit status.
+
+    The status is 2 for invalid input and 1 for a wrong entry.
     """
     options = vars(_parser().parse_args(argv))
     what = options.pop("what")

@@ -24,7 +24,8 @@ from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
 LARGEST = 1 << 18  # maximum bytes of an entry's file; an entry with 34 corruptions has 5,000
-GREATEST_PRS = 100.0  # a PRS is a ratio that grows without bound if the clean value is near 0
+# maximum PRS in an entry; the ratio grows without bound if the clean value is near 0
+GREATEST_PRS = 100.0
 _REWRITE = "Write it again with `mitigate leaderboard add`."
 _NUMBERS = re.compile(r"\[\n\s+([\d\s.,eE+nul-]*?)\s*\n\s+\]")
 _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
@@ -32,7 +33,7 @@ _STRICT = ConfigDict(strict=True, extra="forbid", allow_inf_nan=False)
 
 def _is_printable(text: str) -> str:
     if not text.isprintable() or text.isspace():
-        raise ValueError("it must be a line of printable signs")
+        raise ValueError("it must be one line of printable characters")
     return text
 
 
@@ -84,7 +85,7 @@ _Rates = Annotated[_Conditions, AfterValidator(_have_clean)]
 
 @with_config(_STRICT)
 class Agent(TypedDict):
-    """The content hash of an agent (``agents/fingerprint.py``), and the seed of its rows."""
+    """The content hash of an agent (``agents/fingerprint.py``), and the seed in its rows."""
 
     agent: Annotated[str, Field(pattern=r"^[A-Za-z0-9_.-]{1,64}$")]
     seed: Annotated[int, Field(ge=-(2**63), le=2**63)]
@@ -92,7 +93,7 @@ class Agent(TypedDict):
 
 @with_config(_STRICT)
 class Source(TypedDict):
-    """The file of rows (a relative path, or empty), its sha256 and the number of rows."""
+    """The path of the row file (relative, or empty), its sha256 and the number of rows."""
 
     file: Annotated[_Link, AfterValidator(_is_inside)]
     sha256: Annotated[str, Field(pattern="^[0-9a-f]{64}$")]
@@ -105,16 +106,17 @@ class LeaderboardEntry:
 
     Attributes:
         name: heading.
-        agents: content hash (``agents/fingerprint.py``) of the agent of each training seed,
-            with the seed of its rows.
+        agents: for each training seed, the content hash of its agent (``agents/fingerprint.py``)
+            and the seed in its rows.
         sensors: one line per sensor.
         training_data: training data of the agent, in the words of the submitter.
         episodes: number of episodes per condition.
         listed: hash of the episode ids; a table compares only entries with the same episodes.
-        scores: clean, mean and PRS values, [value, low, high] with 95 % intervals, or None.
-        SR, SPL: the same values per condition.
-        rows: "file" (relative or empty), "sha256" and "count" of the rows from which the figures
-            are computed.
+        scores: the clean, mean and PRS values by title. Each entry is [value, low, high] with the
+            bounds of the 95 % interval, or None.
+        SR, SPL: the success rate and SPL of each condition, in the same format.
+        rows: the rows from which the figures are computed: "file" (a relative path, or empty),
+            "sha256" and "count".
         link: address of the weights or the paper.
     """
 
@@ -141,16 +143,16 @@ class LeaderboardEntry:
         """Write the entry to ``path`` as JSON, atomically.
 
         Raises:
-            ValueError: the entry would be rejected by :func:`load`.
+            ValueError: :func:`load` would reject the entry.
         """
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
         _validated(_ADAPTER, text, f"{path}: ")
-        with atomic_text(path) as file:  # writes each list of numbers on one line
+        with atomic_text(path) as file:  # the substitution puts each list of numbers on one line
             file.write(_NUMBERS.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n")
         return Path(path)
 
     def __str__(self) -> str:
-        """Return one line per score, with success rates in %."""
+        """Return a text with one line per score; success rates are in %."""
         size = f"{counted(self.episodes, 'episode')} of {self.split}"
         lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
         for title, numbers in self.scores.items():
@@ -167,7 +169,7 @@ def load(path: Path | str) -> LeaderboardEntry:
     Raises:
         FileNotFoundError: the file does not exist.
         ValueError: the file has more than :data:`LARGEST` bytes, a key is missing or unknown, or a
-            value has a wrong type, length or range; the message names file and key.
+            value has a wrong type, length or range. The message names the file and the key.
     """
     path = Path(path)
     if not output.is_regular(path):
@@ -188,7 +190,10 @@ _ADAPTER = TypeAdapter(LeaderboardEntry)
 
 
 def _validated(adapter: TypeAdapter, text: str, where: str, key: str = "it") -> Any:
-    """Return the value in a JSON text; if it is invalid, raise a ValueError that names the key."""
+    """Return the value that a JSON text contains.
+
+    If the value is invalid, raise a ValueError that names the key.
+    """
     try:
         return adapter.validate_json(text)
     except ValidationError as error:

@@ -1,4 +1,4 @@
-"""Compute an entry from the rows of an agent."""
+"""Compute a leaderboard entry from the rows of an agent."""
 
 from __future__ import annotations
 
@@ -27,19 +27,19 @@ def entry_of(
     file: str = "",
     **texts: Any,
 ) -> LeaderboardEntry:
-    """Return an entry from the rows of the agent ``name``, clean and at one severity.
+    """Return the leaderboard entry of the agent ``name`` at one severity.
 
     Args:
         rows: result rows, which may include other agents, splits and severities.
         name: name of the agent in the rows.
         severity: severity of the corruptions.
-        split: split of the rows; None if they have only one.
+        split: name of the split; it may be None if the rows contain only one split.
         file: path of the rows, relative to the current folder.
         **texts: sensors, training_data and link of the entry.
 
     Raises:
-        ValueError: There are no such rows; they mix several splits, lists, suites, rules, or agents
-            that are not training seeds of one column; or a condition lacks episodes.
+        ValueError: No rows match; the rows mix several splits, episode lists, suites, rules, or
+            agents that are not training seeds of one column; or a condition lacks episodes.
     """
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
@@ -47,8 +47,8 @@ def entry_of(
     columns = label_columns((row["name"], row["agent"], row["seed"]) for row in chosen)
     if len(tables) > 1 or len(columns) > 1:
         raise ValueError(
-            f"The rows of {name} are of several splits, lists, suites, rules or agents: "
-            f"{'; '.join(sorted(tables))}. Name a split, or a file of one."
+            f"The rows of {name} belong to several splits, lists, suites, rules or agents: "
+            f"{'; '.join(sorted(tables))}. Name a split, or a file with the rows of only one."
         )
     for part in parts:
         _check_whole(name, chosen, part)
@@ -70,8 +70,9 @@ def entry_of(
 
 
 def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
-    """Describe seeds and conditions of the entry's agent in ``rows`` that the entry omits, or
-    return "".
+    """Return a text on the seeds and conditions in ``rows`` that the entry omits.
+
+    Only rows of the entry's agent count. If the entry omits nothing, return "".
     """
     comparable = [
         row
@@ -85,10 +86,10 @@ def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
 
 
 def rows_sha(rows: Iterable[Row]) -> str:
-    """Return a sha256 of rows that does not depend on their order and file format.
+    """Return a sha256 of rows that depends on neither their order nor the file format.
 
-    The hash is computed from their JSON with sorted keys, one row per line, in the order of their
-    identities.
+    Each row is written as one line of JSON with sorted keys. The lines are hashed in the order of
+    the rows' identities.
     """
     digest = hashlib.sha256()
     for row in sorted(rows, key=lambda row: tuple(map(str, identity(row)))):
@@ -97,10 +98,10 @@ def rows_sha(rows: Iterable[Row]) -> str:
 
 
 def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) -> list[Row]:
-    """Return the rows of the agent ``name``, clean or at ``severity``.
+    """Return the clean rows of the agent ``name`` and its rows at ``severity``.
 
     Raises:
-        ValueError: There are no such rows.
+        ValueError: The agent has no rows at ``severity``.
     """
     rows = list(rows)
     if name not in (names := {row["name"] for row in rows}):
@@ -135,7 +136,7 @@ def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
 
 
 def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
-    """Return the scores by title, and SR and SPL of each condition."""
+    """Return the scores by title, and the SR and SPL of each condition."""
     figures: dict[str, dict[str, Numbers]] = {"scores": {}, "SR": {}, "SPL": {}}
     scores = figures["scores"]
     for part in parts:
@@ -156,10 +157,10 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
 
 
 def _mean_sr(part: Section, column: str) -> Numbers:
-    """Return the mean SR over the measured corruptions of frames in the suite.
+    """Return the mean SR over the measured frame corruptions of the suite.
 
-    Corrupted instructions are excluded, so that entries with and without them can be compared. If
-    no frames were corrupted, the mean is over all measured corruptions.
+    Corruptions of instructions are excluded, so that entries with and without them can be compared.
+    If no frame corruption was measured, the mean is over all measured corruptions.
     """
     frames = sorted(FRAMES.intersection(part.corruptions))
     mixed = 0 < len(frames) < len(part.corruptions)

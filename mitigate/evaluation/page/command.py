@@ -1,9 +1,9 @@
 """Write result rows as one HTML file: ``mitigate report ROWS... --out report.html``.
 
-The command accepts row files, and run or sweep folders that may be incomplete. The page is one file
-and needs no network. It has sortable tables, heatmaps whose cells list their episodes, and curves.
-With ``--walk base=checkpoints/base``, agents run some episodes again, and the page draws their
-trajectories.
+ROWS are row files, or folders of runs or sweeps, which may be incomplete. The page is one file and
+needs no network. The page has sortable tables, heatmaps whose cells list their episodes, and
+curves. With ``--walk base=checkpoints/base``, agents run some episodes again, and the page draws
+their trajectories.
 """
 
 from __future__ import annotations
@@ -18,7 +18,9 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-MOST_WALKS = 200  # maximum episodes per page (heuristic): each adds a picture of about 100 KB
+# maximum number of episodes with trajectories per page (heuristic); each adds a picture of about
+# 100 KB
+MOST_WALKS = 200
 
 
 def run(
@@ -37,8 +39,8 @@ def run(
         paths: row files or folders.
         out: path of the page.
         title: heading of the page.
-        walk: pairs (name in the rows, weights) of agents whose trajectories are drawn, with the
-            baseline first.
+        walk: pairs (name in the rows, weights) of the agents whose trajectories are drawn. The
+            baseline comes first.
         walks: number of episodes whose trajectories are drawn.
         seed: corruption seed for these episodes, which must occur in the rows.
         options: options of ``mitigate evaluate``, such as "split=val_seen".
@@ -52,7 +54,7 @@ def run(
     from mitigate.evaluation.page import document
     from mitigate.evaluation.page.document import report
 
-    document.check_out(out)  # checked before the rollouts, which take minutes
+    document.check_out(out)  # checked first, because the rollouts take minutes
     if options and not walk:
         raise ValueError(
             f"There is no file {options[0]}, and options apply only to agents that run episodes. "
@@ -158,7 +160,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def written(page: Path) -> str:
-    """Return a text with the path and the size of a page."""
+    """Return a text that states the path and the size of a page."""
     return f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)"
 
 

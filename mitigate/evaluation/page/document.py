@@ -1,8 +1,8 @@
 """Write the page as one HTML file that contains all its styles, scripts and data.
 
-The contents of rows are data, which the scripts insert as text. Row data cannot close its HTML
-element, because ``<`` is escaped. The page's content security policy allows only the scripts and
-styles that are written here.
+The page embeds the rows as data, and its scripts insert this data only as text. The data cannot
+close the HTML element that contains it, because ``<`` is escaped. The page's content security
+policy allows only the scripts and styles that this module writes.
 """
 
 from __future__ import annotations
@@ -31,13 +31,15 @@ from mitigate.evaluation.sections import sections
 
 ASSETS = Path(__file__).parent / "assets"
 SUFFIXES = (".html", ".htm")
-MOST_NUMBERS = 50_000  # maximum cells and differences in a page (heuristic; a minute of work)
-LARGEST_PAGE = 1 << 26  # maximum characters of a page (heuristic; the episodes have up to 6 MB)
+# maximum number of values and differences in a page (heuristic; they take a minute to compute)
+MOST_NUMBERS = 50_000
+# maximum number of characters of a page (heuristic; the episodes take up to 6 MB of them)
+LARGEST_PAGE = 1 << 26
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 
 
 def _page(data: dict[str, Any], packed: str) -> str:
-    """Return the HTML page with ``data``, which the scripts read, and the ``packed`` episodes."""
+    """Return the HTML page; its scripts read ``data`` and the ``packed`` episodes."""
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
     script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
@@ -75,13 +77,16 @@ def write(text: str, out: Path | str) -> Path:
 
 
 def _filled(frame: str, values: dict[str, str]) -> str:
-    """Return ``frame`` with each ``%NAME%`` replaced once; replacements are not scanned again."""
+    """Return ``frame`` with each ``%NAME%`` replaced by its value.
+
+    The inserted values are not searched for further names.
+    """
     pieces = frame.split("%")
     return "".join(values.get(piece, piece) for piece in pieces)
 
 
 def _embedded(data: Any) -> str:
-    """Return JSON that an HTML parser reads as a single text, without tags."""
+    """Return ``data`` as JSON that an HTML parser reads as text, without any tags."""
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
 

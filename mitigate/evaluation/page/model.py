@@ -1,7 +1,8 @@
-"""Compute the page's content as plain data: sections, differences, curves and episodes.
+"""Compute the content of the HTML report as plain data.
 
-The scripts of the page read this data as JSON and draw it. A number is ``[value, low, high]`` with
-its 95 % interval, or None if nothing was measured.
+The data consists of sections, differences, curves and episodes. The scripts of the page read it as
+JSON and draw it. A number is ``[value, low, high]`` with the bounds of its 95 % interval, or None
+if nothing was measured.
 """
 
 from __future__ import annotations
@@ -19,8 +20,9 @@ from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
-BASELINES = 12  # number of first columns that can be the baseline (heuristic)
-LEAST_VALUES = 10  # values of a column that take as long as its fixed cost (heuristic)
+BASELINES = 12  # the first columns, up to this number, can be chosen as baseline (heuristic)
+# number of values that take as long to compute as the fixed cost of a column (heuristic)
+LEAST_VALUES = 10
 DIGITS = 6
 CLEAN = "clean"
 Numbers = list[Any] | None
@@ -29,12 +31,12 @@ Numbers = list[Any] | None
 def section_data(section: Section) -> dict[str, Any]:
     """Return the page's data of one section, except its episodes.
 
-    ``columns`` are the agents and ``measures`` the columns of the table. ``values[c][m]`` is the
-    number for column c and measure m, with marks as a fourth entry if needed. ``corruptions`` are
-    the rows of the heatmap, starting with clean. ``cells[c][k]`` is [SR, SPL, number of episodes,
-    fraction of the column's clean SR, fraction of its clean SPL]. ``pairs["i-j"]`` are the
-    differences of column i from column j, for i > j and j among the first ``baselines``, or None
-    without a common seed.
+    ``columns`` lists the agents. ``measures`` lists the quantities that the table shows per agent.
+    ``values[c][m]`` is the number for agent c and measure m; a fourth entry holds marks such as
+    ``*``. ``corruptions`` lists the rows of the heatmap, starting with clean. ``cells[c][k]``
+    describes corruption k: [SR, SPL, number of episodes, fraction of the agent's clean SR, fraction
+    of its clean SPL]. ``pairs["i-j"]`` holds the differences of agent i from agent j, where i > j
+    and j < ``baselines``. The entry is None if the two agents have no common seed.
     """
     grid = section.grid
     values = [_values(section, column) for column in section.columns]
@@ -68,7 +70,7 @@ def section_data(section: Section) -> dict[str, Any]:
 
 
 def number_count(section: Section) -> int:
-    """Return about how many values and differences of values the page has for a section."""
+    """Estimate how many values and differences the page shows for a section."""
     columns = len(section.columns)
     values = len(_measures(section)) + len(section.corruptions)
     return columns * (1 + min(columns, BASELINES)) * max(values, LEAST_VALUES)
@@ -85,12 +87,14 @@ def numbers(estimate: Estimate | None) -> Numbers:
 
 
 def has_width(values: Sequence[Any]) -> bool:
-    """Return whether each number has either an interval of nonzero width or no interval at all."""
+    """Return False if a number [value, low, high] has an interval of zero width."""
     return None in values[1:3] or values[2] - values[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
-    """Return ``x`` rounded to ``DIGITS`` digits, or unchanged if rounding would change the page.
+    """Return ``x`` rounded to ``DIGITS`` digits.
+
+    If rounding would change the number that the page shows, return ``x`` unchanged.
 
     The page shows percentages with one digit, and other values with two digits.
     """
@@ -131,7 +135,10 @@ def _column(section: Section, column: str) -> dict[str, Any]:
 
 
 def _prs_places(section: Section) -> list[tuple[str, str]]:
-    """Return the (block or half, metric) pairs that have a PRS, in the order of the table."""
+    """Return the pairs (part, metric) that have a PRS, in the order of the table.
+
+    A part is a block of corruptions, or its validation or test part.
+    """
     parted = {block: [block, *section.halves.get(block, {})] for block in section.blocks}
     return [(part, metric) for parts in parted.values() for part in parts for metric in METRICS]
 
@@ -182,16 +189,16 @@ def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any
 
 
 def _single_prs(section: Section, column: str, name: str, metric: str) -> float | None:
-    """Return the PRS of one corruption, or None if it has too few episodes for a PRS."""
+    """Return the PRS of one corruption, or None if too few episodes were measured."""
     parts = section.grid.retention([column], [name], section.severity, METRICS[metric])
     return None if parts is None or math.isnan(parts[0].prs) else shortened(parts[0].prs)
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return the differences of all columns from each of the first columns.
+    """Return the differences of each column from the columns that can be the baseline.
 
-    The differences are paired over common episodes and common seeds, whose corruptions have the
-    same keys.
+    The differences are paired over common episodes and common seeds. With a common seed, both
+    columns met corruptions with the same random keys.
     """
     pairs: dict[str, Any] = {}
     for j, second in enumerate(section.columns[:BASELINES]):
@@ -241,7 +248,7 @@ def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, An
 
 
 def curve_figures(parts: Sequence[Section]) -> list[dict[str, Any]]:
-    """Return a figure for each grid in ``parts`` that has a corruption at two or more severities.
+    """Return a figure for each grid that has results for a corruption at two or more severities.
 
     Each item of ``panels[p]["lines"]`` has "column", "count" and "points" [severity, SR, low,
     high].
@@ -267,20 +274,21 @@ def _line(curve: Curve) -> dict[str, Any]:
     return {"column": curve.column, "count": curve.count, "points": points_data}
 
 
-MOST_EPISODES = 500_000  # maximum total of cell episodes in one page (heuristic): 4 MB
+# maximum number of episodes in one page, summed over all cells (heuristic); they take 4 MB
+MOST_EPISODES = 500_000
 MISSING = 65_535
-SCALE = 1000  # factor by which success and SPL are multiplied
+SCALE = 1000  # factor that converts success and SPL to integers
 
 
 class Packed:
     """The episodes of cells from several grids, packed for the page.
 
     Attributes:
-        most: maximum total of cell episodes.
+        most: maximum number of episodes, summed over all cells.
         count: number of packed episodes.
-        grids: for each grid, the ids of its episodes and the offset of each cell in the data, by
-            "column|corruption|severity|seed".
-        left_out: cells that are not packed because of ``most``, with all their seeds.
+        grids: for each grid, the ids of its episodes, and the offset of each cell in the packed
+            data. The key of a cell is "column|corruption|severity|seed".
+        left_out: cells that are not packed, because the number of episodes would exceed ``most``.
     """
 
     def __init__(self, most: int = MOST_EPISODES) -> None:
@@ -288,13 +296,13 @@ class Packed:
         self.count = 0
         self.grids: list[dict[str, Any]] = []
         self.left_out: set[tuple[int, str]] = set()
-        self._numbers: dict[int, int] = {}  # index of each grid, by its id()
+        self._numbers: dict[int, int] = {}  # maps the id() of each grid to its index
         self._parts: list[np.ndarray] = []
 
     def add(self, section: Section) -> int:
         """Pack the cells of ``section`` that are not packed yet; return the index of its grid.
 
-        Either all seeds of a cell are packed, or none if they exceed the limit.
+        If the seeds of a cell together exceed the limit, none of them is packed.
         """
         grid = section.grid
         number = self._numbers.setdefault(id(grid), len(self.grids))

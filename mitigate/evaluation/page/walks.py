@@ -1,8 +1,8 @@
-"""Run some episodes of the rows again, and draw their trajectories from above for the page.
+"""Run some evaluated episodes again, and draw their trajectories on floor plans for the page.
 
-Rows hold measures but no trajectories. Therefore some episodes of agents with available weights are
-run again, with the keys of the rows. The measures are compared with the rows, and the page reports
-differences.
+Result rows contain measures but no trajectories. Therefore agents whose weights are available run
+some episodes again, with the same random keys as in the rows. The new measures are compared with
+the rows, and the page reports differences.
 """
 
 from __future__ import annotations
@@ -28,27 +28,27 @@ from mitigate.evaluation.trajectories import DPI, Walk, draw_episode, run_agents
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
 
-KINDS = {  # names of outcomes, by success of the first and the last agent
+KINDS = {  # maps (success of the first agent, success of the last agent) to the name of the outcome
     (False, True): "won back",
     (False, False): "lost by both",
     (True, True): "won by both",
     (True, False): "lost by the last",
 }
-ALONE = {True: "won", False: "lost"}  # names of outcomes with one agent
+ALONE = {True: "won", False: "lost"}  # names of the outcomes if there is only one agent
 
 
 def outcome(won: Sequence[bool]) -> str:
-    """Return the name of the outcome, given the success of each agent in order."""
+    """Return the name of the outcome; ``won`` holds the success of each agent in order."""
     return KINDS[won[0], won[-1]] if len(won) > 1 else ALONE[won[0]]
 
 
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:
-    """Return at most ``most`` pairs (episode id, corruption) that the first and last agent both
+    """Choose at most ``most`` pairs (episode id, corruption) that the first and last agent both
     ran.
 
-    The choice cycles through the outcomes in :data:`KINDS`, and through the corruptions of each
-    outcome, in the order of ``rows``, which must have one seed. No episode is repeated. The choice
-    is for display and is not a random sample; frequencies are in the tables.
+    Pairs are taken from the outcomes in :data:`KINDS` in turn, each time with another corruption.
+    The choice follows the order of ``rows``, which must all have the same seed. No episode is
+    repeated. The result is for display and is not a random sample; the tables show the frequencies.
     """
     first, last = (
         {
@@ -66,7 +66,7 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     turns: dict[tuple[int, int], list[tuple[str, Corruption]]] = {}
     for number, by_corruption in enumerate(outcomes.values()):
         for index, (corruption, episodes) in enumerate(by_corruption.items()):
-            # each outcome begins with a different corruption
+            # the offset lets each outcome begin with a different corruption
             turn = (index - number) % len(by_corruption)
             turns[turn, number] = [(episode, corruption) for episode in episodes]
     chosen: dict[str, Corruption] = {}
@@ -76,9 +76,9 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     return list(chosen.items())[:most]
 
 
-AGREED = ("success", "spl", "steps")  # measures of the new runs that are compared with the rows
-CLOSE = 1e-6  # tolerance, because measures are rounded to six digits in rows
-COLOURS = 64  # colours per picture; few colours keep the page small (heuristic)
+AGREED = ("success", "spl", "steps")  # these measures of the new runs are compared with the rows
+CLOSE = 1e-6  # tolerance for the comparison, because rows hold measures rounded to six digits
+COLOURS = 64  # number of colours per picture; few colours keep the page small (heuristic)
 
 
 def walk_again(
@@ -90,14 +90,16 @@ def walk_again(
     most: int,
     seed: int,
 ) -> Iterator[dict[str, Any]]:
-    """Yield the page's data of each chosen episode, which all agents run corrupted, the first also
-    clean.
+    """Yield the page's data of each chosen episode.
+
+    All agents run the episode under its corruption; the first agent also runs it without
+    corruption.
 
     Args:
         agents: agents by their names in ``rows``.
         world: the world.
         episodes: the episodes of the split.
-        rows: rows of one split and rule; other agents and seeds are ignored.
+        rows: result rows of one split and success rule. Rows of other agents or seeds are ignored.
         most: maximum number of episodes.
         seed: corruption seed.
 
@@ -105,7 +107,9 @@ def walk_again(
         ValueError: An agent has no rows, no episode can be chosen, or the world has no poses.
     """
     if POSE not in world.sensors:
-        raise ValueError("The world must have poses to draw walks, and it has none.")
+        raise ValueError(
+            "Trajectories can only be drawn in a world with poses, and this world has none."
+        )
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}
     hashes = {name: fingerprint(agent, world.sensors) for name, agent in agents.items()}
@@ -117,7 +121,7 @@ def walk_again(
     if not chosen:
         raise ValueError(
             f"There are no rows of {' and '.join(agents)} with seed {seed} under a corruption for "
-            "these episodes. The names must be names in the rows."
+            "these episodes. Use the names that the agents have in the rows."
         )
     index = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r for r in selected}
     for episode_id, corruption in chosen:
@@ -145,15 +149,15 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     """Return the rows of the agents in ``hashes`` (by name).
 
     Raises:
-        ValueError: The rows with a name belong only to agents with different hashes.
+        ValueError: All rows with the name of an agent belong to agents with different hashes.
     """
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})
         if others and agent_hash not in others:
             raise ValueError(
-                f"The rows of {name} belong to the agent {', '.join(others)}, but the named "
-                f"weights are the agent {agent_hash}. Name the weights of the rows, and the "
-                "options of `mitigate evaluate` for the agent and the world (agent=..., "
+                f"The rows of {name} belong to the agent {', '.join(others)}, but the given "
+                f"weights belong to the agent {agent_hash}. Name the weights that gave the rows, "
+                "and the options of `mitigate evaluate` for the agent and the world (agent=..., "
                 "env.views=1)."
             )
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
@@ -176,7 +180,7 @@ def _walk(walk: Walk, episode: Episode, index: Mapping[tuple, Row]) -> dict[str,
 
 
 def _png(figure: Figure) -> str:
-    """Return a figure as a data URL of a PNG with few colours."""
+    """Return a figure as a data URL that contains a PNG with few colours."""
     from PIL import Image
 
     drawn, out = io.BytesIO(), io.BytesIO()

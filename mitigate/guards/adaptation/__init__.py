@@ -1,1 +1,1 @@
-"""Guards that adapt an agent to the frames of its episode: test-time adaptation."""
+"""Guards for test-time adaptation, which adapt an agent to the frames of the current episode."""

@@ -1,4 +1,4 @@
-"""Base class of guards that adapt an agent to the frames of its episode."""
+"""Base class of guards that adapt an agent to the frames of the current episode."""
 
 from __future__ import annotations
 
@@ -25,13 +25,13 @@ class Adaptation(Guard):
     A subclass defines :meth:`tensors`, :meth:`adapting`, :meth:`settings` and :meth:`check_agent`.
 
     Args:
-        reset: "episode": each episode starts from the agent's own weights. "never": it starts from
-            what the episode before it left; the first episode of each condition starts from the
-            agent's own weights.
+        reset: with "episode", each episode starts from the agent's original weights. With "never",
+            an episode starts from the adapted tensors of the previous episode; only the first
+            episode of each condition starts from the original weights.
 
     Attributes:
         kind: name of the method in fingerprints and columns.
-        code: version of the method, which changes with its results.
+        code: version of the method, which is increased whenever its results change.
     """
 
     frames: Sequence[str] = ()
@@ -51,7 +51,7 @@ class Adaptation(Guard):
         self._adapted = None
 
     def settings(self) -> dict[str, Any]:
-        """Return the numbers that determine the adaptation."""
+        """Return the settings that determine the adaptation."""
         return {"reset": self.reset}
 
     def fingerprint(self) -> str:
@@ -59,7 +59,7 @@ class Adaptation(Guard):
         return f"{self.kind}-{hash_of(parts, {})}"
 
     def tensors(self, agent: Any) -> list[Tensor]:
-        """Return the tensors that change during an episode, in a fixed order."""
+        """Return the tensors that the adaptation changes during an episode, in a fixed order."""
         raise NotImplementedError(f"{type(self).__name__} defines no tensors(agent)")
 
     def adapting(self, agent: Any) -> AbstractContextManager[None]:
@@ -88,11 +88,11 @@ def _fill(tensors: Sequence[Tensor], values: Sequence[Tensor]) -> None:
 
 
 def modules_of(agent: Any) -> list[nn.Module]:
-    """Return all modules of an agent's networks, each once, in order."""
+    """Return all modules of an agent's networks, in order and without repeats."""
     roots = [agent] if isinstance(agent, nn.Module) else networks(agent).values()
     return [*dict.fromkeys(module for root in roots for module in root.modules())]
 
 
 def channel_means(features: Tensor, axis: int) -> Tensor:
-    """Return the mean of each channel, over all other axes."""
+    """Return the mean of each channel, computed over all axes except ``axis``."""
     return features.float().movedim(axis, 0).flatten(1).mean(1)

@@ -10,10 +10,10 @@ RESETS = (EPISODE, NEVER)
 
 
 def parsed(choice: str) -> list[tuple[str, str]]:
-    """Return the method and the reset of each part of ``choice``.
+    """Return the pairs (method, reset) that ``choice`` lists.
 
     Raises:
-        ValueError: A method or a reset is unknown.
+        ValueError: A method or a value of reset is unknown.
     """
     parts = []
     for part in str(choice).split("+"):

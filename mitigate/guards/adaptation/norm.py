@@ -1,8 +1,8 @@
-"""``adapt=norm``: estimate the statistics of BatchNorm again from the frames of the episode.
+"""``adapt=norm``: update the statistics of BatchNorm layers with the frames of the episode.
 
-A BatchNorm layer subtracts the mean that its inputs had in training. Under corruption the inputs
-have another mean and variance (Schneider et al. 2020). Before each call, this guard moves both
-towards the statistics of the current input.
+A BatchNorm layer normalises its input with the mean and variance of the training data. Under
+corruption, the input has a different mean and variance (Schneider et al. 2020). Before each call of
+a layer, this guard moves its two statistics towards those of the current input.
 """
 
 from __future__ import annotations
@@ -23,11 +23,11 @@ class Norm(Adaptation):
     """Move the statistics of BatchNorm layers towards the statistics of the episode.
 
     Args:
-        momentum: weight of the current input, from 0 to 1; 0 changes nothing.
+        momentum: weight of the current input, from 0 to 1. With 0, the statistics do not change.
         reset: see :class:`Adaptation`.
 
     Raises:
-        ValueError: A number is out of its range.
+        ValueError: ``momentum`` or ``reset`` is invalid.
     """
 
     kind = "norm"
@@ -61,7 +61,8 @@ class Norm(Adaptation):
                 handle.remove()
 
     def _update(self, layer: Any, inputs: tuple[Tensor, ...]) -> None:
-        if torch.is_grad_enabled():  # a guard computes a decision again for its gradients
+        # another guard repeats the decision to compute gradients, so do not count its input twice
+        if torch.is_grad_enabled():
             return
         values = inputs[0].detach().float().movedim(1, 0).flatten(1)
         layer.running_mean.lerp_(values.mean(1), self.momentum)

@@ -1,8 +1,8 @@
 """``adapt=recentre``: shift features back to the mean that they have on clean frames.
 
-A corruption moves the mean of features. This guard estimates the mean of the episode and subtracts
-its distance from the mean on clean frames, which it measures before the evaluation. It needs no
-normalisation layers and no gradients.
+A corruption shifts the mean of features. Before the evaluation, this guard measures the mean on
+clean frames. During an episode, it estimates the current mean, and subtracts the difference between
+the two means from the features. The method needs no normalisation layers and no gradients.
 """
 
 from __future__ import annotations
@@ -25,24 +25,27 @@ from mitigate.guards.adaptation.adaptation import Adaptation, channel_means
 from mitigate.guards.adaptation.choices import EPISODE
 from mitigate.worlds.episodes import Episode
 
-EPISODES, STEPS = 8, 100  # clean episodes, and most steps of each (heuristic)
+# number of clean episodes, and maximum number of steps per episode (heuristic)
+EPISODES, STEPS = 8, 100
 
 
 class Recentre(Adaptation):
     """Shift the features of some modules to their clean mean.
 
     Args:
-        modules: names of the modules of the agent (of the network of a policy) whose outputs are
-            features; None: its image encoders, or the last convolution of a policy.
-        prior: number of observations that the clean mean counts in the mean of the episode. So the
-            first frames are shifted little.
+        modules: names of the modules whose outputs are shifted. The modules belong to the agent, or
+            to the network of a policy. The default is the agent's image encoders, or the last
+            convolution of a policy.
+        prior: weight of the clean mean in the mean of the episode, as a number of observations. A
+            larger value shifts the first frames less.
         reset: see :class:`Adaptation`.
 
     Attributes:
-        means: clean mean [C] of each module, in order; set by :meth:`calibrate`.
+        means: the clean mean [C] of each module's output, in order. :meth:`calibrate` sets these
+            means.
 
     Raises:
-        ValueError: A number is out of its range.
+        ValueError: ``prior`` or ``reset`` is invalid.
     """
 
     kind = "recentre"
@@ -56,7 +59,8 @@ class Recentre(Adaptation):
         self.modules = None if modules is None else tuple(modules)
         self.prior = prior
         self.means: list[Tensor] = []
-        self._now: list[Tensor] = []  # mean [C] of the episode, and number of observations [1]
+        # for each module: the episode's mean [C] and the number of observations [1]
+        self._now: list[Tensor] = []
 
     def settings(self) -> dict[str, Any]:
         digest = hashlib.sha256(b"".join(mean.numpy().tobytes() for mean in self.means))
@@ -69,16 +73,16 @@ class Recentre(Adaptation):
         if not self.means:
             raise ValueError(
                 "Recentre does not know the clean means. Call calibrate(agent, world, episode) "
-                "first; mitigate.benchmark and mitigate evaluate do."
+                "first; mitigate.benchmark and mitigate evaluate do this themselves."
             )
 
     def calibrate(self, agent: Any, world: Any, episode: Callable[[int], Episode]) -> None:
-        """Measure the means on clean episodes that the agent runs, unless they are known.
+        """Run clean episodes with the agent to measure the means, unless they are already known.
 
         Args:
             agent: the agent.
             world: a world.
-            episode: returns a training episode by its number.
+            episode: function that returns a training episode, given its number.
         """
         modules = _modules(agent, self.modules)
         if self.means:  # measured before
@@ -94,7 +98,8 @@ class Recentre(Adaptation):
             return hook
 
         threads = torch.get_num_threads()
-        torch.set_num_threads(1)  # as in evaluations, so that sums round equally
+        # one thread, as in evaluations, makes rounding errors of sums reproducible
+        torch.set_num_threads(1)
         handles = [module.register_forward_hook(record(i)) for i, module in enumerate(modules)]
         device = next(modules[0].parameters(), torch.empty(0)).device
         try:
@@ -113,13 +118,13 @@ class Recentre(Adaptation):
                 handle.remove()
         if not all(counts):
             raise ValueError(
-                f"{type(agent).__name__} did not call all modules to recentre. Name others: "
-                "Recentre(modules=[...])."
+                f"{type(agent).__name__} did not call all modules that Recentre shifts. Name other "
+                "modules: Recentre(modules=[...])."
             )
         self.means = [s / n for s, n in zip(sums, counts, strict=True)]
 
     def tensors(self, agent: Any) -> list[Tensor]:
-        """Return the means of the episode, which are this guard's own."""
+        """Return the means of the episode, which are tensors of this guard and not of the agent."""
         self._now = [t for mean in self.means for t in (mean.clone(), torch.zeros(1))]
         return self._now
 
@@ -136,7 +141,8 @@ class Recentre(Adaptation):
     def _shift(self, place: int) -> Callable:
         def hook(module: nn.Module, inputs: Any, output: Any) -> Any:
             mean, count = self._now[2 * place : 2 * place + 2]
-            if not torch.is_grad_enabled():  # else a guard computes a decision again
+            # if gradients are enabled, another guard only repeats the decision
+            if not torch.is_grad_enabled():
                 mean.lerp_(_means(output).cpu(), 1.0 / (self.prior + float(count) + 1.0))
                 count.add_(1.0)
             features = output[0] if isinstance(output, (tuple, list)) else output
@@ -150,10 +156,12 @@ class Recentre(Adaptation):
 
 
 def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
-    """Return the modules with these names; None: the image encoders of the agent.
+    """Return the modules with these names.
+
+    If ``names`` is None, return the image encoders of the agent.
 
     Raises:
-        ValueError: A module does not exist, or the agent has no known encoder.
+        ValueError: A module does not exist, or the agent declares no encoders.
     """
     root: Any = agent.network if isinstance(agent, Policy) else agent
     if names is None and isinstance(agent, Policy):
@@ -176,7 +184,7 @@ def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
 
 
 def _axis(features: Tensor) -> int:
-    """Return the axis of the channels: 1 for maps [B, C, h, w], else the last one."""
+    """Return the channel axis: 1 for feature maps [B, C, h, w], and otherwise the last axis."""
     return 1 if features.dim() == 4 else features.dim() - 1
 
 

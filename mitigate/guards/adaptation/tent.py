@@ -1,8 +1,8 @@
-"""``adapt=tent``: make decisions more certain, by the weights of normalisation layers.
+"""``adapt=tent``: adapt normalisation layers so that decisions become more certain.
 
-After each decision, a gradient step lowers the entropy of the distribution of actions. Only scales
-and shifts of normalisation layers change (TENT, Wang et al. 2021). TENT also uses the statistics of
-the test frames; combine both with ``adapt=norm+tent``.
+After each decision, a gradient step lowers the entropy of the distribution of actions. Only the
+scales and shifts of normalisation layers change (TENT, Wang et al. 2021). The published method also
+uses the statistics of the test frames; ``adapt=norm+tent`` does the same.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ LAYERS = (_NormBase, nn.GroupNorm, nn.LayerNorm)
 class Tent(Adaptation):
     """Lower the entropy of the agent's decisions by gradient descent.
 
-    The agent must have ``entropy(observation)`` (``KnowsEntropy`` in ``agents/agent.py``).
+    The agent must have a method ``entropy(observation)`` (``KnowsEntropy`` in ``agents/agent.py``).
 
     Args:
-        lr: length of a step; 0 changes nothing.
+        lr: learning rate. With 0, the weights do not change.
         reset: see :class:`Adaptation`.
 
     Raises:
-        ValueError: A number is out of its range.
+        ValueError: ``lr`` or ``reset`` is invalid.
     """
 
     kind = "tent"
@@ -73,8 +73,8 @@ class Tent(Adaptation):
     @contextmanager
     def adapting(self, agent: Any) -> Iterator[None]:
         adapted = self.tensors(agent)
-        # All weights need gradients: for an input without gradient in the format channels_last, the
-        # backward pass of GroupNorm ends the process (torch 2.13, CPU).
+        # All weights require gradients, because the backward pass of GroupNorm crashes the process
+        # if its input is in channels_last format and requires no gradient (torch 2.13, CPU).
         weights = dict.fromkeys(
             parameter
             for module in modules_of(agent)
@@ -108,7 +108,7 @@ class Tent(Adaptation):
 
     @torch.no_grad()
     def _step(self, adapted: list[Tensor]) -> None:
-        """Take a step along the gradients, if all are finite."""
+        """Take a gradient descent step, unless a gradient is not finite."""
         pairs = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
         if all(bool(torch.isfinite(gradient).all()) for _, gradient in pairs):
             for weight, gradient in pairs:

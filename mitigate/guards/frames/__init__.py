@@ -1,1 +1,1 @@
-"""Guards for frames, which estimate the clean frame before an agent reads it."""
+"""Guards for frames. Such a guard replaces a corrupted frame by an estimate of the clean frame."""

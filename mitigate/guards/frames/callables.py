@@ -2,9 +2,10 @@
 
 The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
 
-If the callable is a class, it is constructed once per process, without arguments; any other object
-is used directly. If the result is a :class:`~mitigate.guards.guard.Guard`, it is used as the guard.
-Otherwise it is called with the frames of one time step. ``docs/restoration.md`` has an example.
+If the callable is a class, it is instantiated once per process, without arguments. Any other object
+is used directly. If the resulting object is a :class:`~mitigate.guards.guard.Guard`, it is used as
+the guard. Otherwise, the object is called with the frames of each time step.
+``docs/restoration.md`` has an example.
 
 Importing the module runs its code, so the option is read only from the user's command line or
 config, and never from a downloaded folder.
@@ -38,15 +39,16 @@ FRAMES = (
 class FramesCallable(Guard):
     """A guard that calls a user's callable.
 
-    The callable receives copies of the frames by sensor name: "rgb" as uint8 [H, W, 3] or [V, H, W,
-    3], and "depth" as float32 metres [H, W, 1] or [V, H, W, 1]. It returns the frames that it
-    changed. A result must not depend on earlier calls.
+    The callable receives a dict that maps sensor names to copies of the frames. Frames of "rgb" are
+    uint8 with shape [H, W, 3] or [V, H, W, 3]. Frames of "depth" are in metres, float32 with shape
+    [H, W, 1] or [V, H, W, 1]. The callable returns a dict of the frames that it changed. A result
+    must not depend on earlier calls.
 
     Args:
-        choice: ``module:callable`` or ``module:callable@VERSION``. Pickles contain only this text,
-            so each process imports the module itself.
-        call: the callable. It may have the attributes ``frames`` (names of sensors; both by
-            default) and ``version``.
+        choice: ``module:callable`` or ``module:callable@VERSION``. A pickled guard contains only
+            this text, so each process imports the module again.
+        call: the callable. The callable may have an attribute ``frames``, which names its sensors
+            (by default both), and an attribute ``version``.
         module: the module of the callable. The module's source file is part of the fingerprint.
     """
 
@@ -67,9 +69,9 @@ class FramesCallable(Guard):
         return open_callable, (self.choice,)
 
     def fingerprint(self) -> str:
-        """Return the hash of the callable's name, its module's source file and ``version``.
+        """Return a hash of the callable's name, the source file of its module, and ``version``.
 
-        The file is read once, when the module is loaded.
+        The source file is read once, when the module is loaded.
         """
         return self._fingerprint
 
@@ -90,8 +92,9 @@ class FramesCallable(Guard):
         return {**observation, **changed} if changed else observation
 
     def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
-        """Raise ValueError unless ``results`` contains a subset of ``frames`` with the same shapes
-        and dtypes.
+        """Raise ValueError if ``results`` has an entry that is not in ``frames``.
+
+        A result with another shape or dtype than the frame is also an error.
         """
         if not isinstance(results, Mapping):
             self._reject(f"returned a {type(results).__name__}, not a dict")
@@ -121,11 +124,11 @@ def open_callable(choice: str) -> Guard:
         stem = named.module.removesuffix(".py")
         hint = "" if stem == named.module else f" Write {stem}:{named.name}."
         raise ValueError(
-            f"restore={choice}: {error}. It names module:callable, of a module that is installed, "
-            f"in the folder you are in, or on PYTHONPATH, or the folder of a restorer.{hint}"
+            f"restore={choice}: {error}. It must be module:callable or the folder of a restorer. "
+            f"The module must be installed, in the current folder, or on PYTHONPATH.{hint}"
         ) from error
     try:
-        target = getattr(module, named.name)  # the attribute name comes from an option
+        target = getattr(module, named.name)  # the user's option contains the attribute name
     except AttributeError as error:
         public = [name for name in vars(module) if not name.startswith("_")]
         raise ValueError(
@@ -151,7 +154,7 @@ def _parts(choice: str) -> CallableChoice:
 
 
 def _form(frame: Any) -> str:
-    """Describe dtype and shape of an array, or the type of another object."""
+    """Return a text with the dtype and shape of an array, or with the type of another object."""
     if isinstance(frame, np.ndarray):
         return f"{frame.dtype} {list(frame.shape)}"
     return f"a {type(frame).__name__}"
@@ -167,9 +170,9 @@ def _frames(frames: Any, choice: str) -> tuple[str, ...]:
 
 
 def _source(module: ModuleType, version: str | None) -> str:
-    """Return the sha256 of a module's source file, or "" if there is no file but a ``version``.
+    """Return the sha256 of a module's source file.
 
-    Raises ValueError if there is neither a source file nor a version.
+    If there is no source file, return "" if ``version`` is given, and raise ValueError otherwise.
     """
     source = _source_sha(module)
     if not source and version is None:
@@ -182,7 +185,7 @@ def _source(module: ModuleType, version: str | None) -> str:
 
 @cache
 def _source_sha(module: ModuleType) -> str:
-    """Return the sha256 of a module's source file, or "".
+    """Return the sha256 of a module's source file, or "" if there is no such file.
 
     The file is read once, because a later edit does not change a loaded module.
     """

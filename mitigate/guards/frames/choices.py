@@ -1,7 +1,8 @@
 """Parse the values of ``restore=``.
 
-A value is the folder of a restorer, ``FOLDER:rgb`` or ``FOLDER:depth`` for one of its sensors,
-``hold`` (``hold.py``), or a user's ``module:callable`` (``callables.py``). Needs no torch.
+A value is the folder of a restorer, ``hold`` (``hold.py``), or a user's ``module:callable``
+(``callables.py``). The suffixes in ``FOLDER:rgb`` and ``FOLDER:depth`` restrict the restorer to one
+sensor. Needs no torch.
 """
 
 from __future__ import annotations
@@ -19,7 +20,10 @@ _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 
 class CallableChoice(NamedTuple):
-    """The parts of ``module:name@version``, where ``version`` is None if omitted."""
+    """The parts of ``module:name@version``.
+
+    The field ``version`` is None if the text has no version.
+    """
 
     module: str
     name: str
@@ -27,16 +31,19 @@ class CallableChoice(NamedTuple):
 
 
 def parted(choice: str) -> tuple[str, str | None]:
-    """Return the folder and the sensor to restore, or None for all sensors of the restorer."""
+    """Return the folder and the sensor to restore.
+
+    The sensor is None if all sensors of the restorer are restored.
+    """
     folder, colon, sensor = str(choice).rpartition(":")
     return (folder, sensor) if colon and sensor in SENSORS else (str(choice), None)
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``, or None for a folder.
+    """Return the parts of ``module:callable``, or None if ``choice`` is a folder.
 
-    If a path with this name exists, the value is a folder. In ``FOLDER:rgb`` and ``FOLDER:depth``,
-    the part after the colon is a sensor.
+    ``choice`` is a folder if a path with this name exists, or if the part after the colon is a
+    sensor, as in ``FOLDER:rgb``.
     """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():
@@ -47,8 +54,8 @@ def callable_of(choice: str) -> CallableChoice | None:
 def label(choice: str) -> str:
     """Return the text that ``choice`` adds to a column name.
 
-    For a folder, this is its name and the sensor; for a callable, the names of module and callable
-    and the version.
+    For a folder, the text contains the folder's name and the sensor. For a callable, it contains
+    the names of the module and the callable, and the version.
     """
     named = callable_of(str(choice))
     if named is not None:

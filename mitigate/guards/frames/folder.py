@@ -1,8 +1,7 @@
-"""Write and read the folder of a restorer, which contains ``model.safetensors``, ``card.json`` and
-the manifest.
+"""Write and read the folder of a restorer.
 
-Reading runs no code from the folder. Reading builds the class ``Restorer`` with the numbers in the
-card, which must be within ``LIMITS``.
+The folder contains ``model.safetensors``, ``card.json`` and a manifest. No code from the folder is
+run when it is read. The sizes of the networks come from the card, and must be within ``LIMITS``.
 """
 
 from __future__ import annotations
@@ -28,7 +27,8 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card contains the hash of the weights as they are read back, so ``half`` rounds them first.
+    The card contains the hash of the weights as they are read from the folder. Therefore, with
+    ``half``, the weights of ``restorer`` are also rounded to float16.
     """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
@@ -65,7 +65,7 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def _wrong(content: Any) -> str:
-    """Return a message about the first problem in a card, or "" if it is valid."""
+    """Return a message about the first problem in a card, or "" if the card is valid."""
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         return f"it must be an object of format {FORMAT}"
     settings = content.get("settings")
@@ -82,7 +82,7 @@ def _wrong(content: Any) -> str:
 
 
 def problem(sizes: dict[str, Any]) -> str:
-    """Return a message about the first size that is out of range, or "" if all are valid."""
+    """Return a message about the first size that is out of range, or "" if there is none."""
     for name, (least, most) in LIMITS.items():
         value = sizes[name]
         if type(value) is not int or not least <= value <= most:
@@ -91,10 +91,11 @@ def problem(sizes: dict[str, Any]) -> str:
 
 
 def fill(restorer: Restorer, folder: str | Path) -> None:
-    """Read the weights in ``folder`` into ``restorer``, whose settings must equal the card's.
+    """Load the weights in ``folder`` into ``restorer``.
 
-    Raises the errors of :func:`card`, and ValueError if the settings differ, or if a checksum is
-    missing or does not match the weights.
+    The settings of ``restorer`` must equal those in the card. Raises the errors of :func:`card`.
+    Raises ValueError if the settings differ, or if a checksum is missing or does not match the
+    weights.
     """
     content, current = card(folder), restorer.settings()
     names = [name for name, value in current.items() if content["settings"][name] != value]
@@ -108,7 +109,9 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     if not folders.is_listed(file):
         raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
-    if wrong:  # load_weights would advise to delete the checksum, but here the checksum is required
+    # checked here because the message of load_weights advises to delete the checksum, which is
+    # required
+    if wrong:
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:

@@ -1,7 +1,7 @@
 """Define the network of a restorer: a small U-Net, and a gate that detects corrupted frames.
 
-The U-Net has no normalisation layers, because they would hide how dark a frame is. Heights and
-widths of inputs must be multiples of 8 pixels.
+The U-Net has no normalisation layers, because they would hide how dark a frame is. The height and
+the width of inputs must be multiples of 8 pixels.
 """
 
 from __future__ import annotations
@@ -13,14 +13,16 @@ import torch.nn.functional as F
 from torch import Tensor, nn
 
 SLOPE = 0.1  # slope of the activations for negative inputs (heuristic)
-FLAT = (1e-4, 1e-3, 1e-2)  # second differences below these values count as flat (heuristic)
-TEXTURES = 6 + 4 * (3 + len(FLAT))  # count of numbers that :func:`texture` returns
+# thresholds of the second difference below which a pixel counts as flat (heuristic)
+FLAT = (1e-4, 1e-3, 1e-2)
+TEXTURES = 6 + 4 * (3 + len(FLAT))  # number of statistics that :func:`texture` returns per frame
 FACTOR = 8  # height and width of the input must be multiples of this many pixels
 
 
 class Encoded(NamedTuple):
-    """Feature maps of three levels, and ``stats`` [n, 14 * width]: the mean magnitude and the
-    maximum of each map.
+    """Feature maps of three levels, and their statistics.
+
+    ``stats`` [n, 14 * width] contains the mean magnitude and the maximum of each map.
     """
 
     fine: Tensor
@@ -32,7 +34,8 @@ class Encoded(NamedTuple):
 def active(x: Tensor) -> Tensor:
     """Apply a leaky ReLU.
 
-    Without normalisation, plain ReLU channels die (83 % of the coarsest in 700 steps, measured).
+    A plain ReLU is not used, because channels die without normalisation. In 700 training steps, 83
+    % of the channels of the coarsest level died.
     """
     return F.leaky_relu(x, SLOPE)
 
@@ -50,16 +53,17 @@ class Block(nn.Module):
 
 
 class UNet(nn.Module):
-    """Map float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``; the output is zero at first.
+    """Map float ``[n, inputs, h, w]`` to ``[n, outputs, h, w]``; before training, the output is 0.
 
-    The network works on blocks of 2 x 2 pixels (pixel unshuffle), so the finest maps have half the
-    size. The coarsest maps are extended by their mean over the view and over all views of the time
-    step.
+    A pixel unshuffle merges blocks of 2 x 2 pixels, so the finest maps have half the height and
+    width of the input. The mean of the coarsest maps is computed over each view and over all views
+    of the time step. A linear projection of both means is added to these maps.
 
     Args:
         inputs: number of input channels.
         outputs: number of output channels.
-        width: channels of the finest maps; the next levels have 2 and 4 times as many.
+        width: number of channels of the finest maps. The next two levels have 2 and 4 times as many
+            channels.
     """
 
     def __init__(self, inputs: int, outputs: int, width: int) -> None:
@@ -78,13 +82,15 @@ class UNet(nn.Module):
             if isinstance(module, nn.Conv2d):
                 nn.init.kaiming_normal_(module.weight, SLOPE)
             if isinstance(module, Block):
-                nn.init.normal_(module.second.weight, std=0.01)  # initialised close to the identity
+                # each block starts close to the identity
+                nn.init.normal_(module.second.weight, std=0.01)
         nn.init.zeros_(self.head.weight)
         nn.init.zeros_(self.head.bias)  # type: ignore[arg-type]
 
     def encode(self, x: Tensor, views: int) -> Encoded:
-        """Return the maps of ``x`` [n, inputs, h, w]; each group of ``views`` rows is one time
-        step.
+        """Return the feature maps of ``x`` [n, inputs, h, w].
+
+        Each group of ``views`` rows is one time step.
         """
         x = F.pixel_unshuffle(x, 2).contiguous(memory_format=torch.channels_last)
         fine = self.fine(active(self.stem(x)))
@@ -103,17 +109,18 @@ class UNet(nn.Module):
         return Encoded(*levels, torch.cat(stats, 1).float())
 
     def decode(self, maps: Encoded) -> Tensor:
-        """Return the output for the maps of :meth:`encode`, float32."""
+        """Compute the output (float32) from the maps that :meth:`encode` returned."""
         x = F.interpolate(self.up2(maps.coarse), scale_factor=2.0) + maps.middle
         x = F.interpolate(self.up1(self.middle_out(x)), scale_factor=2.0) + maps.fine
         return F.pixel_shuffle(self.head(self.fine_out(x)).float(), 2)
 
 
 class Gate(nn.Module):
-    """Predict one logit per time step that its frames are corrupted.
+    """Predict one logit per time step; a high logit means that the frames are corrupted.
 
-    The gate reads the maps of all views and :func:`texture`. The gate's gradients do not reach the
-    maps, which are trained only to restore.
+    The gate reads statistics of the feature maps of all views, and the statistics of
+    :func:`texture`. The gate's gradients do not reach the feature maps, which are trained only to
+    restore frames.
     """
 
     def __init__(self, width: int, hidden: int = 64) -> None:
@@ -126,7 +133,7 @@ class Gate(nn.Module):
         """Return the logits [instants].
 
         Args:
-            stats: the field of :class:`Encoded`.
+            stats: the field ``stats`` of :class:`Encoded`.
             texture: float [n, TEXTURES].
             views: number of rows per time step.
         """
@@ -139,11 +146,11 @@ class Gate(nn.Module):
 def texture(x: Tensor, valid: Tensor) -> Tensor:
     """Return statistics [n, TEXTURES] that reveal noise, blur, quantisation, darkness and holes.
 
-    The statistics are magnitudes and fractions of pixels, on a logarithmic scale.
+    The statistics are mean magnitudes and fractions of pixels, on a logarithmic scale.
 
     Args:
         x: float [n, c, h, w] in [0, 1].
-        valid: [n, 1, h, w], 1 for valid pixels.
+        valid: mask [n, 1, h, w] with 1 for valid pixels.
     """
     grey = x.float().mean(1, keepdim=True)
     statistics = [grey.mean((1, 2, 3)), grey.std((1, 2, 3)), 1 - valid.float().mean((1, 2, 3))]

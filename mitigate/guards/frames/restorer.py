@@ -30,9 +30,9 @@ class Restorer(nn.Module, Guard):
 
     Args:
         sensors: "rgb", "depth" or both.
-        width: channels of the finest maps of the RGB network.
-        depth_width: channels of the finest maps of the depth network.
-        size: shorter side in pixels at which the networks work.
+        width: number of channels of the finest feature maps of the RGB network.
+        depth_width: number of channels of the finest feature maps of the depth network.
+        size: shorter side in pixels of the frames that the networks process.
         far: maximum depth in metres.
 
     Raises:
@@ -68,7 +68,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def encoders(self) -> dict[str, tuple[str, ...]]:
-        """The parts that read each sensor, as in an agent (``training/plan.py``)."""
+        """The networks that read each sensor, declared as in an agent (``training/plan.py``)."""
         return {sensor: (sensor,) for sensor in self.nets}
 
     def parts(self) -> dict[str, SensorRestorer]:
@@ -86,8 +86,8 @@ class Restorer(nn.Module, Guard):
         """
         if sensor not in self.nets:
             raise ValueError(
-                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: leave the "
-                f":{sensor} of restore= out."
+                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: write restore= "
+                f"without :{sensor}."
             )
         self.nets = nn.ModuleDict({sensor: self.nets[sensor]})
         self._settings["sensors"] = [sensor]
@@ -95,7 +95,7 @@ class Restorer(nn.Module, Guard):
 
     @property
     def hash(self) -> str:
-        """The first 12 hex digits of a hash of weights, thresholds and settings."""
+        """The first 12 hex digits of a hash of the weights, thresholds and settings."""
         text = json.dumps([weights_sha(self), self.settings()], sort_keys=True)
         return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
@@ -109,9 +109,9 @@ class Restorer(nn.Module, Guard):
         return RESTORER + self.hash
 
     def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
-        """Return ``observation`` with restored frames, where the gate classifies them as corrupted.
+        """Return ``observation`` with those frames restored that the gate classifies as corrupted.
 
-        All other entries, and frames classified as clean, are the same objects.
+        Other entries, and frames that are classified as clean, are returned as the same objects.
 
         Raises:
             TypeError, ValueError: A frame has the wrong dtype or shape.
@@ -127,15 +127,15 @@ class Restorer(nn.Module, Guard):
         return self.forward(observation)
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """Return the restored frame, a new array of the same shape and dtype.
+        """Return the restored frame as a new array of the same shape and dtype.
 
-        A frame that the gate classifies as clean is returned unchanged, and so is depth outside the
-        range of the training data (:meth:`SensorRestorer.knows`).
+        If the gate classifies the frame as clean, the frame itself is returned. Depth outside the
+        range of the training data is also returned unchanged (:meth:`SensorRestorer.knows`).
 
         Args:
             sensor: "rgb" or "depth".
-            frame: frames of one time step, which are uint8 [H, W, 3] or [V, H, W, 3], or
-                floating-point metres [H, W], [H, W, 1] or [V, H, W, 1].
+            frame: the frames of one time step. RGB is uint8 with shape [H, W, 3] or [V, H, W, 3].
+                Depth is in metres, floating point with shape [H, W], [H, W, 1] or [V, H, W, 1].
 
         Raises:
             KeyError: The restorer has no network for ``sensor``.
@@ -147,11 +147,11 @@ class Restorer(nn.Module, Guard):
         return result.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
-        """Return the gate's logit minus its threshold, for one frame as in :meth:`restore`.
+        """Return the gate's logit for a frame minus the gate's threshold.
 
-        If the value is above 0, the frame is restored, unless that would change most of its depth
-        by too much. The value is -inf for depth without valid pixels, or with too many pixels
-        beyond ``far``.
+        If the value is above 0, :meth:`restore` restores the frame, except if this would change
+        most pixels of depth by too much. The value is -inf for depth that has no valid pixels or
+        too many pixels beyond ``far``.
         """
         return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 
@@ -161,8 +161,9 @@ class Restorer(nn.Module, Guard):
         return self.nets[sensor]  # type: ignore[return-value]
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """Return ``frame`` as a contiguous, writable array [V, H, W, c]; raise an error if it is
-        invalid.
+        """Return ``frame`` as a contiguous, writable array [V, H, W, c].
+
+        Raises TypeError or ValueError if the frame is invalid.
         """
         if not isinstance(frame, np.ndarray):
             raise TypeError(
@@ -179,16 +180,16 @@ class Restorer(nn.Module, Guard):
         return np.require(views, requirements=["C", "W"])
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
-        """Write a folder for :func:`load_restorer`; ``half`` stores the weights in float16."""
+        """Write a folder for :func:`load_restorer`; with ``half``, the weights are float16."""
         folders.write(self, folder, half=half)
 
     def load(self, folder: str | Path) -> None:
-        """Load the weights from such a folder; raise ValueError if its settings differ."""
+        """Load the weights that :meth:`save` wrote; raise ValueError if the settings differ."""
         folders.fill(self, folder)
 
 
 def load_restorer(folder: str | Path) -> Restorer:
-    """Return the restorer in ``folder``, in eval mode; call it with an observation.
+    """Load the restorer in ``folder`` in eval mode; it can be called with an observation.
 
     Raises:
         FileNotFoundError: The folder contains no restorer.

@@ -1,6 +1,6 @@
-"""Compare the overlapping views of a panorama, and fill pixels of one view from the others.
+"""Compare the overlapping views of a panorama, and fill pixels of a view from other views.
 
-All views have the same optical centre, so up to four other views show the same point.
+All views have the same optical centre. Each point is visible in up to four other views.
 """
 
 from __future__ import annotations
@@ -16,19 +16,24 @@ from torch import Tensor
 from mitigate.agents.adapter_layers import neighbour_grid
 from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
-STEPS = (1, 2)  # overlapping neighbours of a 90-degree view, which are 30 and 60 degrees away
-SURE = 0.05  # squared trust at which the neighbours' value gets the weight 1/2 (heuristic)
-FAINT = 0.02  # weight of the coarser level when a hole is filled from its surroundings (heuristic)
+# a 90-degree view overlaps with the views that are 1 and 2 steps (30 and 60 degrees) away
+STEPS = (1, 2)
+# if the squared trust of the neighbours has this value, their colour or depth gets the weight 1/2
+# (heuristic)
+SURE = 0.05
+# weight of the coarser level if a hole is filled from the pixels around it (heuristic)
+FAINT = 0.02
 
 
 @lru_cache(maxsize=8)
-@torch.inference_mode(False)  # training also uses the cached tensors
+@torch.inference_mode(False)  # inference mode is off, because training also uses the cached tensors
 def neighbours(size: int) -> tuple[Tensor, Tensor]:
     """Return the geometry of the neighbouring views at -1, +1, -2 and +2 steps.
 
     Returns:
-        ``grid`` [4, size, size, 2] as in ``neighbour_grid``, and ``ahead`` [4, size, size]: depth
-        along the neighbour's axis divided by depth along the view's own axis.
+        ``grid`` [4, size, size, 2] as in ``neighbour_grid``, and ``ahead`` [4, size, size].
+        ``ahead`` is the ratio of a point's depth along the neighbour's axis to its depth along the
+        view's own axis.
     """
     half = math.tan(math.radians(HFOV_DEGREES) / 2)
     x = ((torch.arange(size) + 0.5) / size * 2 - 1) * half
@@ -43,24 +48,28 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
 
 
 def is_ring(views: int, height: int, width: int) -> bool:
-    """Return whether frames are a panorama of 12 square views, whose geometry is known."""
+    """Return whether frames form a panorama of 12 square views.
+
+    Views can be compared only in such a panorama, because its geometry is known.
+    """
     return views == VIEWS and height == width
 
 
 def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor, Tensor]:
     """Return the smallest and the largest value that other views show at every pixel.
 
-    At least three views see each direction, so a value outside this range contradicts the others.
+    At least three views show each direction. A value outside the range from smallest to largest
+    contradicts the other views.
 
     Args:
-        values: float [P * 12, c, s, s] in [0, 1]; depth is measured along each view's axis.
-        valid: [P * 12, 1, s, s], 1 for valid pixels.
+        values: float [P * 12, c, s, s] in [0, 1]. Depth is measured along the axis of each view.
+        valid: mask [P * 12, 1, s, s] with 1 for valid pixels.
         depth: whether ``values`` is depth.
 
     Returns:
-        The smallest and the largest value [P * 12, c, s, s], which equal ``values`` if no other
-        view has a valid pixel; and whether another view has a valid pixel, [P * 12, 1, s, s] of 0
-        and 1.
+        The smallest values, the largest values (both [P * 12, c, s, s]), and a mask [P * 12, 1, s,
+        s]. The mask is 1 where another view has a valid pixel. Elsewhere, the smallest and largest
+        values equal ``values``.
     """
     low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
     for value, weight, scale in _turned(values * valid, valid):
@@ -76,10 +85,10 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Yield the values, weights and depth scale of each neighbour, resampled into the view.
+    """Yield each neighbour's values and weights, resampled into the view, and its depth scale.
 
-    The shapes are [P * 12, c, s, s], [P * 12, 1 or c, s, s] and [s, s] (``ahead`` of
-    :func:`neighbours`).
+    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s]. The depth scale
+    [s, s] is ``ahead`` in :func:`neighbours`.
     """
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]
@@ -97,12 +106,14 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
     """Return the weighted mean of the values that other views show at every pixel.
 
     Args:
-        values: float [P * 12, c, s, s]: colours, or depth along each view's axis in any unit.
-        trust: [P * 12, 1 or c, s, s] in [0, 1], the weights.
+        values: float [P * 12, c, s, s]. The values are colours, or depth along the axis of each
+            view in any unit.
+        trust: the weights in [0, 1], with shape [P * 12, 1 or c, s, s].
         depth: whether ``values`` is depth.
 
     Returns:
-        The mean [P * 12, c, s, s], and its confidence in [0, 1), which has the shape of ``trust``.
+        The mean [P * 12, c, s, s] and its confidence in [0, 1). The confidence has the shape of
+        ``trust``.
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)
@@ -119,7 +130,7 @@ def from_around(values: Tensor, trust: Tensor) -> Tensor:
 
     Args:
         values: float [n, c, h, w].
-        trust: [n, 1 or c, h, w]; values are kept where the trust is 1.
+        trust: weights [n, 1 or c, h, w] in [0, 1]. Pixels with the weight 1 keep their values.
     """
     sums, weights = [values * trust], [trust]
     while min(sums[-1].shape[-2:]) > 1:

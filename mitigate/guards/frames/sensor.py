@@ -6,8 +6,8 @@
     y = x gain + bias                              corrects light, blur, noise
     out = y where trusted, else from other views of the panorama, else from pixels around
 
-For frames above the working size, the maps of the U-Net are computed at the working size and
-enlarged. ``x`` and the other views keep their full size, so that detail is preserved.
+If frames are larger than the working size, the U-Net processes reduced frames and its output maps
+are enlarged. ``x`` and the other views keep their full size, so that detail is preserved.
 """
 
 from __future__ import annotations
@@ -24,21 +24,25 @@ from mitigate.guards.frames import ring
 from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
-TOLERANCE = 0.02  # error below which a pixel is correct, as a fraction of the range (heuristic)
-# Margin as a fraction of the range. About 99 % of clean pixels differ by less from the other views
-# (measured on 20 panoramas of val_seen: 98.6 and 99.2 %).
+TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of the range (heuristic)
+# Margins as fractions of the range. About 99 % of clean pixels differ from the other views by less
+# than the margin (98.6 % for RGB and 99.2 % for depth on 20 panoramas of val_seen).
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-ALONE = 2.0  # a value one margin outside the range first lowers the logit by this (heuristic)
-LOST = -3.0  # initial logit of "lost", for a probability of 5 % (heuristic)
-SUREST = 6.0  # bound of the logit, so that its gradient never vanishes (heuristic)
-# Heuristic limits for depth. Frames of the apartments are far from both limits.
-# At most 1.3 % of a view lies beyond their 10 m (600 panoramas). Restoring moves half of the
-# pixels of a corrupted time step by at most 0.4 m (400 single views and 200 panoramas, all depth
-# corruptions). The only exception are single views in which all pixels have exactly 10 m.
-BEYOND = 0.1  # maximum fraction of pixels beyond ``far``, which did not occur in training
+# initial amount by which the trust logit decreases per margin outside [low, high] (heuristic)
+ALONE = 2.0
+LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
+# bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
+SUREST = 6.0
+# Heuristic limits for depth. Depth frames of the apartments stay far below both limits. In 600
+# panoramas, at most 1.3 % of a view was farther away than 10 m, the maximum depth of the
+# apartments. Restoring changed the depth of half of the pixels of a corrupted time step by at most
+# 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only exceptions were single
+# views in which all pixels have exactly 10 m.
+BEYOND = 0.1  # maximum fraction of pixels beyond ``far``; training contained no such pixels
 # a frame is not changed if over half of its pixels would move more than this fraction of the range
 MOVED = 0.1
-# limits of the log gain, for gains of 0.14 to 37 (heuristic; low light leaves 0.03)
+# limits of the log gain; the gain is then 0.14 to 37 (heuristic: low light reduces brightness to
+# 0.03)
 GAINS = (-2.0, 3.6)
 
 
@@ -47,12 +51,13 @@ class SensorRestorer(nn.Module):
 
     Args:
         sensor: "rgb" or "depth".
-        width: channels of the U-Net's finest maps.
-        size: shorter side in pixels at which the network works; larger frames are reduced to it.
+        width: number of channels of the U-Net's finest feature maps.
+        size: shorter side in pixels of the frames that the network processes. Larger frames are
+            reduced to this size.
         far: depth in metres that is scaled to 1.
 
     Attributes:
-        threshold: logit of the gate above which a frame is restored (a buffer that training sets).
+        threshold: a frame is restored if the gate's logit is above this value, which training sets.
     """
 
     threshold: Tensor
@@ -76,7 +81,8 @@ class SensorRestorer(nn.Module):
         """Scale frames [n, H, W, c] of the sensor to values [n, c, H, W] in [0, 1].
 
         Returns:
-            The values, and a mask [n, 1, H, W] of valid pixels (for depth: finite and above 0).
+            The values, and a mask [n, 1, H, W] of valid pixels. Depth is valid if it is finite and
+            above 0.
         """
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
@@ -85,13 +91,14 @@ class SensorRestorer(nn.Module):
         return torch.where(valid, x, 0.0).div(self.range).clamp(max=1), valid.float()
 
     def working(self, height: int, width: int) -> tuple[int, int]:
-        """Return the working size for frames of this size; both sides are multiples of 8."""
+        """Return the size at which frames are processed; both sides are multiples of 8 pixels."""
         scale = min(1.0, self.size / min(height, width))
         return tuple(max(1, round(n * scale / FACTOR)) * FACTOR for n in (height, width))  # type: ignore[return-value]
 
     def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
-        """Resize values and mask to the working size, so that holes do not darken their
-        neighbours.
+        """Resize values and mask to the working size.
+
+        Invalid pixels have no weight, so that they do not darken their neighbours.
         """
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
@@ -109,21 +116,22 @@ class SensorRestorer(nn.Module):
         return self._composed(x, valid, self._corrections(maps, outside), views)
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
-        """Encode frames at the working size.
+        """Encode frames at the working size, and detect corruption.
 
         Returns:
-            The maps of the U-Net; how far each pixel contradicts the other views [n, c, h, w], in
-            margins; and the gate's logits, one per time step.
+            The feature maps of the U-Net, the contradiction of each pixel with the other views [n,
+            c, h, w] in margins, and one logit of the gate per time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
-        """Return the U-Net's input, and how far each pixel contradicts the other views.
+        """Return the input of the U-Net, and by how much each pixel contradicts the other views.
 
-        The input contains the frame, the mask of valid pixels (for depth), the differences from the
-        smallest and largest value in the other views, and whether another view has a valid pixel.
+        The input consists of the frame, the mask of valid pixels (only for depth), the differences
+        from the smallest and the largest value in the other views, and a mask of the pixels for
+        which another view has a valid pixel.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
@@ -135,12 +143,12 @@ class SensorRestorer(nn.Module):
         return torch.cat([*inputs, (low - x) * 2, (high - x) * 2, has_other], 1), outside
 
     def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
-        """Return log gain, bias and logit of "lost" per pixel, at the working size."""
+        """Return the log gain, bias and "lost" logit of each pixel, at the working size."""
         gain_bias, lost = self.net.decode(maps).tensor_split([2 * CHANNELS[self.sensor]], 1)
         return torch.cat([gain_bias, lost + self.alone * outside], 1)
 
     def _composed(self, x: Tensor, valid: Tensor, maps: Tensor, views: int) -> Tensor:
-        """Return frames [n, c, H, W] restored with the ``maps`` from :meth:`_corrections`."""
+        """Restore frames [n, c, H, W] with the ``maps`` that :meth:`_corrections` returned."""
         channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
         maps = maps if full == small else _resized(maps, full)
         gain, bias, lost = maps.split(channels, 1)
@@ -161,8 +169,8 @@ class SensorRestorer(nn.Module):
         """Restore frames [V, H, W, c] if the gate classifies them as corrupted.
 
         Returns:
-            Whether they were restored, and the frames. The frames are unchanged if they are
-            classified as clean, are out of the training range, or would change too much.
+            Whether the frames were restored, and the resulting frames. Frames stay unchanged if
+            they are classified as clean, are outside the training range, or would change too much.
         """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
@@ -177,9 +185,9 @@ class SensorRestorer(nn.Module):
 
     @torch.inference_mode()
     def doubt(self, frames: Tensor) -> float:
-        """Return the gate's logit minus its threshold, for frames [V, H, W, c] of one time step.
+        """Return the gate's logit for the frames [V, H, W, c] of a time step, minus the threshold.
 
-        The value is -inf for frames out of the training range.
+        The value is -inf for frames outside the training range.
         """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
@@ -187,10 +195,11 @@ class SensorRestorer(nn.Module):
         return float(self.judge(*self.small(x, valid), len(frames))[2] - self.threshold)
 
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
-        """Return whether frames [V, H, W, c] have valid pixels, and most of them are within
-        ``far``.
+        """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        For RGB frames, the result is always true. Warns if too much depth is beyond ``far``.
+        RGB frames always are within the range. Depth frames must have valid pixels, of which at
+        most a fraction :data:`BEYOND` may be beyond ``far``. If a larger fraction is beyond
+        ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB
@@ -205,7 +214,7 @@ class SensorRestorer(nn.Module):
         return near
 
     def unscaled(self, out: Tensor) -> Tensor:
-        """Convert values [n, c, H, W] to frames [n, H, W, c]: uint8, or metres above 0."""
+        """Convert values [n, c, H, W] to frames [n, H, W, c]: uint8 colours, or metres above 0."""
         out = out.clamp(0, 1).permute(0, 2, 3, 1)
         if self.sensor == RGB:
             return (out * self.range).round().to(torch.uint8)
@@ -213,7 +222,7 @@ class SensorRestorer(nn.Module):
 
 
 def _share(mask: Tensor, valid: Tensor) -> float:
-    """Return the fraction of valid pixels (``valid`` [n, 1, H, W]) for which ``mask`` is true."""
+    """Return the fraction of the pixels in ``valid`` [n, 1, H, W] for which ``mask`` is true."""
     return float((mask * valid).sum() / (valid.sum() * mask.shape[1]))
 
 

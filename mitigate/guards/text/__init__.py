@@ -1,1 +1,1 @@
-"""The safeguard, which converts a corrupted instruction to a plain one before an episode."""
+"""The safeguard, which repairs a corrupted instruction before the episode starts."""

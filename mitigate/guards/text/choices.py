@@ -1,5 +1,6 @@
-"""Parse the values of ``safeguard=`` (names, folders and endpoints), with their labels and
-hashes.
+"""Parse the values of ``safeguard=``, and compute their labels and hashes.
+
+A value is a name, a folder or an endpoint.
 """
 
 from __future__ import annotations
@@ -19,21 +20,22 @@ CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
 CLASSIFIER, ADAPTER = SHIPPED, "checkpoints/safeguard"
 # file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
-# Names of earlier versions; all of them now mean the classifier.
+# Names of safeguards in earlier versions. All these names now select the classifier.
 REPLACED = {"rules": "classifier", "tagger": "classifier", "reader": "classifier"}
 FOLDER = (
     "A safeguard's folder holds classifier.json and classifier.safetensors (`python -m "
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
-# version of the decisions, which increases whenever any text is repaired differently
+# version of the repair rules; increase it whenever the repair of any text changes
 VERSION = "13"
 ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 
 def current(choice: str) -> str:
-    """Return the current name of a choice. This warns about the names ``tagger`` and ``reader``,
-    which no longer exist.
+    """Replace an old name of a safeguard by its current name.
+
+    Warns about ``tagger`` and ``reader``, because these safeguards no longer exist.
     """
     first, plus, second = choice.partition("+")
     if first not in REPLACED:
@@ -53,11 +55,14 @@ def _warn(name: str, choice: str, instead: str) -> None:
 
 
 def check(choice: object) -> None:
-    """Raise ValueError if a choice is not a safeguard, or FileNotFoundError if a folder contains
-    none. This reads no weights and sends no requests.
+    """Check that ``choice`` names a safeguard.
+
+    Raises ValueError if there is no such safeguard, and FileNotFoundError if ``choice`` is a folder
+    without a safeguard. No weights are read and no requests are sent.
     """
     text = choice if isinstance(choice, str) else ""
-    check_choice(text)  # checked before any output can contain the value
+    # rejects a value that may contain a password, before a message can show the value
+    check_choice(text)
     first, plus, second = text.partition("+")
     name = second if plus and first in REPLACED else text
     if name.lower().startswith(("http://", "https://")):
@@ -65,7 +70,8 @@ def check(choice: object) -> None:
     alone = bool(plus) and name in ("none", *REPLACED, "classifier")
     if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
         cause = f"This value names no safeguard that exists. Choose one of: {', '.join(CHOICES)}."
-        if is_plain(choice):  # any other value may contain a password
+        # other values may contain a password, so the message does not show them
+        if is_plain(choice):
             cause = unknown("safeguard", choice, CHOICES)
         raise ValueError(f"{cause} Or name a folder. {FOLDER}")
     if name not in (*CHOICES, *REPLACED) and kind(name) is None:
@@ -73,9 +79,9 @@ def check(choice: object) -> None:
 
 
 def kind(folder: str | Path) -> str | None:
-    """Return "classifier" or "adapter" depending on the content of a folder, or None.
+    """Return whether a folder contains a "classifier" or an "adapter", or None if neither.
 
-    Raises ValueError for a folder that contains both, or a removed tagger or reader.
+    Raises ValueError if the folder contains both, or a tagger or reader of an earlier version.
     """
     folder = Path(folder)
     classifier = (folder / CONFIG).is_file()
@@ -111,8 +117,10 @@ def not_in(folder: str | Path) -> str:
 
 
 def label(choice: str) -> str:
-    """Return a label for a safeguard: its name, a folder with its hash, or an endpoint's host and
-    model.
+    """Return the label of a safeguard for column names.
+
+    The label is the safeguard's name, the name of its folder with a hash, or the host and the model
+    of an endpoint.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
@@ -123,14 +131,15 @@ def label(choice: str) -> str:
     if file is None:
         return Path(choice).name
     folder = Path(choice)
-    while folder.name == "agent":  # every trained adapter is in a folder with this name
+    while folder.name == "agent":  # training writes every adapter to a folder called "agent"
         folder = folder.parent
     return f"{folder.name}-{sha256(file)[:6]}"
 
 
 def identity(choice: str) -> str:
-    """Return the label of a safeguard with a hash of its version and weights (unknown for
-    endpoints). "none" has no hash.
+    """Return the label of a safeguard with a hash of its version and weights.
+
+    The weights of an endpoint are unknown, so they are not hashed. "none" has no hash.
     """
     if choice == "none":
         return choice
@@ -147,7 +156,7 @@ def identity(choice: str) -> str:
 
 
 def weights_in(folder: str | Path) -> Path | None:
-    """Return the path of the weights in a safeguard folder, or None for other folders."""
+    """Return the path of the weights in a safeguard's folder, or None for any other folder."""
     if not Path(folder).is_dir():
         return None
     name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS, None: None}[kind(folder)]

@@ -1,7 +1,7 @@
 """Score the clauses of an instruction with logistic regressions on TF-IDF features.
 
-The terms are words, word pairs and letter groups. The scores are the features of the network in
-:mod:`segmenter`. Inference needs only numpy; :mod:`fit` trains the weights.
+The terms are words, pairs of words, and groups of letters. The scores are input features of the
+network in :mod:`segmenter`. Inference needs only numpy; :mod:`fit` trains the weights.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_p
 from mitigate.guards.text.segmenter import NAMES, Segmenter, features
 
 BITS = 18
-SIZE = 1 << BITS  # size of the table of hashed features
+SIZE = 1 << BITS  # length of the weight arrays; terms are hashed to indices below this number
 SHIPPED = "checkpoints/safeguard_classifier"
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
-EMPTY = 1e-3  # a text with a smaller sum of squares contains no known term
+EMPTY = 1e-3  # if the sum of squared TF-IDF values is smaller, the text contains no known term
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
 _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")
@@ -40,7 +40,10 @@ _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
-    """Return the counts of a clause's hashed terms: words, pairs, letter groups and marks."""
+    """Return the counts of a clause's hashed terms.
+
+    Terms are words, pairs of words, groups of letters, punctuation, and marks of hidden text.
+    """
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -70,7 +73,7 @@ def _hashed(name: str) -> int:
 
 @lru_cache(maxsize=20_000)
 def _word_terms(word: str) -> tuple[int, ...]:
-    """Return the terms for a word and for its groups of three to five letters."""
+    """Return the hashed terms of a word and of its groups of three to five letters."""
     edged = f"<{word}>"
     groups = [f"c{edged[i : i + n]}" for n in (3, 4, 5) for i in range(len(edged) - n + 1)]
     return tuple(map(_hashed, [f"w {word}", *groups]))
@@ -82,11 +85,11 @@ class Clause:
 
     Attributes:
         piece: Position of the clause in the text.
-        sentence: Index of its sentence.
+        sentence: Index of the sentence that contains the clause.
         words: Number of words.
-        letters: Number of letters; a Chinese, Japanese or Korean character counts as three.
-        script: "latin", "other", or "" if the text has no letters.
-        product: Sum of the clause's TF-IDF values times the attack weights.
+        letters: Number of letters. A Chinese, Japanese or Korean character counts as three letters.
+        script: "latin", "other", or "" if the clause has no letters.
+        product: Sum of the products of the clause's TF-IDF values and the attack weights.
         square: Sum of the clause's squared TF-IDF values.
         style: Log odds that the clause is in an unusual style.
     """
@@ -105,9 +108,10 @@ class Classifier:
     """The trained weights, and methods that score texts with them.
 
     Args:
-        config: Settings: common words, and the biases of the attack and style weights.
-        arrays: ``idf``, attack weights ``alone`` and style weights ``style``, each [SIZE], and the
-            weights of the networks (:class:`Segmenter`), which only a classifier in training lacks.
+        config: The list of common words, and the biases of the two regressions.
+        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each of shape
+            [SIZE]. The weights of the networks (:class:`Segmenter`) are also included, except while
+            a classifier is trained.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -122,7 +126,7 @@ class Classifier:
             self.arrays |= self.segmenter.arrays
 
     def clauses(self, text: str) -> list[Clause]:
-        """Return the clauses of a text with their features."""
+        """Split a text into clauses, and return them with their features."""
         results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
@@ -145,30 +149,34 @@ class Classifier:
         return results
 
     def score(self, clauses: Sequence[Clause]) -> float:
-        """Return the log odds that some clauses, taken together as one text, are an attack."""
+        """Return the log odds that the text formed by ``clauses`` is an attack."""
         product = sum(clause.product for clause in clauses)
         return float(self.log_odds(product, sum(clause.square for clause in clauses)))
 
     def log_odds(self, product: Any, square: Any) -> np.ndarray:
-        """Return the log odds for sums of ``product`` and ``square``; 0 for an empty text."""
+        """Return the log odds of an attack, or 0 for an empty text.
+
+        ``product`` and ``square`` are sums of these attributes over the clauses of the text.
+        """
         odds = product / np.sqrt(np.maximum(square, EMPTY)) + self.bias
         return np.where(np.asarray(square) > EMPTY, odds, 0.0)
 
     def attack(self, text: str, clauses: Sequence[Clause], bonus: float) -> tuple[float, int, int]:
-        """Return the log odds that a text contains an attack, and the attack's first and last
-        clause. ``bonus`` lengthens the attack (:meth:`Segmenter.attack`).
+        """Return the log odds that a text contains an attack, and its first and last clause.
+
+        A larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
         """
         return self.segmenter.attack(features(text, clauses, self), bonus)
 
     def styled(self, text: str) -> bool:
-        """Return whether a sentence is written in an unusual style rather than as a plain route."""
+        """Return whether a sentence is in an unusual style, and not worded as a plain route."""
         index, value = weighted(terms(decode(text, self.known), text, False), self.idf)
         norm = math.sqrt(float(value @ value)) + 1e-6
         return float(self.arrays["style"][index] @ value) / norm + self.style_bias > 0
 
 
 def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices and TF-IDF values of terms."""
+    """Return the indices of the terms in ``found`` and their TF-IDF values."""
     index = np.fromiter(found, np.int64, len(found))
     count = np.fromiter(found.values(), np.float32, len(found))
     return index, (1 + np.log(count)) * idf[index] if len(index) else count
@@ -176,8 +184,9 @@ def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.
 
 @lru_cache(maxsize=4)
 def load(folder: str | Path) -> Classifier:
-    """Load the classifier in a folder. Raises FileNotFoundError if a file is missing, and
-    ValueError if a file is damaged.
+    """Load the classifier in a folder.
+
+    Raises FileNotFoundError if a file is missing, and ValueError if a file is damaged.
     """
     config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
     for needed in (config_file, file):
@@ -190,7 +199,8 @@ def load(folder: str | Path) -> Classifier:
         config = read_json(config_file, _AGAIN)
         if not problem:
             arrays = load_file(file)
-            if NAMES[0] not in arrays:  # an earlier version trained no network
+            # folders of earlier versions contain no networks, so use the shipped ones
+            if NAMES[0] not in arrays:
                 shipped = load_file(find(SHIPPED) / WEIGHTS)
                 arrays |= {name: shipped[name] for name in NAMES}
             classifier = Classifier(config, arrays)

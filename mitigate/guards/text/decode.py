@@ -1,6 +1,6 @@
 """Decode hidden words: ciphers, codes, look-alike letters and spelled-out words.
 
-The decoded copy is used only to detect attacks. The text that the agent receives keeps its
+The decoded copy of a text is used only to detect attacks. The agent receives the original
 characters, except invisible ones.
 """
 
@@ -22,7 +22,8 @@ _ALIKE = str.maketrans(
 _LEET = str.maketrans("0134578@$!|€", "oieastbasiie")
 _SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*/|~]|\s+)){3,}[A-Za-z](?![^\W_])")
 _MIXED = re.compile(r"(?<!\w)(?=[\w@$!|€]*[A-Za-z@$!|€])(?=[\w@$!|€]*[0-9@$!|€])[\w@$!|€]{2,}")
-# patterns of harmless words with digits: numbers with a unit or letter, room names, end marks
+# words with digits or signs that are not leetspeak: numbers with a unit or a letter, room names
+# such as "A12", and words that end in "!" or "|"
 _MEASURE = re.compile(
     r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|am|pm|[a-zA-Z])?[!|]*$|(?:[A-Z]{1,3}|[a-z])\d+[!|]*$|"
     r"[A-Za-z]+[!|]+$"
@@ -41,15 +42,17 @@ _MORSE_CODES = (
     ".-- -..- -.-- --.."
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
-_JOINERS = "\u200c\u200d"  # invisible joiners, which Indic scripts and Persian need
-# minimum fraction of known words in decoded text, and maximum fraction in hidden text
+_JOINERS = "\u200c\u200d"  # invisible joiners, which are needed in Indic scripts and in Persian
+# minimum fraction of letters in known words for a decoded text, and maximum fraction for a text to
+# be deciphered
 ENGLISH, HIDDEN = 0.6, 0.45
 
 
 @dataclass(frozen=True)
 class Decoded:
-    """``text``: the readable copy. ``marks`` lists the ways in which words were hidden, such as
-    "code" or "leet".
+    """The readable copy of a text.
+
+    ``marks`` names the methods by which words were hidden, such as "code" or "leet".
     """
 
     text: str
@@ -57,7 +60,7 @@ class Decoded:
 
 
 def decode(text: str, known: Set[str]) -> Decoded:
-    """Return the decoded copy of a piece of text; ``known`` contains common English words."""
+    """Decode a piece of text; ``known`` contains common English words."""
     marks: set[str] = set()
     if not text.isascii():
         text = _letters(text, marks)
@@ -84,8 +87,9 @@ def decode(text: str, known: Set[str]) -> Decoded:
 def visible(text: str) -> str:
     """Return ``text`` without invisible characters.
 
-    Joiners are kept between letters of scripts that need them. Text after a right-to-left override
-    is put into the order in which it is displayed.
+    Joiners that follow a letter outside ASCII are kept, because some scripts need them. The
+    characters after a right-to-left override are reversed, into the order in which they are
+    displayed.
     """
     if text.isascii():
         return text
@@ -124,7 +128,10 @@ def _letters(text: str, marks: set[str]) -> str:
 
 
 def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
-    """Return the decoded text of a code, or the code itself if it does not decode to letters."""
+    """Decode a match of a code's pattern.
+
+    If the result does not consist mostly of letters, return the code unchanged.
+    """
     coded = match.group()
     try:
         decoded = read(coded)
@@ -179,7 +186,7 @@ _CODES: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
 
 
 def _joined(match: re.Match[str]) -> str:
-    """Return the words that were spelled out letter by letter."""
+    """Join the letters of words that were spelled out letter by letter."""
     letters = match.group()
     parts = (
         re.split(r"\s{2,}|\s*[/|]\s*", letters) if re.search(r"\s{2,}|[/|]", letters) else [letters]
@@ -188,7 +195,7 @@ def _joined(match: re.Match[str]) -> str:
 
 
 def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
-    """Return a word with its digits replaced by letters, if the result is a known word."""
+    """Replace digits and signs in a word by letters, if the result is a known word."""
     if _MEASURE.fullmatch(word):
         return word
     read = word.lower().translate(_LEET)
@@ -204,7 +211,7 @@ def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
 
 
 def _ciphers(text: str) -> Iterator[str]:
-    """Yield the text decoded with each common cipher."""
+    """Yield candidates: the text decoded with each of the common ciphers."""
     lower = text.lower()
     for shift in range(1, 26):
         yield "".join(chr((ord(c) - 97 + shift) % 26 + 97) if "a" <= c <= "z" else c for c in lower)
@@ -215,7 +222,7 @@ def _ciphers(text: str) -> Iterator[str]:
 
 
 def _share(text: str, known: Set[str]) -> float:
-    """Return the fraction of letters that belong to known words."""
+    """Return the fraction of the letters in ``text`` that belong to known words."""
     tokens = _WORD.findall(text.lower())
     total = sum(map(len, tokens))
     return sum(

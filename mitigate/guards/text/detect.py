@@ -1,9 +1,9 @@
-"""Find attacks in an instruction, and remove them if the gate allows it.
+"""Find attacks in an instruction, and remove each attack that the gate allows to be removed.
 
-The networks in :mod:`segmenter` judge the clauses of the text together. They first decide whether
-the text contains an attack, and then where the attack begins and ends. This is repeated, because a
-text can contain more than one attack. The constants were chosen on the half "choose" of the test
-texts (``tools/safeguard``).
+The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
+the text contains an attack, and where the attack begins and ends. The search is repeated, because a
+text can contain several attacks. The constants were chosen on one part of the test texts, called
+"choose" (``tools/safeguard``).
 """
 
 from __future__ import annotations
@@ -16,29 +16,33 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.classifier import Classifier, Clause
 from mitigate.guards.text.pieces import Piece, without
 
-# if more than this fraction of letters is in a different script, the route may be in that script
+# if more than this fraction of the letters is not Latin, the route may be in the other script
 FOREIGN = 0.3
-ROUTE = -1.0  # English text with a score below this is certainly a route
-ATTACK = 1.3  # log odds above which a text contains an attack
-# a span whose log odds in the regression are lower needs a higher score of the networks; without
-# this second opinion, three times as many R2R-CE routes were harmed
+ROUTE = -1.0  # English text whose log odds of an attack are below this is certainly a route
+ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
+# If the regression gives the detected span lower log odds than this, the difference is subtracted
+# from the networks' score. Without this second opinion, three times as many R2R-CE routes were
+# harmed.
 SURE = 1.0
-LONGER = 0.1  # bonus per clause of an attack; without it, parts of attacks were left over
-# a neighbour of an attack that says nothing about the way is removed above this score
+LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remained in the text
+# a clause next to an attack that says nothing about the route is also removed if its log odds are
+# above this
 BESIDE = -2.0
-GOAL = 17  # a single sentence with fewer words than this is often only an object goal
-BARE = 1.9  # added to ``ATTACK`` for such a sentence
+GOAL = 17  # a text of one sentence with fewer words is often only the name of a goal object
+# ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words
+BARE = 1.9
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
-SHORTEST = 3  # minimum words of an English attack that is removed from text in a different script
-READ = 60_000  # maximum characters that are analysed
+# an English attack in a text in another script is removed only if it has at least this many words
+SHORTEST = 3
+READ = 60_000  # maximum number of characters of a text that are analysed
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
-    """Return ``text`` without its foreign pieces, the removed pieces, and the rejections of the
-    gate.
+    """Remove the attacks from ``text``.
 
-    Only whole pieces are removed, and the result is always an instruction.
+    Returns the remaining text, the removed pieces, and the gate's reasons to keep other pieces.
+    Only whole clauses are removed, and an instruction always remains.
     """
     removed: list[str] = []
     refusals: list[str] = []
@@ -59,8 +63,10 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 
 
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
-    """Return the foreign pieces of a text: at most one, or all English attacks next to text in a
-    different script.
+    """Return the pieces of a text that are attacks.
+
+    At most one piece is returned. If most of the text is in another script, all English attacks are
+    returned.
     """
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]
@@ -101,9 +107,9 @@ def _is_step(text: str) -> bool:
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
-    """Return English sequences that look like attacks, in a text mostly in a different script.
+    """Return the English pieces that look like attacks, in a text in another script.
 
-    The route is in that script, so text in it is never removed.
+    The route is in the other script, so text in that script is never removed.
     """
     spans = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):

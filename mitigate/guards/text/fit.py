@@ -1,11 +1,12 @@
 """Train the classifier: ``python -m mitigate.guards.text.fit --out FOLDER``.
 
-The command reads the texts of a checkout (``tools/safeguard/data``). One logistic regression learns
-whether a sentence or clause belongs to an attack, and a second one whether it is in an unusual
-style. Then ``NETWORKS`` networks with different seeds learn where an attack begins and ends, from
-texts in which attacks are joined to honest texts. The scores of these texts come from regressions
-that were trained without their groups. Otherwise the networks would rely on scores that are better
-than those of new texts.
+The command needs a checkout of the repository, because it reads the texts in
+``tools/safeguard/data``. First, two logistic regressions are trained: one predicts whether a
+sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then
+``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. The
+training texts of the networks are honest texts to which attacks were added. The regression scores
+of a training text come from regressions that were trained without the text's fold. Otherwise, the
+scores would be more accurate than those of new texts, and the networks would rely on them too much.
 """
 
 from __future__ import annotations
@@ -38,21 +39,23 @@ from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 from mitigate.guards.text.segmenter import NAMES, features
 
 DATA = "tools/safeguard/data"
-WORDS = 6000  # maximum number of common words, which are used to recognise hidden text
-BACKWARDS = 50  # a word whose reversal is this many times as frequent is written backwards
-RIDGE = 2.0  # penalty
+# maximum number of common words; hidden text is recognised with the help of these words
+WORDS = 6000
+BACKWARDS = 50  # a word counts as written backwards if its reversal is this many times as frequent
+RIDGE = 2.0  # weight of the L2 penalty
 STEPS, STYLE_STEPS = 90, 50
-FOLD_STEPS = 40  # steps of the regressions that are trained without one fold
-NETWORKS = 2  # number of networks, whose scores are averaged
+FOLD_STEPS = 40  # number of training steps of the regressions for the folds
+NETWORKS = 2  # number of networks; their scores are averaged
 Weights = tuple[np.ndarray, float]
 Pair = tuple[Weights, Weights]
 
 
 @dataclass(frozen=True)
 class Regressions:
-    """The regressions on TF-IDF values: of attacks and of styles, each as (weights [SIZE], bias).
+    """The two regressions on TF-IDF values, for attacks and for styles.
 
-    ``complete`` contains both regressions, and ``folds`` those that were trained without one fold.
+    A regression is a pair (weights [SIZE], bias). ``complete`` contains the regressions that were
+    trained on all texts. ``folds[i]`` contains the regressions that were trained without fold i.
     """
 
     words: list[str]
@@ -63,11 +66,11 @@ class Regressions:
     def classifier(
         self, fold: int | None = None, network: Mapping[str, np.ndarray] | None = None
     ) -> Classifier:
-        """Return the classifier, without texts of ``fold`` if a fold is given."""
+        """Return the classifier that was trained on all texts, or on all texts outside ``fold``."""
         pair = self.complete if fold is None else self.folds[fold]
         (alone, bias), (style, style_bias) = pair
         config = {"words": self.words, "bias": bias, "style_bias": style_bias}
-        # terms that occur only in the fold have a weight of 0; they are as unknown as in new texts
+        # a term that occurs only in the fold has the weight 0, so it is treated as an unknown term
         idf = np.where(alone == 0, 0, self.idf)
         return Classifier(
             config, {"idf": idf, "alone": alone, "style": style} | dict(network or {})
@@ -135,7 +138,10 @@ def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
 
 
 def _example(splice: Splice, classifier: Classifier) -> Example | None:
-    """Return the features of a training text; None for texts with very many or no clauses."""
+    """Return the features of a training text.
+
+    Returns None if the text has no clauses or too many.
+    """
     clauses = classifier.clauses(splice.text)
     if not 0 < len(clauses) <= LONGEST:
         return None
@@ -151,7 +157,7 @@ def _example(splice: Splice, classifier: Classifier) -> Example | None:
 
 
 def common_words(lines: Sequence[Line]) -> list[str]:
-    """Return the most frequent words in lines, without words that are written backwards."""
+    """Return the most frequent words in ``lines``, except words that are written backwards."""
     word = re.compile(r"[a-z]+(?:'[a-z]+)?")
     counts = Counter(w for line in lines for w in word.findall(line.text.lower()))
     common = counts.most_common(WORDS)
@@ -159,7 +165,10 @@ def common_words(lines: Sequence[Line]) -> list[str]:
 
 
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
-    """Yield (text, is_block, line, weight) for whole lines, their sentences and their clauses."""
+    """Yield (text, is_block, line, weight) for each line, sentence and clause.
+
+    ``is_block`` says whether the text stands between delimiters.
+    """
     for line in lines:
         for text in line.text.split("{route}"):
             sentences = sentence_pieces(text)
@@ -173,7 +182,10 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
 
 
 def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
-    """Return the TF-IDF of terms, with rows of unit norm; terms that occur once are omitted."""
+    """Return the TF-IDF matrix of the terms, with rows normalised to unit norm.
+
+    Terms with an IDF of 0, which occur only once, are omitted.
+    """
     rows = []
     for terms in term_counts:
         index, value = model.weighted(terms, idf)
@@ -186,8 +198,9 @@ def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_ma
 
 
 def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> Weights:
-    """Fit a logistic regression with an L2 penalty and balanced classes; return weights and
-    bias.
+    """Fit a logistic regression with an L2 penalty and balanced classes.
+
+    Returns the weights and the bias.
     """
     weight = weight / np.where(y, weight[y].sum(), weight[~y].sum()) * len(y) / 2
     sign = np.where(y, 1.0, -1.0)

@@ -1,9 +1,9 @@
-"""Check that a rewritten instruction keeps the meaning of the original. Each function returns the
-reason to reject a change, or "".
+"""Check that a changed instruction keeps the meaning of the original.
 
-A deletion removes whole pieces and keeps the wording of the others, so only the completeness of the
-remaining text is checked. A rewrite is checked fact by fact: turns, stops, landmarks, numbers,
-colours, relations and negations, in order.
+Each check returns the reason to reject a change, or "" to accept it. A deletion removes whole
+clauses and does not reword the rest, so it is only checked that an instruction remains. A rewrite
+must contain the same facts in the same order: turns, stops, landmarks, numbers, colours, relations
+and negations.
 """
 
 from __future__ import annotations
@@ -17,10 +17,11 @@ from mitigate.corruptions.language.words import bag
 from mitigate.guards.text.learning.route_words import ROOMS, THINGS
 
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
-LONG = 3000  # a text with this many characters contains an instruction
-LENGTH = 200  # number of characters that every rewrite may have (heuristic)
-TIMES = 4  # maximum length of a longer rewrite, as a multiple of the original's length (heuristic)
-LONGER = 3  # maximum number of words by which a rewrite may exceed the text that it replaces
+LONG = 3000  # longer texts are assumed to contain an instruction
+# a rewrite with at most this many characters is never too long to be checked (heuristic)
+LENGTH = 200
+TIMES = 4  # a longer rewrite may have up to this many times the length of the original (heuristic)
+LONGER = 3  # a rewrite may have at most this many words more than the original
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
@@ -32,13 +33,17 @@ _POLITE = re.compile(
 
 
 def words(text: str) -> list[str]:
-    """Return the words of a text in lower case; a mask is one word, "[mask]"."""
+    """Return the words of a text in lower case.
+
+    The mask "[mask]" is one word.
+    """
     return _WORD.findall(text.lower())
 
 
 def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
-    """Return the reason why ``rest``, the text without ``removed``, is not an instruction, or
-    "".
+    """Return the reason why ``rest`` is no longer an instruction, or "" if it is one.
+
+    ``rest`` is the text that remains after the piece ``removed`` was deleted.
     """
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
@@ -57,9 +62,9 @@ def is_too_long(heard: str, rewrite: str) -> bool:
 
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
-    """Return the reason why ``said`` must not replace ``heard``, or "" if it may.
+    """Return the reason why ``rewrite`` must not replace ``heard``, or "" if it may.
 
-    If ``last`` is true, ``said`` may add a stop.
+    If ``last`` is true, ``rewrite`` may add a stop.
     """
     if rewrite is None:
         return "no answer in time"
@@ -77,7 +82,10 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
 
 
 def _is_aside(problem: str, heard: str) -> bool:
-    """Return whether a lost word is not a landmark: it is unknown and has no article before it."""
+    """Return whether ``problem`` reports a lost word that is probably not a landmark.
+
+    A lost word is probably not a landmark if it is unknown and no article precedes it.
+    """
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False

@@ -1,8 +1,9 @@
-"""The safeguard before an agent, which reads each instruction once and repairs it.
+"""The safeguard, which repairs each instruction once before the agent receives it.
 
-Three parts. Detect (:mod:`detect`): a classifier finds text that does not belong to the
-instruction. Rewrite (:mod:`language_models`): a language model, if one is chosen, rewrites the rest
-plainly. Gate (:mod:`gate`): a change is accepted only if it preserves the instruction.
+The safeguard has three parts. In :mod:`detect`, a classifier finds text that does not belong to the
+instruction. In :mod:`language_models`, a language model, if the user chose one, rewrites the rest
+in plain words. In :mod:`gate`, rules accept a change only if it preserves the meaning of the
+instruction.
 """
 
 from __future__ import annotations
@@ -26,19 +27,20 @@ from mitigate.guards.text.pieces import script, sentences
 
 CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
-SECONDS = 20.0  # seconds for the language model per instruction
+SECONDS = 20.0  # time limit of the language model in seconds per instruction
 REMEMBERED = 4096  # maximum number of texts whose decisions are cached
-# number of words that are rewritten at once (about a sentence); with 30, the model lost clauses
+# words per passage that is rewritten at once, about a sentence; with 30, the model lost clauses
 PASSAGE = 12
-TOO_LARGE = 6000  # maximum characters of a rewritten text; 600 words have about 3,300 (heuristic)
-TOO_LONG = 600  # maximum words of a text that is rewritten (the longest of RxR have about 500)
+# a text with more characters is not rewritten (heuristic; 600 words have about 3,300)
+TOO_LARGE = 6000
+TOO_LONG = 600  # a text with more words is not rewritten; the longest texts of RxR have about 500
 LOOKS = re.compile(
     r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*", re.I
 )
 
 
 class Rewriter(Protocol):
-    """Protocol of a language model that is local or behind an endpoint."""
+    """Interface of a language model, which may run locally or behind an endpoint."""
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
 
@@ -47,10 +49,10 @@ class Rewriter(Protocol):
 class Decision:
     """The safeguard's decision on one instruction.
 
-    ``route``: "clean" (unchanged), "classifier" (changed without a language model), "model"
-    (rewritten by the model), or "fallback" (no answer of the model was accepted). ``reasons`` lists
-    accepted and rejected changes. ``seconds`` is the part of the computing time for this
-    instruction.
+    ``route`` is "clean" if the instruction is unchanged, "classifier" if it was changed without a
+    language model, "model" if the model rewrote it, and "fallback" if no answer of the model was
+    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is this instruction's
+    part of the computing time.
     """
 
     original: str
@@ -61,14 +63,15 @@ class Decision:
 
 
 class Safeguard:
-    """Repairs instructions. The decision on a text is cached until ``REMEMBERED`` other texts have
-    been processed.
+    """Repairs instructions.
+
+    The decision on a text is cached until ``REMEMBERED`` other texts have been processed.
 
     Args:
         rewriter: a language model, or None.
-        classifier: the classifier that finds foreign text; None loads the shipped one.
-        seconds: time limit for the model per instruction; later answers are not used.
-        log: JSON-lines file to which every new decision is appended.
+        classifier: the classifier that finds attacks. The default is the shipped one.
+        seconds: time limit for the model per instruction. Answers after this time are not used.
+        log: file to which each new decision is appended as a line of JSON.
     """
 
     def __init__(
@@ -88,23 +91,23 @@ class Safeguard:
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
-        """Return the decision on one instruction. Raises TypeError if the instruction is not
-        text.
+        """Return the decision on one instruction.
+
+        Raises TypeError if the instruction is not a string.
         """
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
         """Return the decision on each text; the model rewrites passages of all texts in batches.
 
-        Raises TypeError for a single string instead of a list, and for an instruction that is not
-        text.
+        Raises TypeError if ``texts`` is a single string or if an instruction is not a string.
         """
         if isinstance(texts, str):
-            raise TypeError(f"These must be several texts, but this is one: [{texts!r}] is a list.")
+            raise TypeError(f"texts must be a list of strings, got a string. Pass [{texts!r}].")
         texts = list(texts)
         for text in texts:
             if not isinstance(text, str):
-                raise TypeError(f"An instruction must be a text (str), but this one is {text!r}.")
+                raise TypeError(f"An instruction must be a string, got {text!r}.")
         known = {text: self._known[text] for text in texts if text in self._known}
         fresh = [text for text in dict.fromkeys(texts) if text not in known]
         began = time.monotonic()
@@ -127,7 +130,7 @@ class Safeguard:
 
 
 class _Draft:
-    """An instruction in progress: the remaining text, its passages, and the reasons so far."""
+    """An instruction during its repair, with its passages and the reasons collected so far."""
 
     def __init__(self, original: str, classifier: Classifier, rewrites: bool) -> None:
         self.original = original
@@ -157,7 +160,7 @@ class _Draft:
         self.requested = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
 
     def accept(self, answers: dict[str, str | None]) -> None:
-        """Replace passages by those answers that pass the gate."""
+        """Replace each requested passage by the model's answer if the gate accepts the answer."""
         parts = list(self.parts)
         for place, heard in enumerate(self.parts):
             if heard not in self.requested:
@@ -195,10 +198,15 @@ class _Draft:
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
     """Build the safeguard that ``choice`` names; return None for "none".
 
-    "classifier" (``checkpoints/safeguard_classifier``; "rules" is its earlier name) or the folder
-    of a classifier; "prompted" (the default language model without fine-tuning); "lora"
-    (``checkpoints/safeguard``) or an adapter folder; ``http://host/v1@model`` for an
-    OpenAI-compatible endpoint. Raises ValueError or FileNotFoundError.
+    The choices are:
+
+    - "classifier" for ``checkpoints/safeguard_classifier`` ("rules" is its earlier name), or the
+      folder of another classifier;
+    - "prompted" for the default language model without fine-tuning;
+    - "lora" for the adapter ``checkpoints/safeguard``, or the folder of another adapter;
+    - ``http://host/v1@model`` for a model behind an OpenAI-compatible endpoint.
+
+    Raises ValueError or FileNotFoundError if the choice is invalid.
     """
     choices.check(choice)
     name = choices.current(choice)
@@ -227,7 +235,7 @@ def _opened(name: str, log: str | Path | None) -> Safeguard:
 
 
 def passages(text: str) -> list[str]:
-    """Split a text into passages of about ``PASSAGE`` words, joining short sentences."""
+    """Split a text into passages of about ``PASSAGE`` words; short sentences are joined."""
     results: list[str] = []
     for sentence in sentences(text):
         if results and len(results[-1].split()) + len(sentence.split()) <= PASSAGE:

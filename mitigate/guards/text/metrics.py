@@ -1,4 +1,4 @@
-"""Compute text metrics of a safeguard, by family: what repaired instructions keep and lose."""
+"""Compute text metrics that compare repaired instructions with the originals."""
 
 from __future__ import annotations
 
@@ -10,18 +10,20 @@ from dataclasses import asdict, dataclass, fields
 from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
-CLEAN = "clean"  # the family of instructions that are not corrupted
-# an injected sentence is removed if less than this fraction of its word pairs is left (heuristic)
+CLEAN = "clean"  # name of the family that contains the instructions without corruption
+# an injected sentence counts as removed if less than this fraction of its word pairs remains
+# (heuristic)
 REMAINS = 0.5
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 
 @dataclass(frozen=True)
 class Repair:
-    """One instruction: the original (``clean``), the safeguard's input, and its output.
+    """One repaired instruction.
 
-    ``family`` is the corruption family, or "clean". ``injected`` lists the sentences that were
-    inserted before it.
+    ``clean`` is the original, ``heard`` the safeguard's input, and ``repaired`` its output.
+    ``family`` is the corruption family, or "clean". ``injected`` lists the sentences that the
+    corruption inserted before the instruction.
     """
 
     family: str
@@ -33,14 +35,18 @@ class Repair:
 
 @dataclass(frozen=True)
 class Scores:
-    """Means over ``count`` repairs, each in [0, 1], or None if a measure is undefined.
+    """Means over ``count`` repairs.
 
-    ``exact``: same words. ``token_f1``: ``f1``: F1 score of the bags of words. ``chrf``: corpus
-    chrF2 (Popovic 2015) from sacrebleu. ``directions``: fraction with the same directions (left,
-    right, up, down, stop ...) in the same order. ``landmarks``: fraction of the clean landmarks
-    that are kept. ``faithful``: fraction without a change of meaning, by ``fidelity.check``.
-    ``removed``: fraction of injected sentences that are removed. ``changed``: 1 - ``faithful`` for
-    clean instructions.
+    Each mean is in [0, 1], or None if the measure is undefined.
+
+    ``exact`` is the fraction of repaired instructions that have the same words as the original.
+    ``token_f1`` is the F1 score of the bags of words. ``chrf`` is the corpus chrF2 (Popovic 2015)
+    from sacrebleu. ``directions`` is the fraction of repaired instructions that have the same
+    directions (left, right, up, down, stop ...) in the same order as the original. ``landmarks`` is
+    the fraction of the original landmarks that are kept. ``faithful`` is the fraction of
+    instructions for which ``fidelity.check`` finds no change of meaning. ``removed`` is the
+    fraction of injected sentences that were removed. ``changed`` is the fraction of clean
+    instructions whose meaning was changed.
     """
 
     count: int
@@ -55,7 +61,10 @@ class Scores:
 
 
 def score(repairs: Sequence[Repair]) -> Scores:
-    """Return the scores of ``repairs``. Raises ValueError if there are none."""
+    """Return the scores of ``repairs``.
+
+    Raises ValueError if the list is empty.
+    """
     if not repairs:
         raise ValueError("There are no repairs to score: give at least one.")
     from sacrebleu.metrics import CHRF
@@ -79,7 +88,10 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
 
 def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
-    """Return a dict from each family, in order of appearance, and "all" to the scores."""
+    """Return the scores by family.
+
+    Families are in order of appearance. The key "all" holds the scores of all repairs.
+    """
     groups: dict[str, list[Repair]] = defaultdict(list)
     every = list(repairs)
     for repair in every:
@@ -99,7 +111,7 @@ def table(scores: dict[str, Scores]) -> str:
 
 
 def token_f1(reference: str, text: str) -> float:
-    """Return the F1 score between the bags of words of ``text`` and ``reference``."""
+    """Return the F1 score of the words in ``text``, compared as a bag with ``reference``."""
     expected, actual = Counter(words_of(reference)), Counter(words_of(text))
     shared = (expected & actual).total()
     return 2 * shared / max(1, expected.total() + actual.total()) if shared else 0.0
@@ -115,19 +127,22 @@ def _same_directions(repair: Repair) -> bool:
 
 
 def _landmarks_kept(repair: Repair) -> tuple[int, int]:
-    """Return the number of clean landmarks that are kept, and their total number."""
+    """Return how many landmarks of the original are kept, and how many the original has."""
     landmarks = set(facts(repair.clean).landmarks)
     lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
     return len(landmarks) - lost, len(landmarks)
 
 
 def _gone(repair: Repair) -> list[bool]:
-    """Return for each injected sentence whether at least half of its word pairs are removed."""
+    """Return for each injected sentence whether more than half of its word pairs are removed."""
     return [left(sentence, repair.repaired) < REMAINS for sentence in repair.injected]
 
 
 def pairs(text: str) -> list[tuple[str, str]]:
-    """Return the pairs of neighbouring words; a single word forms a pair with nothing."""
+    """Return the pairs of adjacent words.
+
+    A text of one word gives one pair of this word and "".
+    """
     tokens = words_of(text)
     return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]
 

@@ -1,7 +1,8 @@
 """Split an instruction into sentences, and sentences into clauses.
 
-A piece is a span of the text, so that a deletion changes nothing else. Blocks (matching tags,
-comments, brackets) are separate pieces, and so is English text inside text in a different script.
+A piece is a span of the original text, so deleting it changes nothing else. A block between
+delimiters, such as tags or comment marks, is a separate piece. Where the script changes, a new
+piece begins.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.language.words import bag
 
-# Opening and closing marks that no route needs; the text between them is one piece. It has at most
-# 4,000 characters (heuristic), because searching to the end from each mark takes quadratic time.
+# Blocks between delimiters that no route needs; each block is one piece. The text between most
+# delimiters is limited to 4,000 characters (heuristic), because a search from each opening
+# delimiter to the end of the text would take quadratic time.
 _BLOCK = re.compile(
     r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.{0,4000}?\}\}"
     r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.{0,4000}?</\s*(?P=tag)\s*>"
@@ -27,9 +29,8 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# Words that begin a sentence. A capital after a word without an end mark shows where an attack was
-# added before or after a route, or where an end mark is missing.
-# "I" is not listed, because it is always a capital letter.
+# Words that begin a sentence. If one of them has a capital letter but no full stop precedes it, an
+# attack may begin or end there. "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
     "Follow|Veer|Step|Wait|Come|Get|Keep|Look|Cross|Face|Do|Don't|Never|Always|Ignore|Forget|Bring|Let|Let's|"
@@ -45,7 +46,8 @@ _CLAUSE = re.compile(
     r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
     r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
 )
-# words that begin a sentence in speech, and words after which a capital letter begins a name
+# _CALL: words that begin a sentence in speech. _LINKS: after these words, a capital letter begins a
+# name and not a sentence.
 _CALL = re.compile(r"(?:um+|uh|okay|ok|yo|hey|arr+|please|kindly)\b")
 _LINKS = bag(
     "the a an of to at in by on is my your our its and or for from with past this that into near"
@@ -54,14 +56,18 @@ LETTERS = re.compile(r"[^\W\d_]")
 _ABBREVIATION = re.compile(
     r"\b(?:Mr|Mrs|Ms|Dr|St|No|Prof|approx|ft|e\.g|i\.e|vs|rm|etc)\.\s*$", re.I
 )
-# number of characters that are searched for an abbreviation and the character before it
+# number of characters before a sentence boundary that are searched for an abbreviation
 ABBREVIATED = 10
-LONGEST_CLAUSE = 2  # minimum words of a clause; shorter clauses are joined to the previous one
+# minimum number of words of a clause; a shorter clause is joined to the previous one
+LONGEST_CLAUSE = 2
 
 
 @dataclass(frozen=True)
 class Piece:
-    """A span of a text: from ``start`` to ``end``, which may be a ``block`` between marks."""
+    """A span of a text, from ``start`` to ``end``.
+
+    ``block`` states whether it is a block between delimiters.
+    """
 
     start: int
     end: int
@@ -83,11 +89,14 @@ def sentence_pieces(text: str) -> list[Piece]:
 
 
 def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
-    """Return the clauses of a sentence, each with at least ``LONGEST_CLAUSE`` words if possible."""
+    """Return the clauses of a sentence.
+
+    If possible, each clause has at least ``LONGEST_CLAUSE`` words.
+    """
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
-    opened = False  # whether the last clause is a single word that begins something new
+    opened = False  # whether the last clause is one capitalised word that begins a new sentence
     for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
         first = text[piece.start]
         short = len(piece.of(text).split()) < LONGEST_CLAUSE and first not in "([{<"
@@ -120,7 +129,7 @@ def _sentence_cuts(part: str) -> list[tuple[int, int]]:
     cuts = [
         match.span()
         for match in _SENTENCE.finditer(part)
-        # searches only the last characters, because searching from the start takes quadratic time
+        # only the last characters are searched; a search from the start would take quadratic time
         if not _ABBREVIATION.search(part[: match.start()].rstrip()[-ABBREVIATED:])
     ]
     return cuts + [m.span() for m in _RUN_ON.finditer(part)]
@@ -131,10 +140,10 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _seams(part: str) -> list[tuple[int, int]]:
-    """Return the positions where an attack without an end mark may meet a route.
+    """Return the positions in a sentence where an attack and a route may meet without a full stop.
 
-    These are capital letters and calls such as "um" inside a sentence, and the ends of a series of
-    words in capitals.
+    An attack may begin at a word with a capital letter, at an interjection such as "um", or at the
+    start or end of several words in capitals.
     """
     cuts = []
     words = list(re.finditer(r"\S+", part))
@@ -152,7 +161,7 @@ def _seams(part: str) -> list[tuple[int, int]]:
 
 
 def _script_cuts(part: str) -> list[tuple[int, int]]:
-    """Return the positions at which the script changes between words."""
+    """Return the positions between two words in different scripts."""
     if part.isascii():
         return []
     cuts = []
@@ -166,7 +175,10 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return "latin" or "other" for the script of most letters, or "" without letters."""
+    """Return "latin" or "other" for the script of most letters.
+
+    For a text without letters, return "".
+    """
     letters = LETTERS.findall(text)
     if not letters:
         return ""
@@ -175,7 +187,7 @@ def script(text: str) -> str:
 
 
 def without(text: str, pieces: Sequence[Piece]) -> str:
-    """Return ``text`` with some pieces replaced by one space each."""
+    """Delete ``pieces`` from ``text``, and tidy up spaces and punctuation."""
     rest, at = "", 0
     for piece in sorted(pieces, key=lambda piece: piece.start):
         rest += text[at : piece.start].rstrip() + " "

@@ -1,4 +1,4 @@
-"""Repair capitals and masks in instructions with rules."""
+"""Repair words in capitals and masked words in instructions with rules."""
 
 from __future__ import annotations
 
@@ -14,10 +14,12 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Minimum number and fraction of known words in capitals from which all are converted to lower case;
-# fewer may be on a sign.
+# Words in capitals are converted to lower case only if the text has at least SHOUTS known words in
+# capitals, and if these are at least a fraction SHOUTED of all words. Fewer words in capitals may
+# be the text of a sign.
 SHOUTS, SHOUTED = 2, 0.15
-ROUTES = 4000  # number of generated routes whose words are counted (about one second, once)
+# number of generated routes whose words are counted; this takes about one second per process
+ROUTES = 4000
 SMALL = bag(
     "a an the and then your you of to in on at by is are it that there will so now just with next "
     "some this its be been have has from into for or as when once where which slight"
@@ -26,14 +28,15 @@ _SHOUT = re.compile(r"(?<![\[<])\b[A-Z][A-Z'’]+\b")
 _VERBS = MOTION | STOPS | TURN_VERBS
 _NOUNS = frozenset(CANONICAL) | frozenset(CANONICAL.values())
 _ROOMS = bag("dining living sitting waiting landing ceiling building opening railing painting")
-# Words that may follow a masked noun.
+# Words that may follow a noun. If such a word follows a mask, the mask may hide a noun.
 _BEHIND = SMALL | bag(
     "beside behind under between before past down up through across opposite towards toward "
     "but without not again until facing leading closest nearest along around near above below out "
     "inside outside over against off beyond within during since because if while about after my "
     "his her our their these those any each every no both all he she they we i me him them us"
 )
-# Masks that a function word cannot replace: part of a word, or the direction of a turn.
+# Masks that a function word cannot replace, because they hide part of a word or the direction of a
+# turn.
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
     r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"
@@ -49,9 +52,10 @@ _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 
 
 def lower_capitals(text: str, known: frozenset[str]) -> str:
-    """Return ``text`` with words in capitals converted to lower case, except initial letters.
+    """Convert words in capitals to lower case, except the first letter of a sentence.
 
-    ``known`` contains common words; a few unknown words in capitals may be names or on a sign.
+    ``known`` contains common words. If the text has only a few known words in capitals, they may be
+    names or the text of a sign, and nothing is changed.
     """
     shouted = [m.group().lower() for m in _SHOUT.finditer(text) if m.group() not in KEPT_CAPITALS]
     count = sum(word in known for word in shouted)
@@ -69,10 +73,10 @@ def lower_capitals(text: str, known: frozenset[str]) -> str:
 
 
 def fill_masks(text: str) -> str:
-    """Return ``text`` with every sequence of masks replaced by the best-fitting function word.
+    """Replace each sequence of masks in ``text`` by the function word that fits best.
 
-    A mask is kept if it hides a noun, a turn or part of a word. If a mask hides an adjective before
-    a noun, the mask is removed.
+    A mask that seems to hide a noun, a turn or part of a word is kept. A mask that seems to hide an
+    adjective before a noun is removed.
     """
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text
@@ -95,9 +99,9 @@ def fill_masks(text: str) -> str:
 
 
 def _hidden_adjective(match: re.Match[str]) -> str:
-    """Return the replacement of "the [mask]".
+    """Return the replacement for an article or a similar word and a mask, such as "the [mask]".
 
-    If a noun follows the mask, it is "the". Otherwise the mask hides a noun, and the text is kept.
+    If a noun follows the mask, the mask is removed. Otherwise the mask hides a noun and is kept.
     """
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS

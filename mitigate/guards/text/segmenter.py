@@ -1,10 +1,11 @@
 """Find the span of clauses that is an attack, with small recurrent networks.
 
-A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. It gives each
-clause a score, and each boundary between clauses a score for being an edge of the attack. The score
-of a span is the sum of its clauses' scores and its two edges, relative to "no attack". The network
-judges a clause in its context, so that an unusual style alone is not an attack. The scores of
-several networks are averaged. Inference needs only numpy;
+A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
+the network predicts a score for being part of an attack. For each boundary between clauses, it
+predicts a score for being the start or end of an attack. The score of a span is the sum of the
+scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
+network reads each clause in its context, it does not take an unusual style for an attack. The
+scores of several networks are averaged. Inference needs only numpy;
 :mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """
 
@@ -22,12 +23,14 @@ if TYPE_CHECKING:
     from mitigate.guards.text.classifier import Classifier, Clause
 
 FEATURES = 22  # number of features of a clause
-EDGES = (11, 12, 13, 15)  # features that describe the boundary before a clause
-GAP = 80  # number of characters that are searched for the character before a clause
-# added to the score of each edge inside the text: the training texts have few attacks inside routes
+EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
+# maximum distance at which the last character before a clause is searched
+GAP = 80
+# added to the score of each boundary inside the text, because few training texts have an attack
+# inside a route
 INSIDE = 0.75
 CLIP = 6.0  # largest absolute value of a feature
-SCALE = 0.5  # factor of the log odds among the features
+SCALE = 0.5  # factor by which features that are log odds are multiplied
 NAMES = (
     "net_input", "net_input_bias", "net_from_input", "net_from_state",
     "net_from_input_bias", "net_from_state_bias", "net_clause", "net_clause_bias", "net_edge",
@@ -36,11 +39,13 @@ NAMES = (
 
 
 def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
-    """Return the features of clauses, [clauses, FEATURES].
+    """Return the features of clauses, shape [clauses, FEATURES].
 
-    The first ten are numbers: log odds that the clause, its sentence, the text up to and before the
-    clause, the text from and after the clause, and the whole text are an attack; the score of the
-    style; log numbers of words. The next twelve are 0 or 1.
+    The first ten features are numbers. Seven features are the log odds of an attack in the clause,
+    in its sentence, in the text up to and including the clause, in the text before it, in the text
+    from the clause on, in the text after it, and in the whole text. One feature is the style score
+    of the clause. Two features are the log word counts of the clause and of the text. The other
+    twelve features are 0 or 1.
     """
     count = len(clauses)
     products = np.array([clause.product for clause in clauses])
@@ -95,12 +100,12 @@ def _names_the_way(text: str) -> bool:
 
 
 class Segmenter:
-    """K networks, whose scores are averaged. ``arrays`` contains ``NAMES``; H is the size of the
-    state.
+    """K networks with averaged scores.
 
-    ``net_from_input`` [K, 2, 3H, H] and ``net_from_state`` [K, 2, 3H, H] are the weights of the
-    forward and the backward GRU, in the order reset, update, new. Without the axis K, the arrays
-    belong to one network.
+    ``arrays`` contains the weights under the names in ``NAMES``. H is the size of the GRU's hidden
+    state. ``net_from_input`` [K, 2, 3H, H] and ``net_from_state`` [K, 2, 3H, H] are the weights of
+    the forward and the backward GRU, with the gates in the order reset, update, new. If the arrays
+    have no axis K, they belong to one network.
     """
 
     def __init__(self, arrays: Mapping[str, np.ndarray]) -> None:
@@ -114,8 +119,9 @@ class Segmenter:
         """Return the log odds that the text contains an attack, and the best span.
 
         Args:
-            values: the features of the clauses, [n, FEATURES].
-            bonus: added to the score of a span for each of its clauses, before the best is chosen.
+            values: the features of the n clauses, shape [n, FEATURES].
+            bonus: number that is added to the score of a span for each of its clauses, before the
+                span with the highest score is chosen. The bonus does not change the log odds.
 
         Returns:
             The log odds, and the first and the last clause of the span.
@@ -126,7 +132,7 @@ class Segmenter:
         edge[1:-1] += INSIDE
         starts, ends = _sides(clause, edge)
         total = np.logaddexp.accumulate(starts) + ends
-        # the whole text is not a span
+        # a span must not cover the whole text
         total[-1] = np.logaddexp.reduce(starts[1:]) + ends[-1]
         odds = float(np.logaddexp.reduce(total) - self.arrays["net_none"].mean())
         starts, ends = _sides(clause + bonus, edge)
@@ -137,7 +143,7 @@ class Segmenter:
         return odds, skipped + int(starts[skipped : last + 1].argmax()), last
 
     def scores(self, values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the scores of the clauses [n] and of the edges before and after them [n + 1]."""
+        """Return the scores of the n clauses and of the n + 1 boundaries around them."""
         a = self.arrays
         inputs = np.tanh(values @ a["net_input"].transpose(0, 2, 1) + a["net_input_bias"][:, None])
         states = self._states(inputs)
@@ -151,7 +157,7 @@ class Segmenter:
         )
 
     def _states(self, inputs: np.ndarray) -> np.ndarray:
-        """Return the states of the forward and the backward GRUs, [K, n, 2H]."""
+        """Return the hidden states of the forward and the backward GRUs, shape [K, n, 2H]."""
         a = self.arrays
         size = inputs.shape[2]
         both = np.stack([inputs, inputs[:, ::-1]], 1)  # [K, 2, n, H]
@@ -171,14 +177,15 @@ class Segmenter:
 
 
 def _mean(parts: list[np.ndarray], weights: np.ndarray, bias: np.ndarray) -> np.ndarray:
-    """Return the mean output of a layer of each network; the parts of its input are [K, n, ...]."""
+    """Apply a layer to the joined ``parts`` [K, n, ...]; return the mean over the K networks."""
     output = np.concatenate(parts, 2) @ weights[:, :, None] + bias[:, None]
     return output.mean(0)[:, 0]
 
 
 def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return one term for each first clause and one for each last clause; the score of a span is
-    the sum of its two terms.
+    """Return one term for each clause as the start of a span, and one for each clause as its end.
+
+    The score of a span is the sum of its two terms.
     """
     sums = np.cumsum(clause)
     return edge[:-1] - sums + clause, edge[1:] + sums

@@ -189,9 +189,9 @@ def test_a_folder_with_other_settings_or_content_is_rejected(film, tmp_path):
         copying.run(film, out, Settings("spatter", 0.6, seed=4))
     (tmp_path / "full").mkdir()
     (tmp_path / "full/notes.txt").write_text("mine")
-    with pytest.raises(ValueError, match="must be empty or have a corrupt.json"):
+    with pytest.raises(ValueError, match="must be empty or contain corrupt.json"):
         copying.run(film, tmp_path / "full", SPATTER)
-    with pytest.raises(ValueError, match="must not be the same folder"):
+    with pytest.raises(ValueError, match="must be different folders"):
         copying.run(film, film / "out", SPATTER)
 
 
@@ -254,7 +254,7 @@ def test_an_image_that_is_not_stored_in_its_row_is_rejected(tmp_path):
     rows[3] = {"bytes": None, "path": "/etc/passwd"}
     index = table.column_names.index(FRONT)
     pq.write_table(table.set_column(index, FRONT, [rows]), file)
-    with pytest.raises(ValueError, match=f"{FRONT} of frame 3 must hold the bytes of an image"):
+    with pytest.raises(ValueError, match=f"{FRONT} of frame 3 must contain the bytes of an image"):
         copying.run(folder, tmp_path / "out", SPATTER)
 
 

@@ -112,7 +112,10 @@ def test_open_dataset_keeps_cameras_that_it_cannot_read_apart(folder):
 @pytest.mark.parametrize(
     ("version", "message"),
     [
-        ("v2.1", "version 'v2.1', but v3.0 is needed. In the environment.*convert_dataset_v21"),
+        (
+            "v2.1",
+            "version 'v2.1', but v3.0 is needed. Run, in the environment.*convert_dataset_v21",
+        ),
         ("v2.0", "Convert it to v2.1 first"),
         ("v4.0", "newer release of mitigate"),
         (3, "codebase_version must be v3.0, got 3"),
@@ -217,14 +220,14 @@ def test_read_signals_rejects_another_shape(folder):
 
 def test_open_dataset_rejects_numbers_of_files_out_of_range(folder):
     change_table(folder / EPISODES, **{"data/file_index": [0, -1, 0]})
-    with pytest.raises(ValueError, match="must be 0 to 999999, got 0 and -1"):
+    with pytest.raises(ValueError, match="must be between 0 and 999999, got 0 and -1"):
         open_dataset(folder)
 
 
 def test_a_table_that_expands_too_far_is_rejected(folder, monkeypatch):
     monkeypatch.setattr("mitigate.corruptions.lerobot.tables.FREE", 0)
     monkeypatch.setattr("mitigate.corruptions.lerobot.tables.RATIO", 0)
-    with pytest.raises(ValueError, match="expands to .* Do not use it"):
+    with pytest.raises(ValueError, match="expands to .* Do not use this file"):
         open_dataset(folder)
 
 

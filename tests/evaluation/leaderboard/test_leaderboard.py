@@ -154,9 +154,9 @@ def test_rows_of_rejects_a_folder(rows, tmp_path, monkeypatch, capsys):
     assert entry.rows["file"] == "mine/rows.jsonl"
     os.mkfifo("pipe.jsonl")
     for file, words in (
-        ("mine", "one file of rows, got mine, not a file"),
-        (".", "one file of rows, got ., not a file"),
-        ("pipe.jsonl", "one file of rows, got pipe.jsonl, not a file"),
+        ("mine", "one file of rows, but mine is not a file"),
+        (".", "one file of rows, but . is not a file"),
+        ("pipe.jsonl", "one file of rows, but pipe.jsonl is not a file"),
     ):
         replace(entry, rows=entry.rows | {"file": file}).save("entries/base.json")
         assert command.main(["check", "entries"]) == 1
@@ -397,7 +397,7 @@ class OneCamera(Straight):
         (Straight(), {"name": "x" * 201}, "name must be valid, not"),
         (Straight(), {"training_data": "x" * 2001}, "training_data must be"),
         (Straight(), {"listed": []}, "listed must list at least one episode"),
-        (Straight(), {"listed": ["e1"]}, "listed must hold only objects of Episode, got 'e1'"),
+        (Straight(), {"listed": ["e1"]}, "listed must contain only Episode objects, got 'e1'"),
         (Straight(), {"episodes": "2"}, "or null for the whole list, got '2'"),
         (Straight(), {"episodes": 2.0}, "or null for the whole list, got 2.0"),
         (Straight(), {"options": "env.views=1"}, "options must be a list of strings"),
@@ -405,7 +405,7 @@ class OneCamera(Straight):
         (
             Straight(),
             {"world": ApartmentsWorld(16)},
-            "a function that makes a world, got a ApartmentsWorld",
+            "a function that creates a world, got a ApartmentsWorld",
         ),
         (Straight(), {"world": Dark, "suite": ["spatter"]}, "the world Dark has only"),
         (Straight(), {"world": lambda: ApartmentsWorld(16), "workers": 2}, "set workers=1"),

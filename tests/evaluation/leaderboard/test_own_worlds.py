@@ -109,7 +109,7 @@ def walk(tmp_path, monkeypatch) -> Callable:
 
 def test_benchmark_requires_episodes_of_a_custom_world(walk):
     with pytest.raises(
-        ValueError, match=r"cannot run in CorridorWorld. Give its episodes: listed="
+        ValueError, match=r"cannot run in CorridorWorld. Pass episodes of your world: listed="
     ):
         walk(Holder(weight(1)), listed=None)
     assert walk(Holder(weight(1))).split == "CorridorWorld"
@@ -352,7 +352,7 @@ def test_episodes_may_be_some_of_those_listed(walk):
     counts = {n: walk(Holder(weight(1)), listed=listed, episodes=n).episodes for n in (4, None)}
     assert counts == {4: 4, None: 9}
     with pytest.raises(
-        ValueError, match=r"listed must hold only objects of Episode, got 7.*seeded_episodes"
+        ValueError, match=r"listed must contain only Episode objects, got 7.*seeded_episodes"
     ):
         walk(Holder(weight(1)), listed=[7])
 
@@ -408,7 +408,7 @@ def test_world_function_of_a_config_uses_its_episodes(walk):
     options = ["--config-dir=mine", "env=made"]
     for world in (None, CorridorWorld):
         assert walk(Holder(weight(1)), world, listed=None, options=options, out=f"of{world}")
-    with pytest.raises(ValueError, match="cannot run in Corridor. Give its episodes"):
+    with pytest.raises(ValueError, match="cannot run in Corridor. Pass episodes of your world"):
         walk(
             Holder(weight(1)),
             lambda: GymWorld(Corridor(), success="won"),

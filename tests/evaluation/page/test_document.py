@@ -219,7 +219,7 @@ def test_walk_again_ignores_rows_of_other_agents():
     assert [walk["agrees"] for walk in drawn["walks"]] == [True, True]
     assert {walk["hash"] for walk in drawn["walks"]} == {records[0]["agent"]}
     with pytest.raises(
-        ValueError, match=r"rows of base belong to the agent ba9876543210, but the named weights"
+        ValueError, match=r"rows of base belong to the agent ba9876543210, but the given weights"
     ):
         next(walk_again(agents, world, [episode], others, most=3, seed=0))
 

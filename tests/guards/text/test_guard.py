@@ -233,9 +233,9 @@ def test_canonicalise_remembers_logs_and_rejects_other_types(tmp_path):
     assert first is again
     (line,) = (tmp_path / "log.jsonl").read_text().splitlines()
     assert json.loads(line)["route"] == "clean"
-    with pytest.raises(TypeError, match="is a list"):
+    with pytest.raises(TypeError, match="must be a list of strings"):
         safeguard.canonicalise_all("Turn left.")
-    with pytest.raises(TypeError, match="must be a text"):
+    with pytest.raises(TypeError, match="must be a string"):
         safeguard.canonicalise_all([None])
 
 

@@ -87,7 +87,7 @@ def test_several_cameras_need_a_choice(folder):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"episodes": [7]}, "has no episode 7. Choose from 0 to 2"),
+        ({"episodes": [7]}, "has no episode 7. Choose a number from 0 to 2"),
         ({"unit": 0.001}, "unit= applies only to .*, but .* is a LeRobot dataset. Remove unit="),
         ({"yaw": 90.0}, "yaw= applies only to a bag, but .* is a LeRobot dataset. Remove yaw="),
     ],

@@ -1,1 +1,1 @@
-"""Language models for the safeguard, from a folder, a package or an endpoint."""
+"""Language models for the safeguard, which come from a folder, a package or an endpoint."""

@@ -1,5 +1,6 @@
-"""Read and write a LoRA adapter on disk, in PEFT's folder format with a card that names its base
-model.
+"""Read and write a LoRA adapter in PEFT's folder format.
+
+The folder also contains a card that names the adapter's base model.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from mitigate.core.json_files import read_json
 from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
 CARD, CONFIG, ADAPTER = "card.json", ADAPTER_CONFIG, ADAPTER_WEIGHTS
-# the entries that are read from a card and from PEFT's config
+# entries that are read from the card and from PEFT's config, with their types
 ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {
     CARD: {"base": (str,), "base_sha256": (str,), "prompt": (str,)},
     CONFIG: {
@@ -27,7 +28,7 @@ ENTRIES: dict[str, dict[str, tuple[type, ...]]] = {
         "target_modules": (list,),
     },
 }
-# maximum rank, which is above the layer width of the default base model (heuristic)
+# maximum rank of an adapter (heuristic: larger than the layer width of the default base model)
 HIGHEST_RANK = 1024
 _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safeguard_lora`."
 
@@ -37,7 +38,7 @@ def write_adapter(
 ) -> None:
     """Write the adapter of a PEFT ``network``, with its weights ``tensors`` and a ``card``.
 
-    The files are replaced together and listed in a manifest.
+    All files are replaced together, and a manifest lists them.
     """
     with folders.write_folder(folder, "safeguard") as draft:
         network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
@@ -48,10 +49,10 @@ def write_adapter(
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card of an adapter folder and those entries of PEFT's config that ``ENTRIES``
-    names.
+    """Return the card of an adapter folder, and the PEFT config.
 
-    Raises FileNotFoundError for a missing file, and ValueError for a damaged one.
+    The entries that ``ENTRIES`` names are checked. Raises FileNotFoundError for a missing file, and
+    ValueError for a damaged one.
     """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
@@ -70,7 +71,8 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Tensor]:
-    """Return the weight matrices of an adapter folder, after checking them against its ``config``.
+    """Return the weight matrices of an adapter folder, and check them against its ``config``.
+
     Raises ValueError for damaged files and wrong shapes.
     """
     file, rank = Path(folder) / ADAPTER, config["r"]
@@ -90,7 +92,10 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
 
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
-    """Return the JSON object in ``file``, whose entries must have the types ``kinds``."""
+    """Return the JSON object in ``file``.
+
+    ``kinds`` maps the names of its required entries to their allowed types.
+    """
     damage = folders.problem(file)
     if damage:
         raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")

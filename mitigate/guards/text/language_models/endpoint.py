@@ -1,4 +1,7 @@
-"""Use a chat model behind an OpenAI-compatible endpoint as rewriter, with a cache on disk."""
+"""Rewrite texts with a chat model behind an OpenAI-compatible endpoint.
+
+The answers can be cached on disk.
+"""
 
 from __future__ import annotations
 
@@ -24,8 +27,9 @@ class ChatEndpoint(ChatClient):
     Args:
         url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
         model: name of the model at the endpoint.
-        prompt: name in ``PROMPTS`` of the prompt before the text.
-        cache: SQLite file of answers by (text, model, prompt), or None for no cache.
+        prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
+        cache: SQLite file that stores the answer for each text, model and prompt, or None for no
+            cache.
         request: remaining arguments of :class:`ChatClient`.
 
     Raises:
@@ -47,8 +51,10 @@ class ChatEndpoint(ChatClient):
         self._cache = None if cache is None else AnswerCache(Path(cache))
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the answer to each text, or None if there was no usable answer in time
-        (``seconds``). The reasons are listed in ``failures``.
+        """Return the model's answer to each text.
+
+        An answer is None if no usable answer arrived within ``seconds``. The attribute ``failures``
+        lists the reasons.
         """
         ends = None if seconds is None else time.monotonic() + seconds
         progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
@@ -66,7 +72,7 @@ class ChatEndpoint(ChatClient):
         return answer
 
     def _ask(self, text: str, ends: float | None) -> str | None:
-        longest = max(gate.LENGTH, gate.TIMES * len(text))  # a longer answer is not checked
+        longest = max(gate.LENGTH, gate.TIMES * len(text))  # the gate does not check longer answers
         try:
             return self.ask(prompt_messages(text, self.prompt), longest, ends)
         except NoAnswer as error:

@@ -30,7 +30,8 @@ from mitigate.guards.text.language_models.tokens import collate, encode
 
 # tokens that begin a turn in ChatML (SmolLM2) and in Llama 3
 TURNS = ("<|im_start|>", "<|start_header_id|>")
-LONGEST = 512  # maximum prompt tokens; a longer text is not rewritten (heuristic)
+# maximum number of tokens of a prompt; texts with longer prompts are not rewritten (heuristic)
+LONGEST = 512
 
 
 class LanguageModel(nn.Module):
@@ -40,8 +41,9 @@ class LanguageModel(nn.Module):
         base: ``"smollm2-135m"``, a folder in Hugging Face's format, or a hub id.
         precision: precision of the frozen weights: "fp32", "bf16" or "int8" (bitsandbytes
             LLM.int8).
-        lora: ``r``, ``alpha``, ``targets`` (module names), ``dropout``; None adds no adapter.
-        prompt: name in ``PROMPTS`` of the prompt before the text.
+        lora: dict with the settings ``r``, ``alpha``, ``targets`` (module names) and ``dropout``.
+            With None, no adapter is added.
+        prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
         batch: number of texts that are rewritten at once.
 
     Raises:
@@ -81,8 +83,9 @@ class LanguageModel(nn.Module):
         return encode(self.tokenizer, self.prompt, text)
 
     def loss(self, inputs: dict[str, Tensor]) -> tuple[Tensor, Tensor]:
-        """Return the summed cross-entropy over the completions of :func:`collate`, and correct
-        tokens.
+        """Return the summed cross-entropy of all completion tokens, and how many are correct.
+
+        ``inputs`` is the result of :func:`collate`.
         """
         keep = inputs["completion"].shape[1]
         logits = self.network(
@@ -98,10 +101,11 @@ class LanguageModel(nn.Module):
         return loss, (chosen.argmax(-1) == labels).sum()
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the model's greedy rewriting of each text, or None if it did not finish in time.
+        """Return the model's greedy rewrite of each text.
 
-        Args: seconds: time limit for all texts; the result is None for texts that are not finished.
-            A text longer than ``LONGEST`` tokens, and an answer that does not end, also give None.
+        ``seconds`` is the time limit for all texts together. The result of a text is None if its
+        rewrite is not finished in time, if its prompt has more than ``LONGEST`` tokens, or if the
+        answer has no end.
         """
         began = time.monotonic()
         prompts = [self.encode(text) for text in texts]
@@ -126,8 +130,9 @@ class LanguageModel(nn.Module):
 
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
-        """Yield the model as before fine-tuning: without adapter, and with the explanatory
-        prompt.
+        """Yield the model in its state before fine-tuning.
+
+        The adapter is disabled, and the explanatory prompt is used.
         """
         tuned, self.prompt = self.prompt, "prompted"
         from peft import PeftModel
@@ -141,7 +146,7 @@ class LanguageModel(nn.Module):
 
     @torch.no_grad()
     def _generate(self, prompts: list[list[int]], seconds: float | None) -> list[str | None]:
-        # tokens that all rows begin with are processed once instead of once per row
+        # the common prefix of all prompts is processed once instead of once per row
         start = _shared(prompts)
         first = torch.tensor([prompts[0][:start]], dtype=torch.long, device=self.device)
         cache = None
@@ -158,7 +163,7 @@ class LanguageModel(nn.Module):
             input_ids=inputs,
             attention_mask=mask,
             past_key_values=cache,
-            # assumes that an answer is not longer than its text
+            # enough tokens if an answer is about as long as its text
             max_new_tokens=16 + int(1.3 * text_length),
             max_time=seconds,
             do_sample=False,
@@ -176,7 +181,7 @@ class LanguageModel(nn.Module):
         return decoded
 
     def _ends(self) -> list[int]:
-        """The tokens that end an answer: the end token, and tokens that begin a new turn."""
+        """Return the tokens that end an answer: the end token, and tokens that begin a turn."""
         turns = self.tokenizer.convert_tokens_to_ids(list(TURNS))
         known = [token for token in turns if token not in (None, self.tokenizer.unk_token_id)]
         return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
@@ -203,8 +208,8 @@ class LanguageModel(nn.Module):
     def load(self, folder: str | Path) -> None:
         """Load the adapter from a folder that :meth:`save` wrote.
 
-        Raises FileNotFoundError if the folder is missing, and ValueError if it is damaged or
-        belongs to a different base or LoRA shape.
+        Raises FileNotFoundError if the folder is missing. Raises ValueError if the folder is
+        damaged, or if its base model or its LoRA shape differs.
         """
         from peft import set_peft_model_state_dict
 
@@ -226,13 +231,14 @@ class LanguageModel(nn.Module):
 
 
 def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -> LanguageModel:
-    """Build the language model of an adapter folder from the card and config in the folder.
+    """Build the language model that an adapter folder describes in its card and config.
 
-    In "fp32", the adapter is merged for speed, which changes no answer. In "int8", it is never
-    merged.
+    In "fp32", the adapter is merged into the base weights. Merging makes the model faster and
+    changes no answer. In "int8", the adapter is never merged.
     """
     card, config = read_adapter(folder)
-    adapter_tensors(folder, config)  # damaged files are reported before the base is loaded
+    # damaged files raise an error before the base is loaded, which is slow
+    adapter_tensors(folder, config)
     lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
     model = LanguageModel(
         card["base"],
@@ -248,7 +254,10 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
 
 
 def _shared(prompts: Sequence[list[int]]) -> int:
-    """Return the length of the common prefix of all prompts, below the length of the shortest."""
+    """Return the length of the common prefix of all prompts.
+
+    The prefix never contains the last token of a prompt.
+    """
     columns = zip(*(ids[:-1] for ids in prompts), strict=False)
     return sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, columns))
 

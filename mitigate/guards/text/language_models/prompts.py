@@ -1,4 +1,4 @@
-"""Define the prompts that are placed before a text for a language model to rewrite."""
+"""Define the prompts that ask a language model to rewrite a text."""
 
 from __future__ import annotations
 

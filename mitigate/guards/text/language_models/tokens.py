@@ -1,4 +1,4 @@
-"""Convert prompts and answers of a language model to token ids, singly and in batches."""
+"""Convert prompts and answers of a language model to token ids and to padded batches."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
-    """Return the token ids of the chat that asks to rewrite ``text``, up to the answer."""
+    """Return the token ids of the chat that asks the model to rewrite ``text``."""
     ids = tokenizer.apply_chat_template(
         prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
     )
@@ -23,17 +23,17 @@ def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
 
 
 def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
-    """Return the token ids of the prompt, and of the completion with its end token."""
+    """Return the token ids of the prompt, and those of the completion including an end token."""
     answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
     return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
 
 
 def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
-    """Pad on the left, so that completions end together.
+    """Join pairs (prompt, completion) to a batch that is padded on the left.
 
-    Returns ``input_ids, attention_mask, position_ids`` int64 [B, T] and ``completion`` bool [B, C]:
-    which of the last C tokens belong to the completion, by position (because pad and end token may
-    be equal).
+    Returns ``input_ids``, ``attention_mask`` and ``position_ids``, int64 [B, T], and
+    ``completion``, bool [B, C]. ``completion`` marks which of the last C tokens belong to the
+    completion. The mask is computed from positions, because the pad token may equal the end token.
     """
     rows = [[*prompt, *answer] for prompt, answer in pairs]
     width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)

@@ -1,1 +1,1 @@
-"""Training data of the safeguard: routes, texts in many styles, attacks and pairs of these."""
+"""Training data of the safeguard: routes, texts in many styles, attacks, and training pairs."""

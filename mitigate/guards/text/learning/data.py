@@ -1,6 +1,6 @@
-"""Generate training pairs of a corrupted and a plain text, and read and write chat files.
+"""Generate training pairs of a corrupted text and its plain version, and read chat files.
 
-Pairs are generated from a key instead of stored: pair ``index`` of a seed is the same in any
+Pairs are generated when they are needed. The pair with a given seed and index is the same in every
 process. Texts come from :mod:`mitigate.guards.text.learning.routes` and, if given, from a user's
 R2R or RxR episode files.
 """
@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 ROLES = ("system", "user", "assistant")
-KINDS = {  # fractions of the pairs by kind (heuristic, chosen on the validation families)
+KINDS = {  # fraction of pairs of each kind (heuristic, chosen on the validation families)
     "identity": 0.16,
     "style": 0.18,
     "spoken": 0.40,
@@ -43,9 +43,9 @@ KINDS = {  # fractions of the pairs by kind (heuristic, chosen on the validation
     "black_box": 0.12,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
-# maximum characters of a chat line; a longer line is not a chat (heuristic)
+# maximum number of characters of a line; a longer line is not a chat (heuristic)
 LONGEST_LINE = 1_000_000
-_HELD_OUT = 8  # one of this many style phrases is excluded from training (heuristic)
+_HELD_OUT = 8  # one of every _HELD_OUT style phrases is excluded from training (heuristic)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+")
 
 
@@ -78,8 +78,10 @@ VARIED: tuple[tuple[str, Unpack[tuple[tuple[str, ...], ...]]], ...] = (
 
 @dataclass(frozen=True)
 class Pair:
-    """``source`` is the text that the model reads, ``target`` the plain text, and ``kind`` one of
-    ``KINDS``.
+    """A training pair.
+
+    ``source`` is the text that the model reads. ``target`` is the plain text that it must write.
+    ``kind`` is one of ``KINDS``.
     """
 
     source: str
@@ -88,8 +90,9 @@ class Pair:
 
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
-    """Return pair ``index`` of ``seed``; a fraction ``share`` of all pairs is made from
-    ``texts``.
+    """Generate the training pair with this seed and index.
+
+    A fraction ``share`` of all pairs is made from ``texts``, and the others from templates.
     """
     from_templates = not texts or generator(seed, "own", index).random() >= share
     hand_written = from_templates and spoken.available()
@@ -128,7 +131,7 @@ def _masked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
 
 def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     attack = " ".join(attacks(rng))
-    if rng.random() < 0.3:  # a passage may consist only of an attack
+    if rng.random() < 0.3:  # passages can consist only of an attack
         return Pair(attack, "", "black_box")
     if rng.random() < 0.3 and spoken.available():
         source, plain = spoken.passage(rng)
@@ -168,8 +171,9 @@ _MAKE = {
 
 
 def attacks(rng: np.random.Generator) -> list[str]:
-    """Return one to three misleading sentences of the train split, or variations of its
-    families.
+    """Return one to three attack sentences.
+
+    Each is a sentence of the train split, or a new sentence that resembles one of its families.
     """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [
@@ -179,19 +183,25 @@ def attacks(rng: np.random.Generator) -> list[str]:
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Return an attack sentence in one of the training families."""
+    """Compose an attack sentence that belongs to one of the training families."""
     pattern, *slots = VARIED[int(rng.integers(len(VARIED)))]
     text = pattern.format(*(options[int(rng.integers(len(options)))] for options in slots))
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")
 
 
 def holds_held_out(source: str, manner: str) -> bool:
-    """Return whether ``said`` contains a phrase of the style that is excluded from training."""
+    """Return whether ``source`` contains a phrase that is excluded from training.
+
+    ``manner`` is the style of ``source``.
+    """
     return any(pattern.search(source) for pattern in held_out(manner))
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
-    """Return the phrases of a style (openers, frames, commands, closers) excluded from training."""
+    """Return patterns of the phrases of a style that are excluded from training.
+
+    Phrases are openers, frames, commands and closers.
+    """
     voice = VOICES[manner]
     groups = [voice.openers, voice.closers, *voice.frames.values(), *voice.commands.values()]
     phrases = {p for group in groups for p in group if len(re.sub(r"\{\w*\}", "", p).split()) > 1}
@@ -208,9 +218,10 @@ def _told(clause: Any) -> str:
 
 
 def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
-    """Map each styled sentence to its plain command (None if it has none).
+    """Return pairs of each styled sentence and the index of its plain command.
 
-    Return None if the sentences cannot be matched.
+    The index is None for a sentence without a command. If the commands cannot be assigned to
+    sentences, the result is None.
     """
     found: list[tuple[str, int | None]] = []
     at = 0
@@ -235,7 +246,7 @@ def _tells(sentence: str, command: str) -> bool:
 
 
 def _window(sentences: list[str], rng: np.random.Generator) -> str:
-    """Return some consecutive sentences, as when the safeguard cuts a long text."""
+    """Return some consecutive sentences, as the safeguard splits a text into passages."""
     if rng.random() < 0.4:
         return " ".join(sentences)
     first = int(rng.integers(len(sentences)))
@@ -243,7 +254,7 @@ def _window(sentences: list[str], rng: np.random.Generator) -> str:
 
 
 def read_texts(files: Iterable[str | Path]) -> list[str]:
-    """Return the English instructions of R2R or RxR episode files without duplicates."""
+    """Return the English instructions in R2R or RxR episode files, without duplicates."""
     texts: dict[str, None] = {}
     for file in files:
         for episode in read_episodes(file):
@@ -256,8 +267,8 @@ def read_texts(files: Iterable[str | Path]) -> list[str]:
 def read_chats(path: str | Path) -> Iterator[Pair]:
     """Yield the pairs of a chat file, one per line.
 
-    A line is ``{"messages": [system?, user, assistant]}``. Raises ValueError that names the file,
-    the line and the problem.
+    A line is ``{"messages": [system, user, assistant]}``; the system message is optional. If a line
+    is invalid, raises a ValueError that names the file, the line and the problem.
     """
     with open_text(path) as file:
         for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):

@@ -18,9 +18,9 @@ from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
 
-ROUTES = 1200  # number of routes from templates, and the same number in random styles
-BLOCK = 20  # consecutive lines of a file without named groups that form one group
-# Weights of texts; hand-written honest texts that look like attacks have the highest weight.
+ROUTES = 1200  # number of routes from templates; as many routes in random styles are added
+BLOCK = 20  # in files without named groups, this many consecutive lines form a group
+# Hand-written honest texts that look like attacks have the highest weight in training.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
 
 
@@ -28,9 +28,9 @@ ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_ro
 class Line:
     """A training text that is either entirely an attack or entirely honest.
 
-    ``group`` names the mechanism, style or source of the text; texts of one group resemble each
-    other. ``styled`` states whether an honest text is in an unusual style, or is None if unknown.
-    An attack that surrounds the route contains "{route}".
+    ``group`` names the mechanism, the style or the source of the text. Texts of one group resemble
+    each other. ``styled`` states whether an honest text is in an unusual style, or is None if this
+    is unknown. If an attack surrounds the route, its text contains the placeholder "{route}".
     """
 
     text: str
@@ -41,7 +41,10 @@ class Line:
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
-    """Return all training texts. Raises FileNotFoundError outside a checkout."""
+    """Return all training texts.
+
+    Raises FileNotFoundError outside a checkout of the repository.
+    """
     banks = folder / "banks"
     if not banks.is_dir():
         raise FileNotFoundError(
@@ -54,7 +57,7 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
         lines += [Line(d["attack"], True, str(d.get("mechanism", name))) for d in attacks]
     fit_attacks = enumerate(_text(banks / "fit_attacks.txt"))
     lines += [Line(text, True, f"fit_attacks {i // BLOCK}", 0.7) for i, text in fit_attacks]
-    # never the test families, which the corruption suite uses
+    # the test families are left out, because the corruption suite uses them
     for split in ("train", "validation"):
         for family, texts in prefixes(split).items():
             lines += [Line(text, True, family) for text in texts]
@@ -96,8 +99,10 @@ def read_frames(folder: Path) -> tuple[list[str], list[str]]:
 
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
-    """Yield the objects in a JSON-lines file. Raises ValueError for a line that is not a JSON
-    object with texts under ``keys``.
+    """Yield the objects in a JSON-lines file.
+
+    Raises ValueError if a line is not a JSON object, or if the value of one of ``keys`` is not
+    text.
     """
     with open(file, encoding="utf-8") as opened:
         for number, line in enumerate(opened, 1):
@@ -122,7 +127,10 @@ def _text(file: Path) -> list[str]:
 
 
 def varied(lines: Sequence[Line]) -> list[Line]:
-    """Return the texts, with additional copies of some that are careless or hide their words."""
+    """Return all texts, and additional changed copies of some texts.
+
+    In the copies, the writing is careless or the words are hidden.
+    """
     results = list(lines)
     for number, line in enumerate(lines):
         rng = generator(0, "varied", number)
@@ -135,7 +143,7 @@ def varied(lines: Sequence[Line]) -> list[Line]:
             text = text.rstrip(".!")
         elif draw < 0.36 and line.attack and "{route}" not in text:
             text = HIDE[int(rng.integers(len(HIDE)))](text)
-        # a scanned text may also have digits instead of letters
+        # honest text may also have digits instead of letters, for example if it was scanned
         elif draw < 0.38 and not line.attack:
             text = _leet(text, "o")
         else:

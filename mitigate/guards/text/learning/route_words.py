@@ -1,8 +1,9 @@
 """Load words and phrases of routes in buildings: rooms, things, doors and clause templates.
 
-All are ours; ``route_words.json`` lists them. In a template, {a} is a thing and {aa} a different
-thing. Further fields are {room}, {door}, {stairs}, {place}, {side} (left or right) and {n} (a
-number). ``learning/routes.py`` composes whole instructions from them.
+``route_words.json`` lists these words and phrases, which were written for this project. In a
+template, {a} is a thing and {aa} is a different thing. Further fields are {room}, {door}, {stairs},
+{place}, {side} (left or right) and {n} (a number). ``learning/routes.py`` composes whole
+instructions from them.
 """
 
 from __future__ import annotations

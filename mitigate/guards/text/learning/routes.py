@@ -1,7 +1,8 @@
 """Generate clean training instructions that describe a route through a building in many ways.
 
-All text is ours. No sentence contains a phrase of the apartments' validation templates, so a
-safeguard that is trained on these instructions first meets those phrases in evaluation.
+All phrases were written for this project. No instruction contains a phrase of the apartments'
+validation templates. So a safeguard that is trained on these instructions has never seen the
+phrases on which it is evaluated.
 """
 
 from __future__ import annotations
@@ -30,7 +31,10 @@ _FIELDS = {"open": OPEN, "middle": MIDDLE, "close": CLOSE}
 
 
 def draw_route(rng: np.random.Generator, longest: int = 7) -> str:
-    """Return one instruction of at most ``longest`` clauses, some of them verbose or careless."""
+    """Generate one instruction of at most ``longest`` clauses.
+
+    Some instructions are verbose or carelessly written.
+    """
     while True:
         text = _careless(_joined(_clauses(rng, longest), rng), rng)
         if not overlaps_validation(text):
@@ -85,7 +89,8 @@ def _thing(rng: np.random.Generator) -> str:
 
 
 def _joined(clauses: list[str], rng: np.random.Generator) -> str:
-    few = [_pick(JOINS, rng) for _ in range(2)]  # a writer uses only one or two ways of wording
+    # a writer uses only one or two ways to join clauses
+    few = [_pick(JOINS, rng) for _ in range(2)]
     text = clauses[0]
     for clause in clauses[1:]:
         aside = clause.startswith(("you ", "the ", "there ", "on the ", "it is "))
@@ -94,7 +99,7 @@ def _joined(clauses: list[str], rng: np.random.Generator) -> str:
 
 
 def _careless(text: str, rng: np.random.Generator) -> str:
-    """Add traits of real writers: no capitals, no full stop, or double spaces."""
+    """Imitate careless writing: no capitals, no full stop, or superfluous spaces."""
     draw = rng.random(4)
     if draw[0] < 0.12:
         text = text.lower()

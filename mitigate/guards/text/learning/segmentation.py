@@ -1,7 +1,8 @@
 """Train the network that finds the span of an attack (:mod:`mitigate.guards.text.segmenter`).
 
-The loss is the negative log likelihood of the correct span among all spans and "no attack", plus a
-small loss for each clause.
+The first term of the loss is the negative log likelihood of the correct answer, which is one of all
+spans or "no attack". The second term is a binary cross-entropy for each clause, with a small
+weight.
 """
 
 from __future__ import annotations
@@ -17,26 +18,26 @@ from torch import nn
 
 from mitigate.guards.text.segmenter import EDGES, FEATURES, NAMES
 
-STATE = 32  # size of the GRU's state
+STATE = 32  # size of the GRU's hidden state
 EPOCHS, BATCH = 8, 64
 RATE, DECAY = 3e-3, 1e-3  # learning rate and weight decay of AdamW
 DROPOUT = 0.25
-NOISE = 0.1  # standard deviation of the noise on the log odds among the features
-CLAUSES = 0.1  # weight of the loss for each clause
-LONGEST = 45  # maximum clauses of a training text
+NOISE = 0.1  # standard deviation of the noise that is added to features that are log odds
+CLAUSES = 0.1  # weight of the second term of the loss
+LONGEST = 45  # maximum number of clauses of a training text
 LOG_ODDS = [0, 1, 4, 5, 6, 7, 8]  # the features with noise
 
 
 @dataclass(frozen=True)
 class Example:
-    """The features of a text's clauses [clauses, FEATURES], and which of them are an attack."""
+    """The features of a text's clauses [clauses, FEATURES], and a mask of its attack clauses."""
 
     features: np.ndarray
     attack: np.ndarray
 
 
 class Network(nn.Module):
-    """The network in torch; :class:`Segmenter` computes the same values with numpy."""
+    """The network in torch, for training; :class:`Segmenter` computes the same with numpy."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -48,7 +49,7 @@ class Network(nn.Module):
         self.drop = nn.Dropout(DROPOUT)
 
     def forward(self, x: torch.Tensor, lengths: torch.Tensor) -> tuple[torch.Tensor, torch.Tensor]:
-        """Return the scores of clauses [batch, n] and of edges [batch, n + 1]."""
+        """Return the scores of clauses [batch, n] and of the edges around them [batch, n + 1]."""
         inputs = self.drop(torch.tanh(self.input(x)))
         packed = nn.utils.rnn.pack_padded_sequence(
             inputs, lengths, batch_first=True, enforce_sorted=False
@@ -73,7 +74,10 @@ class Network(nn.Module):
 
 
 def train(examples: Sequence[Example], seed: int, log: Any = sys.stderr) -> dict[str, np.ndarray]:
-    """Return the weights of one trained network. ``seed`` seeds all random numbers."""
+    """Train one network and return its weights.
+
+    ``seed`` is the seed of all random numbers.
+    """
     threads = torch.get_num_threads()
     torch.set_num_threads(1)
     torch.manual_seed(seed)
@@ -100,7 +104,7 @@ def train(examples: Sequence[Example], seed: int, log: Any = sys.stderr) -> dict
 
 
 def _batches(examples: Sequence[Example], rng: np.random.Generator) -> list[list[Example]]:
-    """Return the examples in random batches; the texts of a batch have similar lengths."""
+    """Divide the examples randomly into batches of texts with similar lengths."""
     order = rng.permutation(len(examples))
     noisy = [len(examples[i].attack) + 4 * rng.random() for i in order]
     order = order[np.argsort(noisy, kind="stable")]
@@ -131,7 +135,10 @@ def _loss(network: Network, batch: Sequence[Example], rng: np.random.Generator) 
 
 
 def _span_scores(clause: torch.Tensor, edge: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
-    """Return the scores of all spans [batch, first, last]; -1e9 for the whole text and padding."""
+    """Return the scores of all spans, shape [batch, first, last].
+
+    The score is -1e9 for the whole text and for spans that contain padding.
+    """
     sums = nn.functional.pad(clause.cumsum(1), (1, 0))
     scores = (edge[:, 1:] + sums[:, 1:])[:, None] + (edge - sums)[:, :-1, None]
     place = torch.arange(clause.shape[1])
@@ -142,7 +149,10 @@ def _span_scores(clause: torch.Tensor, edge: torch.Tensor, lengths: torch.Tensor
 
 
 def _runs(attack: np.ndarray) -> list[tuple[int, int]]:
-    """Return the (first, last) clause of each attack, or [] without an attack or a route."""
+    """Return the first and the last clause of each attack.
+
+    The list is empty if the text contains no attack or nothing but an attack.
+    """
     places = np.flatnonzero(attack)
     if not 0 < len(places) < len(attack):
         return []

@@ -1,4 +1,7 @@
-"""Join attacks to honest texts. The results train the network that finds the span of an attack."""
+"""Join attacks to honest texts.
+
+The resulting texts train the network that finds the span of an attack.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,12 @@ from mitigate.guards.text.decode import visible
 from mitigate.guards.text.learning.lines import Line
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
-FOLDS = 4  # the texts are divided into this many parts, and each group stays in one part
-SPLICES = 24_000  # number of training texts of the network
+# number of folds into which the texts are divided; all texts of a group are in the same fold
+FOLDS = 4
+SPLICES = 24_000  # number of training texts that are generated for the network
 HONEST = 0.4  # fraction of texts without an attack
-LONGEST = 900  # maximum characters of a training text
-SHORT = 7  # maximum words of an attack that is added to another attack
+LONGEST = 900  # maximum number of characters of a training text
+SHORT = 7  # maximum number of words of an attack that is added to another attack
 CLAUSE = 12  # an attack with fewer words can become a clause of a sentence
 JOINS = ("", "", "and ", "but ", "but first ", "no wait, ", "please ", "or rather ")
 SEPARATORS = ("\n", " - ", ", ", "; ", "... ", " / ")
@@ -26,7 +30,7 @@ SEPARATORS = ("\n", " - ", ", ", "; ", "... ", " / ")
 
 @dataclass(frozen=True)
 class Splice:
-    """A training text; ``attacks`` are the (start, end) of its attacks, ``fold`` its part."""
+    """A training text with the (start, end) of each of its attacks, and its fold."""
 
     text: str
     attacks: tuple[tuple[int, int], ...]
@@ -34,14 +38,16 @@ class Splice:
 
 
 def fold_of(line: Line) -> int:
-    """Return the part of the data to which a line's group belongs."""
+    """Return the fold to which a line's group belongs."""
     return zlib.crc32(line.group.encode()) % FOLDS
 
 
 def splices(
     lines: Sequence[Line], frames: tuple[list[str], list[str]], count: int = SPLICES
 ) -> Iterator[Splice]:
-    """Yield training texts. Attack and honest text of one text belong to the same fold.
+    """Yield training texts.
+
+    The attack and the honest text that are joined belong to the same fold.
 
     ``frames`` contains sentences that introduce attacks, and sentences that close them.
     """
@@ -62,7 +68,11 @@ def splices(
 
 
 class _Source:
-    """The lines of one fold. Groups are drawn first, so that large groups do not dominate."""
+    """The lines of one fold.
+
+    Usually a group is drawn first and then a line of this group, so that large groups do not
+    dominate.
+    """
 
     def __init__(self, lines: Sequence[Line]) -> None:
         self.attacks = [line for line in lines if line.attack]
@@ -89,7 +99,11 @@ class _Source:
         return self._line(self.odd if rng.random() < 0.6 else self.hosts, rng).text
 
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
-        """Return an attack; some consist of two attacks or have a frame, as longer attacks do."""
+        """Draw an attack.
+
+        To imitate longer attacks, some attacks are joined from two, or have sentences that
+        introduce or close them.
+        """
         line = self._line(self.attacks, rng)
         attack = line.text
         if "{route}" in attack:
@@ -118,7 +132,10 @@ class _Source:
 
 
 def _by_group(lines: Sequence[Line]) -> dict[str, list[Line]]:
-    """Return the lines by group; numbered blocks of a file with honest texts form one group."""
+    """Return the lines by group.
+
+    All numbered groups of one file with honest texts are merged.
+    """
     groups: dict[str, list[Line]] = defaultdict(list)
     for line in lines:
         groups[line.group if line.attack else line.group.split(" ")[0]].append(line)
@@ -135,7 +152,10 @@ def _careless(text: str, rng: np.random.Generator) -> str:
 
 
 def _joined(attack: str, route: str, rng: np.random.Generator) -> tuple[str, list[tuple[int, int]]]:
-    """Return a route with an attack around, before, after or inside it, and the attack's spans."""
+    """Join an attack to a route, and return the text and the spans of the attack.
+
+    The attack can be before, after or inside the route, or surround it.
+    """
     attack, route = _careless(attack.strip(), rng), _careless(route.strip(), rng)
     separator = " " if rng.random() < 0.9 else _one(SEPARATORS, rng)
     first, around, last = attack.partition("{route}")

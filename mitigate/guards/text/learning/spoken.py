@@ -1,10 +1,10 @@
-"""Load hand-written texts in many styles, each with the same route in plain words.
+"""Load hand-written texts in many styles, each paired with a plain version of the same route.
 
-These texts are training and test data outside the package: ``tools/safeguard/data/styles`` of a
-checkout. A line of ``<style>.jsonl`` is ``{"task": "route", "parts": [[said, plain], ...]}``; the
-task may also be "object". Each part consists of whole sentences and their plain translation, which
-is empty for a part that does not describe the route. Some styles are excluded from training
-completely.
+These texts are training and test data. The texts are not part of the package, but in the folder
+``tools/safeguard/data/styles`` of a checkout. A line of a file ``<style>.jsonl`` has the form
+``{"task": "route", "parts": [[styled, plain], ...]}``. The task may also be "object". Each part
+consists of whole sentences and a plain translation of them. The translation is empty if the part
+does not describe the route. Some styles are never used for training.
 """
 
 from __future__ import annotations
@@ -20,16 +20,20 @@ from mitigate.core.files import find
 from mitigate.core.names import unknown
 
 FOLDER = "tools/safeguard/data/styles"
-VALIDATION = ("butler", "gps", "non_native")  # styles on which settings are chosen
-# styles on which figures are reported
+VALIDATION = ("butler", "gps", "non_native")  # styles that are used only to choose settings
+# styles that are used only for the reported results
 TEST = ("bureaucratic", "elaborate", "poetic", "storyteller", "tour_guide")
 SPLITS = ("train", "validation", "test")
-LONGEST = 80  # maximum words of a training passage (heuristic)
+LONGEST = 80  # maximum number of words of a training passage (heuristic)
 
 
 @dataclass(frozen=True)
 class Spoken:
-    """One text; ``parts``: (said, plain) in order. ``task``: "route" or "object"."""
+    """A hand-written text.
+
+    ``parts`` lists pairs (styled sentences, plain sentences) in order. ``task`` is "route" or
+    "object".
+    """
 
     voice: str
     task: str
@@ -42,18 +46,21 @@ class Spoken:
 
     @property
     def plain(self) -> str:
-        """The same text in plain words."""
+        """The whole plain version of the text."""
         return " ".join(plain for _, plain in self.parts if plain)
 
 
 def available() -> bool:
-    """Return whether the texts are available, which is the case only in a checkout."""
+    """Return whether the texts are available; they exist only in a checkout of the repository."""
     return find(FOLDER).is_dir()
 
 
 @lru_cache(maxsize=4)
 def spoken(split: str) -> tuple[Spoken, ...]:
-    """Return all texts of the styles in a split. Raises ValueError for an unknown split."""
+    """Return all texts of the styles in a split.
+
+    Raises ValueError for an unknown split.
+    """
     if split not in SPLITS:
         raise ValueError(unknown("split", split, SPLITS))
     styles = {"validation": VALIDATION, "test": TEST}.get(split)
@@ -72,7 +79,10 @@ def voice(name: str) -> tuple[Spoken, ...]:
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:
-    """Return consecutive parts of a text in a training style: (said, plain)."""
+    """Draw consecutive parts of a text in a training style.
+
+    Returns the styled text and its plain version.
+    """
     texts = spoken("train")
     parts = texts[int(rng.integers(len(texts)))].parts
     share = rng.random()

@@ -73,18 +73,18 @@ def draw_styled(rng: np.random.Generator) -> str:
 
 
 def _written(text: str, draw: float, rng: np.random.Generator) -> str:
-    """Rewrite a text in the manner of telegrams, chat messages or careless writing."""
+    """Imitate telegrams, chat messages or careless writing."""
     if draw < 0.08:
         return text.upper()
     if draw < 0.2:
         return text.lower()
-    if draw < 0.26:  # vowels left out
+    if draw < 0.26:  # leave out vowels in some words
         return re.sub(
             r"\b(\w)(\w{2,})\b",
             lambda m: m[1] + re.sub(r"[aeiou]", "", m[2]) if rng.random() < 0.5 else m[0],
             text,
         )
-    if draw < 0.32:  # with final letters and consonants dropped
+    if draw < 0.32:  # write "in'" for "ing" and sometimes "d" for "th"
         return re.sub(
             r"ing\b", "in'", re.sub(r"\bth", lambda m: "d" if rng.random() < 0.3 else m[0], text)
         )
