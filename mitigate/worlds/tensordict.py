@@ -23,7 +23,7 @@ from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import Arrays, SeededWorld
-from mitigate.worlds.world import TrainingEpisodes, World
+from mitigate.worlds.world import MOVES, TrainingEpisodes, World
 
 
 class WorldEnv(EnvBase):
@@ -31,7 +31,7 @@ class WorldEnv(EnvBase):
 
     Observations have one entry per sensor of the world. They also have ``instruction`` (str),
     ``episode`` (str, a name that is unique to each run of an episode) and ``frame`` (int64 [1], the
-    number of steps). Actions are int64 from 0 to ``actions`` - 1, where 0 is STOP. The reward
+    number of steps). Actions are int64 from 0 to 3, where 0 is STOP. The reward
     (float32 [1]) is the world's ``success`` at the end of an episode, and 0 before. If the agent
     ends the episode with STOP, ``terminated`` is set; if the world ends it, ``truncated`` is set.
 
@@ -40,7 +40,6 @@ class WorldEnv(EnvBase):
         episodes: A VLN-CE file or a list of episodes, which are run in order and repeated.
             Alternatively, a source of training episodes (``worlds/world.py``), from which episodes
             are sampled with ``seed``.
-        actions: Number of actions.
         seed: Seed for sampling episodes. The method ``set_seed`` replaces it and restarts with the
             first episode.
         worker: Index of this environment. The environment runs the episodes ``worker``, ``worker +
@@ -60,7 +59,6 @@ class WorldEnv(EnvBase):
         world: World,
         episodes: Path | str | Sequence[Episode] | TrainingEpisodes,
         *,
-        actions: int = 4,
         seed: int = 0,
         worker: int = 0,
         workers: int = 1,
@@ -71,7 +69,7 @@ class WorldEnv(EnvBase):
                 f"worker must be 0 to {workers - 1} with workers={workers}, got {worker}."
             )
         self.world = world
-        self.actions = actions
+
         self.seed = seed
         self.episodes: TrainingEpisodes | Sequence[Episode] = (
             episodes if isinstance(episodes, TrainingEpisodes) else _list_episodes(episodes)
@@ -91,7 +89,7 @@ class WorldEnv(EnvBase):
                 FRAME: Unbounded(shape=(1,), dtype=torch.int64),
             }
         )
-        self.action_spec = Categorical(self.actions, shape=(), dtype=torch.int64)
+        self.action_spec = Categorical(len(MOVES) + 1, shape=(), dtype=torch.int64)
         self.reward_spec = Unbounded(shape=(1,), dtype=torch.float32)
         self.done_spec = Composite(
             {name: flag.clone() for name in ("done", "terminated", "truncated")}

@@ -72,7 +72,7 @@ class FaceBuilder:
         for instance, piece in enumerate(self.apartment.furniture):
             self._piece(instance, piece)
         axis, sign, pattern, room, category, instance = np.array(self.kinds).T
-        at, tile, *span = np.array(self.places, float).T
+        at, *span = np.array(self.places, float).T
         low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
         corners = _corners(axis, sign, at, low, high)
         return Faces(
@@ -80,7 +80,7 @@ class FaceBuilder:
             np.stack([axis, at], 1).astype(np.float32),
             self._tints(axis, sign, room, corners),
             pattern.astype(np.int16),
-            ((high - low) / tile[:, None]).astype(np.float32),
+            (high - low).astype(np.float32),
             category.astype(np.int16),
             room.astype(np.int16),
             instance.astype(np.int16),
@@ -111,13 +111,12 @@ class FaceBuilder:
         room: int,
         category: int = STRUCTURE,
         instance: int = -1,
-        tile: float = 1.0,
     ) -> None:
         """Add a rectangle in the plane whose coordinate on ``axis`` is ``at``. Its normal points in
         the direction ``sign``, and ``low`` and ``high`` are its bounds on the other two axes.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
-        self.places.append((at, tile, *low, *high))
+        self.places.append((at, *low, *high))
         self.colours.append(colour)
 
     def _room(self, index: int) -> None:
