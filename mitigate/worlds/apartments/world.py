@@ -272,10 +272,10 @@ class ApartmentsWorld(World):
         renderer.load(apartment)
         selected = range(self.views) if views is None or self.views == 1 else views
         place = float(xy[0]), float(xy[1]), heading
-        rendered = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
-        _, depth, ids = rendered = [part[: self.views] for part in rendered]
+        drawn = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
+        _, depth, ids = parts = [part[: self.views] for part in drawn]
         pose = np.array([*xy, heading], np.float32)
-        return {**self._copied(rendered), POSE: pose}, Labels(apartment, xy, heading, ids, depth)
+        return {**self._copied(parts), POSE: pose}, Labels(apartment, xy, heading, ids, depth)
 
 
 class Labels(Mapping[str, np.ndarray]):
