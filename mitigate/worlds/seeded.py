@@ -256,8 +256,9 @@ class SeededWorld(World):
             raise ValueError(
                 f"At the end of episode {self._name} the environment must report success, but it "
                 f"has no entry {self.success!r}, only {_listed(self._report())}. Set success= to "
-                "an entry that is False after a failure, or to a function, such as lambda end: "
-                'end.total > 0, with rule="return > 0". For a task without it set score="return".'
+                "an entry that is False after a failure, or to a function, such as "
+                'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
+                'success set score="return".'
             )
         return self._observation(parts)
 

@@ -44,7 +44,8 @@ class Options:
     def __post_init__(self) -> None:
         if self.hfov is not None and not MIN_HFOV <= self.hfov <= MAX_HFOV:
             raise ValueError(
-                f"hfov must be {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got {self.hfov:g}."
+                f"hfov must be a field of view of {MIN_HFOV:g} to {MAX_HFOV:g} degrees, got "
+                f"{self.hfov:g}."
             )
         if self.tolerance is not None and not self.tolerance >= 0:
             raise ValueError(f"tolerance must be at least 0 seconds, got {self.tolerance:g}.")
