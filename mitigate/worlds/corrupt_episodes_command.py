@@ -258,8 +258,10 @@ def _options(words: Mapping[str, str]) -> dict[str, Any]:
     options: dict[str, Any] = {("corruption" if k == ALIAS else k): v for k, v in words.items()}
     for name, example in (("corruption", "black_box"), ("severity", "0.5")):
         if name not in options:
-            listed = ", ".join(NAMES)
-            raise ValueError(f"{name}= is missing. Add {name}={example}. Corruptions: {listed}.")
+            raise ValueError(
+                f"The option {name} is missing. Add {name}={example}. Corruptions: "
+                f"{', '.join(NAMES)}."
+            )
     for name, kind, text in (("severity", float, "a number"), ("seed", int, "a whole number")):
         try:
             options[name] = kind(options.get(name, 0))
