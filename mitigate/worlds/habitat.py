@@ -147,8 +147,9 @@ def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
     for entry, frame in frames.items():
         if frame.shape != first.shape or frame.dtype != first.dtype:
             raise ValueError(
-                f"All cameras of a panorama must have the same dtype and shape, got {frame.dtype} "
-                f"{frame.shape} for {entry!r}, but {first.dtype} {first.shape} for another camera."
+                f"All cameras of a panorama must have the same dtype and shape, but "
+                f"{next(iter(frames))!r} is {first.dtype} {first.shape} and {entry!r} is "
+                f"{frame.dtype} {frame.shape}."
             )
     if first.ndim not in (2, 3):
         raise ValueError(
