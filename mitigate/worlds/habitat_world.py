@@ -312,6 +312,12 @@ class HabitatWorld(World):
         rotation = self._sim.get_agent(0).get_state().rotation
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
 
+    def close(self) -> None:
+        """Free the simulator."""
+        if self._sim is not None:
+            self._sim.close()
+            self._sim, self._scene = None, ""
+
 
 class NavmeshExpert(Expert):
     """Oracle that uses geodesic distances on the navmesh.
