@@ -205,10 +205,8 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
     if backbone_sha(agent) != expected:
         raise ValueError(
             f"The backbone of {type(agent).__name__} has changed, although only its adapters "
-            "train: "
-            "something in it changes in training mode, such as a counter or a running mean. Do not "
-            "update it while its weights are frozen (requires_grad is False), and train again in "
-            "another folder (folder=...)."
+            "train. Do not update a counter or a running mean in it while its weights are frozen "
+            "(requires_grad is False), and train again in another folder (folder=...)."
         )
 
 

@@ -31,11 +31,7 @@ from mitigate.core.contracts import read
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import digest, generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.self_distil import (
-    check_counts,
-    check_frames,
-    clean_teacher,
-)
+from mitigate.recipes.self_distil import check_counts, check_frames, clean_teacher
 from mitigate.training.objective import Objective, check_share, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
@@ -207,6 +203,8 @@ class Ppo(Objective):
 
     def _run(self, number: int) -> dict[str, Any]:
         """Run the episodes of a round, and return their environment steps with advantages."""
+        from torchrl.objectives.value.functional import generalized_advantage_estimate
+
         steps: list[dict[str, Any]] = []
         returns: list[float] = []
         with _random(self.behaviour.policy.device, self.seed, "ppo actions", number):
@@ -234,14 +232,11 @@ class Ppo(Objective):
                 for sensor in steps[0]["frames"]
             }
             after[last] = self._values(frames)
-        advantage, target = _advantages(
-            torch.from_numpy(rewards)[:, None].to(values) / self.scale,
-            values,
-            after,
-            torch.from_numpy(ends)[:, None].to(values.device),
-            torch.tensor([[s["terminated"]] for s in steps], device=values.device),
-            self.gamma,
-            self.lmbda,
+        rewarded = torch.from_numpy(rewards)[:, None].to(values) / self.scale
+        done = torch.from_numpy(ends)[:, None].to(values.device)
+        terminated = torch.tensor([[s["terminated"]] for s in steps], device=values.device)
+        advantage, target = generalized_advantage_estimate(
+            self.gamma, self.lmbda, values, after, rewarded, done, terminated
         )
         self._picture = picture(steps[0]["frames"])
         return rollouts | {
@@ -304,8 +299,8 @@ class Ppo(Objective):
         self._steps_now = int(state["steps_now"])
 
 
-class _Actor:
-    """The policy, with the interface that torchrl's losses expect."""
+class _Networks:
+    """The policy and its critic, with the interface that torchrl's losses expect of each."""
 
     in_keys = ("frames",)
 
@@ -314,15 +309,6 @@ class _Actor:
 
     def get_dist(self, inputs: Any) -> Joint:
         return self.actor.actions(_arrays(inputs))
-
-
-class _Critic:
-    """The critic, with the interface that torchrl's losses expect."""
-
-    in_keys = ("frames",)
-
-    def __init__(self, actor: ActorCritic) -> None:
-        self.actor = actor
 
     def __call__(self, inputs: Any) -> Any:
         return inputs.set("state_value", self.actor.values(_arrays(inputs)))
@@ -335,9 +321,10 @@ def _arrays(inputs: Any) -> dict[str, np.ndarray]:
 def _loss(actor: ActorCritic, clip: float, w_critic: float, w_entropy: float) -> nn.Module:
     from torchrl.objectives import ClipPPOLoss
 
+    networks = _Networks(actor)
     loss = ClipPPOLoss(
-        _Actor(actor),
-        _Critic(actor),
+        networks,
+        networks,
         clip_epsilon=clip,
         entropy_bonus=w_entropy > 0,
         entropy_coeff=w_entropy,
@@ -348,23 +335,6 @@ def _loss(actor: ActorCritic, clip: float, w_critic: float, w_entropy: float) ->
     )
     loss.set_keys(sample_log_prob="log_prob")
     return loss
-
-
-def _advantages(
-    reward: Tensor,
-    value: Tensor,
-    next_value: Tensor,
-    done: Tensor,
-    terminated: Tensor,
-    gamma: float,
-    lmbda: float,
-) -> tuple[Tensor, Tensor]:
-    """Return the generalised advantages and the targets of the values. All arrays have the shape
-    [N, 1].
-    """
-    from torchrl.objectives.value.functional import generalized_advantage_estimate
-
-    return generalized_advantage_estimate(gamma, lmbda, value, next_value, reward, done, terminated)
 
 
 def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarray:

@@ -188,6 +188,36 @@ class Objective(nn.Module):
         return {}
 
 
+class OnSource(Objective):
+    """Base class of objectives whose jobs come from a source with a schedule of corruptions."""
+
+    @property
+    def source(self) -> Any:
+        """The source of batches, an attribute with the name of the constructor's parameter."""
+        return getattr(self, next(iter(self.sources)))
+
+    def identity(self) -> dict[str, str]:
+        return dict(self.source.identity())
+
+    def jobs(self, step: int) -> list[tuple]:
+        return list(self.source.jobs(step, self.workers))
+
+    def pieces(self) -> int:
+        return int(self.source.pieces)
+
+    def work(self, job: tuple) -> Any:
+        return self.source.work(job)
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return dict(self.source.figures())
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self.source.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self.source.schedule.load_state_dict(state["schedule"])
+
+
 @torch.no_grad()
 def do(objective: Objective, job: Any) -> Any:
     """Run ``objective.work(job)`` in eval mode on one CPU thread."""
@@ -227,10 +257,8 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
     """Check that ``outputs`` of ``forward`` are numbers and contain a loss, and return them."""
     wrong = ""
     if not isinstance(outputs, dict) or "loss" not in outputs:
-        returned = (
-            ", ".join(map(repr, outputs)) if isinstance(outputs, dict) else type(outputs).__name__
-        )
-        wrong = f'returned no "loss", but {returned or "nothing"}'
+        names = map(repr, outputs) if isinstance(outputs, dict) else [type(outputs).__name__]
+        wrong = f'returned no "loss", but {", ".join(names) or "nothing"}'
     else:
         for name, value in outputs.items():
             if not isinstance(value, (Tensor, np.ndarray, Real)):
@@ -374,9 +402,8 @@ def check_kind(kind: Any, target: str) -> None:
 def not_an_objective(target: str) -> str:
     """Return the error message for a ``target`` that is not an objective."""
     return (
-        f"{target} is not an objective. Make it a subclass of "
-        "mitigate.training.objective.Objective "
-        '(recipes/README.md, "A new objective").'
+        f"{target} is not an objective. Make it a subclass of mitigate.training.objective."
+        'Objective (recipes/README.md, "A new objective").'
     )
 
 

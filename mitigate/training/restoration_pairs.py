@@ -40,10 +40,6 @@ class PosePairs(Poses):
             )
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
-    def identity(self) -> dict[str, str]:
-        """Return an empty dict, because the settings determine the poses and no file is read."""
-        return {}
-
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """Return the batch of :meth:`Poses.collate` without targets."""
         batch = super().collate(pieces)

@@ -17,7 +17,7 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.training.objective import Objective, check_share
+from mitigate.training.objective import OnSource, check_share
 from mitigate.training.parts import OWN, TRAINABLE
 from mitigate.training.success import DrawsBySuccess, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
@@ -134,7 +134,7 @@ class Rollouts(DrawsBySuccess):
         return {} if self.picture is None else {"seen": self.picture}
 
 
-class OnEpisodes(Objective):
+class OnEpisodes(OnSource):
     """Base class of objectives that learn from rollouts."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
@@ -142,33 +142,12 @@ class OnEpisodes(Objective):
     otherwise = f"This recipe trains on episodes that the agent runs. {OWN}"
     rollouts: Rollouts
 
-    def identity(self) -> dict[str, str]:
-        return self.rollouts.identity()
-
-    def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.rollouts.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.rollouts.work(job)
-
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return batch_of(self.rollouts.collate(pieces))
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Return the sampling weights of the schedule, which are logged."""
         return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
-
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.rollouts.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.rollouts.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.rollouts.schedule.load_state_dict(state["schedule"])
 
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
