@@ -237,9 +237,8 @@ class SelfDistil(Objective):
         while not world.done:
             met.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
             observation = world.step(self.agent.act(observation))
-        met += [met[-1]] * (
-            -len(met) % self.window
-        )  # the last window is filled with copies of its last frame
+        # the last window is filled with copies of its last frame
+        met += [met[-1]] * (-len(met) % self.window)
         starts = np.arange(0, len(met), self.window)
         most = max(1, self.frames // self.window)
         if len(starts) > most:

@@ -175,15 +175,10 @@ class _Worker:
         code = self.process.exitcode
         what = f"worker {self.number} ended with code {code}"
         if self.deaths >= DEATHS or self.objective is None:
-            killed = code is not None and code < 0
-            cause = (
-                "it was killed, most likely because the memory ran out"
-                if killed
-                else "see its output for the cause"
-            )
             raise WorkersDied(
-                f"The {what}, for the second time: {cause}. Checkpoints are complete. Run the same "
-                "command again with fewer processes: workers=1, or 0 for none."
+                f"The {what}, for the second time. With a code below 0 it was killed, most likely "
+                "because the memory ran out. Checkpoints are complete. Run the same command again "
+                "with fewer processes: workers=1, or 0 for none."
             )
         self.deaths += 1
         say(f"{what}; a new one repeats its work")
