@@ -31,8 +31,8 @@ from mitigate.core.contracts import read
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import digest, generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.self_distil import check_counts, check_frames, clean_teacher
-from mitigate.training.objective import Objective, check_share, check_weights
+from mitigate.recipes.self_distil import check_frames, clean_teacher, stacked
+from mitigate.training.objective import Objective, check_counts, check_share, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
 CHUNK = 256  # number of frames whose values are computed at once
@@ -212,26 +212,20 @@ class Ppo(Objective):
                 episode_steps = self._episode(number, len(returns))
                 returns.append(sum(step["reward"] for step in episode_steps))
                 steps += episode_steps
+        observed = [name for name in ("frames", "clean") if name in steps[0]]
         rollouts: dict[str, Any] = {
-            name: {sensor: np.stack([step[name][sensor] for step in steps]) for sensor in frames}
-            for name, frames in steps[0].items()
-            if isinstance(frames, dict)
+            name: stacked([step[name] for step in steps]) for name in observed
         }
         rollouts |= {name: torch.stack([s[name] for s in steps]) for name in ("action", "log_prob")}
         rewards = np.array([step["reward"] for step in steps], np.float32)
         ends = np.array([step["done"] for step in steps])
         if number == 0:
-            deviation = _discounted(rewards, ends, self.gamma).std()
-            self.scale.fill_(float(deviation) or 1.0)
+            self.scale.fill_(float(_discounted(rewards, ends, self.gamma).std()) or 1.0)
         values = self._values(rollouts["frames"])
         after = torch.cat([values[1:], values[-1:]])
         last = [place for place, step in enumerate(steps) if "last" in step]
         if last:
-            frames = {
-                sensor: np.stack([steps[place]["last"][sensor] for place in last])
-                for sensor in steps[0]["frames"]
-            }
-            after[last] = self._values(frames)
+            after[last] = self._values(stacked([steps[place]["last"] for place in last]))
         rewarded = torch.from_numpy(rewards)[:, None].to(values) / self.scale
         done = torch.from_numpy(ends)[:, None].to(values.device)
         terminated = torch.tensor([[s["terminated"]] for s in steps], device=values.device)
@@ -295,8 +289,7 @@ class Ppo(Objective):
         return {"steps_before": self._steps_before, "steps_now": self._steps_now}
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
-        self._steps_before = int(state["steps_before"])
-        self._steps_now = int(state["steps_now"])
+        self._steps_before, self._steps_now = state["steps_before"], state["steps_now"]
 
 
 class _Networks:

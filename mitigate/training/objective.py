@@ -420,6 +420,22 @@ def check_weights(**weights: float) -> None:
             )
 
 
+def check_counts(**counts: int) -> None:
+    """Raise ValueError for a count below 1."""
+    for name, value in counts.items():
+        if value < 1:
+            raise ValueError(f"recipe.{name} must be a whole number >= 1, got {value}.")
+
+
+def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
+    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
+
+    Each job is a tuple (step, index of the job, number of jobs, number of items).
+    """
+    parts = np.array_split(np.arange(count), pieces)
+    return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
+
+
 def check_share(name: str, value: float) -> None:
     """Raise ValueError unless ``value`` is a fraction from 0 to 1."""
     if not in_range(value, 0, 1):

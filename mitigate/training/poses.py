@@ -19,7 +19,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.corruptions.faults.camera import random_mount
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.training.objective import OnSource, check_share
+from mitigate.training.objective import OnSource, check_counts, check_share, divided
 from mitigate.training.parts import OWN, SEEING
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
@@ -74,7 +74,7 @@ class Poses(DrawsBySuccess):
     def __post_init__(self) -> None:
         if self.modality not in ("rgb", "depth"):
             raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
-        check_panoramas(self.panoramas)
+        check_counts(panoramas=self.panoramas)
         check_share("camera_share", self.camera_share)
         self.sensor = self.modality
         self.schedule = self.schedule or Schedule("clean", 0.0)
@@ -137,10 +137,8 @@ class Poses(DrawsBySuccess):
         """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.refresh(step, workers)
-        pieces = self.pieces
-        counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()
-        return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
+        return [(*job, state) for job in divided(step, self.panoramas, self.pieces)]
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
@@ -230,9 +228,3 @@ class OnViews(OnSource):
         camera.
         """
         return float(len(batch["frames"]))
-
-
-def check_panoramas(panoramas: int) -> None:
-    """Raise ValueError if there is less than one panorama per step."""
-    if panoramas < 1:
-        raise ValueError(f"recipe.panoramas must be >= 1 per step, got {panoramas}.")

@@ -15,7 +15,8 @@ from mitigate.corruptions import DepthSensor, Schedule
 from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.sources import TRAIN, Frames, Source, collect, corrupted, source_of
 from mitigate.training import success
-from mitigate.training.poses import Poses, check_panoramas
+from mitigate.training.objective import check_counts
+from mitigate.training.poses import Poses
 from mitigate.worlds.world import TrainingEpisodes
 
 GROUP = 12  # number of frames in a folder that count as one panorama of a batch
@@ -73,7 +74,7 @@ class FramePairs:
     ring: ClassVar[bool] = False  # each frame is a separate time step
 
     def __post_init__(self) -> None:
-        check_panoramas(self.panoramas)
+        check_counts(panoramas=self.panoramas)
 
     def start(self) -> None:
         """Read the frames at the first call."""

@@ -137,7 +137,7 @@ def measure(
                 right = [float((part < TOLERANCE).mean()) for part in off]
                 rows.append((*errors, *right, restored is not frames))
             *means, was_restored = np.array(rows, float).T
-            scores[sensor, corruption.name] = Score(*map(mean, means), share(was_restored))
+            scores[sensor, corruption.name] = Score._make([*map(mean, means), share(was_restored)])
             progress.advance(note=corruption.name)
     return scores
 
