@@ -57,7 +57,7 @@ class Imitate(OnEpisodes):
 
 def decide(
     agent: Any, decisions: Decisions, weights: Mapping[str, float]
-) -> tuple[Output, dict[str, Tensor]]:
+) -> tuple[Any, dict[str, Tensor]]:
     """Return the agent's output for ``decisions``, and the result of :func:`imitation`."""
     out = agent.decide(decisions)
     check_losses(agent, weights, out)
