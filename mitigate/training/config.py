@@ -50,7 +50,11 @@ OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
     "rollouts": (1, EPISODES, "a number of episodes per step, such as rollouts=24"),
     "refresh_episodes": (1, EPISODES, "a number of episodes per measured success rate, such as 8"),
-    "workers": (0, PROCESSES, "a number of processes; 0 uses only this one, null one per core"),
+    "workers": (
+        0,
+        PROCESSES,
+        "a number of processes; 0 uses only this one, null uses one per core",
+    ),
     "evaluation.workers": (1, PROCESSES, "a number of processes; null uses one per core"),
 }
 
