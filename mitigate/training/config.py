@@ -53,7 +53,7 @@ OPTIONS: dict[str, tuple[float, float, str]] = {
     "workers": (
         0,
         PROCESSES,
-        "a number of processes; 0 uses only this one, null uses one per core",
+        "a number of processes; 0 uses this one, null uses one per core",
     ),
     "evaluation.workers": (1, PROCESSES, "a number of processes; null uses one per core"),
 }
