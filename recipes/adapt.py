@@ -211,8 +211,8 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
-    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their "
-    "size.
+    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their
+    size.
     """
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(

@@ -302,7 +302,14 @@ class ObjectiveSpec:
         """
         target = str(recipe["_target_"])
         kind = locate(target)
-        check_kind(kind, target)
+        if isinstance(kind, type):  # :meth:`build` checks the result of a function
+            if not is_objective(kind):
+                raise ValueError(not_an_objective(target))
+            names, is_open = _parameters(kind)
+            if "agent" not in names and not is_open:
+                raise ValueError(
+                    f"{target} takes no agent. Give its constructor a parameter agent."
+                )
         arguments = {name: value for name, value in recipe.items() if name != "_target_"}
         parameter = _source_of(kind, arguments)
         objective_arguments, source_arguments = split_arguments(kind, parameter, arguments, target)
@@ -381,22 +388,6 @@ def is_objective(kind: Any) -> bool:
     For a function that builds an objective, the result is False.
     """
     return isinstance(kind, type) and issubclass(kind, Objective)
-
-
-def check_kind(kind: Any, target: str) -> None:
-    """Raise ValueError if ``kind`` is a class that is not an objective or accepts no agent.
-
-    A function is not checked here. ``ObjectiveSpec.build`` checks its result.
-    """
-    if not isinstance(kind, type):
-        return
-    if not is_objective(kind):
-        raise ValueError(not_an_objective(target))
-    names, is_open = _parameters(kind)
-    if "agent" not in names and not is_open:
-        raise ValueError(
-            f"{target} takes no agent. Give its constructor a parameter agent, the module to train."
-        )
 
 
 def not_an_objective(target: str) -> str:

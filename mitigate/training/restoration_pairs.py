@@ -105,10 +105,8 @@ class FramePairs:
     def work(self, job: tuple[int, int, Frames]) -> tuple[np.ndarray, np.ndarray]:
         """Return corrupted and clean frames [GROUP, H, W, c] of a group."""
         step, group, clean = job
-        frames = []
-        for index in range(len(clean)):
-            corruptions = self.schedule.draw(self.seed, f"{step}-{group}-{index}", 0)
-            frames.append(corrupted(clean, index, *corruptions, self.depth))
+        drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(len(clean))]
+        frames = [corrupted(clean, i, *chosen, self.depth) for i, chosen in enumerate(drawn)]
         return np.stack(frames), clean.frames
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:

@@ -23,19 +23,17 @@ from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
 from mitigate.core.signals import leave_to_parent, start_worker
-from mitigate.core.workers import WorkersDied, context, packed, portable
+from mitigate.core.workers import DEATHS, STUCK, WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
 # more workers do not help, because a step has only 2 to 4 jobs and few steps are computed in
 # advance
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
-STUCK = 60.0  # seconds without an answer after which a slow worker is reported (heuristic)
 # number of jobs between two releases of memory; a release after every job costs 7 % of the time,
 # after every 8 jobs 1 %
 TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
-DEATHS = 1  # number of times that a worker is replaced before training stops
 
 
 class Workers:
