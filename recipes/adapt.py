@@ -51,16 +51,7 @@ class Adapt(Distil):
     ) -> None:
         has_adapters(agent)
         super().__init__(
-            agent,
-            rollouts,
-            START,
-            (ADAPTERS,),
-            losses,
-            w_il=w_il,
-            w_kl=w_kl,
-            w_feat=w_feat,
-            temperature=temperature,
-            match=match,
+            agent, rollouts, START, (ADAPTERS,), losses, w_il, w_kl, w_feat, temperature, match
         )
         self.backbone = backbone_sha(agent)
 

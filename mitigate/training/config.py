@@ -100,12 +100,8 @@ class StageConfig:
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
         """Return the trainer settings that are not None; ``common`` overrides the stage."""
-        return {
-            name: value
-            for part in (self.trainer, common)
-            for name, value in vars(part).items()
-            if value is not None
-        }
+        pairs = [*vars(self.trainer).items(), *vars(common).items()]
+        return {name: value for name, value in pairs if value is not None}
 
 
 @dataclass
