@@ -192,30 +192,30 @@ class OnSource(Objective):
     """Base class of objectives whose jobs come from a source with a schedule of corruptions."""
 
     @property
-    def source(self) -> Any:
+    def _source(self) -> Any:
         """The source of batches, an attribute with the name of the constructor's parameter."""
         return getattr(self, next(iter(self.sources)))
 
     def identity(self) -> dict[str, str]:
-        return dict(self.source.identity())
+        return dict(self._source.identity())
 
     def jobs(self, step: int) -> list[tuple]:
-        return list(self.source.jobs(step, self.workers))
+        return list(self._source.jobs(step, self.workers))
 
     def pieces(self) -> int:
-        return int(self.source.pieces)
+        return int(self._source.pieces)
 
     def work(self, job: tuple) -> Any:
-        return self.source.work(job)
+        return self._source.work(job)
 
     def figures(self, step: int) -> dict[str, np.ndarray]:
-        return dict(self.source.figures())
+        return dict(self._source.figures())
 
     def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.source.schedule.state_dict()}
+        return {"schedule": self._source.schedule.state_dict()}
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.source.schedule.load_state_dict(state["schedule"])
+        self._source.schedule.load_state_dict(state["schedule"])
 
 
 @torch.no_grad()
