@@ -401,7 +401,7 @@ class OneCamera(Straight):
         (Straight(), {"episodes": "2"}, "or null for the whole list, got '2'"),
         (Straight(), {"episodes": 2.0}, "or null for the whole list, got 2.0"),
         (Straight(), {"options": "env.views=1"}, "options must be a list of strings"),
-        (OneCamera(), {}, "OneCamera takes 1. Set env.views=1"),
+        (OneCamera(), {}, "OneCamera needs 1. Set env.views=1"),
         (
             Straight(),
             {"world": ApartmentsWorld(16)},
