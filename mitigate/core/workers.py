@@ -233,8 +233,8 @@ class _Crew:
         if self.deaths > DEATHS:
             raise WorkersDied(
                 f"A second worker process was {cause}. {self.done} of {self.total} jobs are "
-                f"finished. Free some memory, or use fewer than {self.size} workers. A script must "
-                "keep its calls under `if __name__ == '__main__':`, since each worker imports it."
+                f"finished. Use fewer than {self.size} workers (workers=1 takes the least memory). "
+                "Scripts need `if __name__ == '__main__':`, since each worker imports them."
             )
         self.progress.say(
             f"A worker process was {cause}. Its unfinished jobs ({len(worker.left)}) start again "
