@@ -51,16 +51,7 @@ class Adapt(Distil):
     ) -> None:
         has_adapters(agent)
         super().__init__(
-            agent,
-            rollouts,
-            START,
-            (ADAPTERS,),
-            losses,
-            w_il=w_il,
-            w_kl=w_kl,
-            w_feat=w_feat,
-            temperature=temperature,
-            match=match,
+            agent, rollouts, START, (ADAPTERS,), losses, w_il, w_kl, w_feat, temperature, match
         )
         self.backbone = backbone_sha(agent)
 
@@ -205,16 +196,14 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
     if backbone_sha(agent) != expected:
         raise ValueError(
             f"The backbone of {type(agent).__name__} has changed, although only its adapters "
-            "train: "
-            "something in it changes in training mode, such as a counter or a running mean. Do not "
-            "update it while its weights are frozen (requires_grad is False), and train again in "
-            "another folder (folder=...)."
+            "train. Do not update a counter or a running mean in it while its weights are frozen "
+            "(requires_grad is False), and train again in another folder (folder=...)."
         )
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
-    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their "
-    "size.
+    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their
+    size.
     """
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(

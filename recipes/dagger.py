@@ -124,10 +124,9 @@ class Dagger(Imitate):
         """Store the rollouts of one job, with floating-point tensors as float16."""
         if not _is_plain(piece):
             raise ValueError(
-                f"{type(self.rollouts.agent).__name__}.collect must return plain data, got "
-                f"{type(piece).__name__}: stored rollouts are read without running code. Return "
-                "dicts, lists, texts, numbers and tensors, as RecurrentAgent does, or choose "
-                "recipe=imitation."
+                f"{type(self.rollouts.agent).__name__}.collect must return plain data (dicts, "
+                f"lists, texts, numbers and tensors), got {type(piece).__name__}: rollouts are "
+                "stored and read without running code. Or choose recipe=imitation."
             )
         buffer = io.BytesIO()
         torch.save(_floats(piece, torch.float16), buffer)

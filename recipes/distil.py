@@ -19,7 +19,7 @@ import torch
 from torch import Tensor
 
 from mitigate.core import checkpoint
-from mitigate.recipes.imitate import check_losses, imitation, loss_weights, masked
+from mitigate.recipes.imitate import decide, loss_weights, masked
 from mitigate.recipes.pretrain import views_to_learn
 from mitigate.training.objective import check_weights
 from mitigate.training.parts import load_teacher, refuse_gates, train_only
@@ -94,9 +94,7 @@ class Distil(OnEpisodes):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
-        out = self.agent.decide(decisions)
-        check_losses(self.agent, self.losses, out)
-        values = imitation(out, decisions, self.losses)
+        out, values = decide(self.agent, decisions, self.losses)
         with torch.no_grad():
             target = self.teacher.decide(decisions, clean=True)
         student, teacher = (masked(x.logits, out.mask) for x in (out, target))

@@ -183,9 +183,13 @@ class HardenEncoder(Objective):
         # Compare pixels, because the corruption black-out leaves some frames unchanged.
         hit = [float(not np.array_equal(a, b)) for a, b in zip(changed, clean, strict=True)]
         self._last = np.stack(changed[:SHOWN])
+        if self.targets is None:
+            targets = {"clean": torch.from_numpy(np.stack(clean))}
+        else:
+            targets = {"target": self.targets[torch.tensor(chosen, device=self.targets.device)]}
         return {
             "frames": torch.from_numpy(np.stack(changed)),
-            **self._targets(np.array(chosen), clean),
+            **targets,
             "corrupted": torch.tensor(hit),
             "episode_ids": [self.frames.names[self.frames.scene[index]] for index in chosen],
         }
@@ -193,14 +197,6 @@ class HardenEncoder(Objective):
     def weight(self, batch: dict[str, Any]) -> float:
         """Return the number of frames in the batch."""
         return float(len(batch["frames"]))
-
-    def _targets(self, chosen: np.ndarray, clean: list[np.ndarray]) -> dict[str, Tensor]:
-        """Return the cached clean features of a step's frames. If features are not cached, return
-        the clean frames.
-        """
-        if self.targets is None:
-            return {"clean": torch.from_numpy(np.stack(clean))}
-        return {"target": self.targets[torch.from_numpy(chosen).to(self.targets.device)]}
 
     def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
         """Split the frames of a step into parts of at most ``micro_batch`` frames, and return each

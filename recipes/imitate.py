@@ -52,10 +52,16 @@ class Imitate(OnEpisodes):
         self.rollouts = rollouts
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        decisions = batch["decisions"]
-        out = self.agent.decide(decisions)
-        check_losses(self.agent, self.losses, out)
-        return imitation(out, decisions, self.losses)
+        return decide(self.agent, batch["decisions"], self.losses)[1]
+
+
+def decide(
+    agent: Any, decisions: Decisions, weights: Mapping[str, float]
+) -> tuple[Any, dict[str, Tensor]]:
+    """Return the agent's output for ``decisions``, and the result of :func:`imitation`."""
+    out = agent.decide(decisions)
+    check_losses(agent, weights, out)
+    return out, imitation(out, decisions, weights)
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:

@@ -11,16 +11,15 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-import numpy as np
 from torch import Tensor
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.imitate import check_losses, falling_share, imitation, loss_weights
+from mitigate.recipes.imitate import decide, falling_share, loss_weights
 from mitigate.training import success
-from mitigate.training.objective import Objective, check_share
+from mitigate.training.objective import Objective, check_counts, check_share, divided
 from mitigate.training.parts import TRAINABLE, train_only
-from mitigate.training.rollouts import PIECES, batch_of, check_episodes
+from mitigate.training.rollouts import PIECES, batch_of
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -59,7 +58,7 @@ class StoredRollouts:
     variants: int = 0
 
     def __post_init__(self) -> None:
-        check_episodes(self.episodes)
+        check_counts(episodes=self.episodes)
         check_share("follow_oracle", self.follow_oracle)
         success.refuse(self.schedule if self.variants else None)
 
@@ -76,12 +75,11 @@ class StoredRollouts:
         """The number of jobs in every step."""
         return min(PIECES, self.episodes)
 
-    def jobs(self, step: int) -> list[tuple]:
+    def jobs(self, step: int) -> list[tuple[int, int, int, int]]:
         """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
         episodes).
         """
-        parts = np.array_split(np.arange(self.episodes), self.pieces)
-        return [(step, i, len(parts), len(part)) for i, part in enumerate(parts)]
+        return divided(step, self.episodes, self.pieces)
 
     def work(self, job: tuple) -> Any:
         """Run the episodes of a job and return their decisions."""
@@ -136,7 +134,4 @@ class ImitateStored(Objective):
         return batch_of(self.agent.join(pieces))
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        decisions = batch["decisions"]
-        out = self.agent.decide(decisions)
-        check_losses(self.agent, self.losses, out)
-        return imitation(out, decisions, self.losses)
+        return decide(self.agent, batch["decisions"], self.losses)[1]

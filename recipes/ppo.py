@@ -31,12 +31,8 @@ from mitigate.core.contracts import read
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import digest, generator
 from mitigate.corruptions import Schedule
-from mitigate.recipes.self_distil import (
-    check_counts,
-    check_frames,
-    clean_teacher,
-)
-from mitigate.training.objective import Objective, check_share, check_weights
+from mitigate.recipes.self_distil import check_frames, clean_teacher, stacked
+from mitigate.training.objective import Objective, check_counts, check_share, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
 CHUNK = 256  # number of frames whose values are computed at once
@@ -207,6 +203,8 @@ class Ppo(Objective):
 
     def _run(self, number: int) -> dict[str, Any]:
         """Run the episodes of a round, and return their environment steps with advantages."""
+        from torchrl.objectives.value.functional import generalized_advantage_estimate
+
         steps: list[dict[str, Any]] = []
         returns: list[float] = []
         with _random(self.behaviour.policy.device, self.seed, "ppo actions", number):
@@ -214,34 +212,25 @@ class Ppo(Objective):
                 episode_steps = self._episode(number, len(returns))
                 returns.append(sum(step["reward"] for step in episode_steps))
                 steps += episode_steps
+        observed = [name for name in ("frames", "clean") if name in steps[0]]
         rollouts: dict[str, Any] = {
-            name: {sensor: np.stack([step[name][sensor] for step in steps]) for sensor in frames}
-            for name, frames in steps[0].items()
-            if isinstance(frames, dict)
+            name: stacked([step[name] for step in steps]) for name in observed
         }
         rollouts |= {name: torch.stack([s[name] for s in steps]) for name in ("action", "log_prob")}
         rewards = np.array([step["reward"] for step in steps], np.float32)
         ends = np.array([step["done"] for step in steps])
         if number == 0:
-            deviation = _discounted(rewards, ends, self.gamma).std()
-            self.scale.fill_(float(deviation) or 1.0)
+            self.scale.fill_(float(_discounted(rewards, ends, self.gamma).std()) or 1.0)
         values = self._values(rollouts["frames"])
         after = torch.cat([values[1:], values[-1:]])
         last = [place for place, step in enumerate(steps) if "last" in step]
         if last:
-            frames = {
-                sensor: np.stack([steps[place]["last"][sensor] for place in last])
-                for sensor in steps[0]["frames"]
-            }
-            after[last] = self._values(frames)
-        advantage, target = _advantages(
-            torch.from_numpy(rewards)[:, None].to(values) / self.scale,
-            values,
-            after,
-            torch.from_numpy(ends)[:, None].to(values.device),
-            torch.tensor([[s["terminated"]] for s in steps], device=values.device),
-            self.gamma,
-            self.lmbda,
+            after[last] = self._values(stacked([steps[place]["last"] for place in last]))
+        rewarded = torch.from_numpy(rewards)[:, None].to(values) / self.scale
+        done = torch.from_numpy(ends)[:, None].to(values.device)
+        terminated = torch.tensor([[s["terminated"]] for s in steps], device=values.device)
+        advantage, target = generalized_advantage_estimate(
+            self.gamma, self.lmbda, values, after, rewarded, done, terminated
         )
         self._picture = picture(steps[0]["frames"])
         return rollouts | {
@@ -300,12 +289,11 @@ class Ppo(Objective):
         return {"steps_before": self._steps_before, "steps_now": self._steps_now}
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
-        self._steps_before = int(state["steps_before"])
-        self._steps_now = int(state["steps_now"])
+        self._steps_before, self._steps_now = state["steps_before"], state["steps_now"]
 
 
-class _Actor:
-    """The policy, with the interface that torchrl's losses expect."""
+class _Networks:
+    """The policy and its critic, with the interface that torchrl's losses expect of each."""
 
     in_keys = ("frames",)
 
@@ -314,15 +302,6 @@ class _Actor:
 
     def get_dist(self, inputs: Any) -> Joint:
         return self.actor.actions(_arrays(inputs))
-
-
-class _Critic:
-    """The critic, with the interface that torchrl's losses expect."""
-
-    in_keys = ("frames",)
-
-    def __init__(self, actor: ActorCritic) -> None:
-        self.actor = actor
 
     def __call__(self, inputs: Any) -> Any:
         return inputs.set("state_value", self.actor.values(_arrays(inputs)))
@@ -335,9 +314,10 @@ def _arrays(inputs: Any) -> dict[str, np.ndarray]:
 def _loss(actor: ActorCritic, clip: float, w_critic: float, w_entropy: float) -> nn.Module:
     from torchrl.objectives import ClipPPOLoss
 
+    networks = _Networks(actor)
     loss = ClipPPOLoss(
-        _Actor(actor),
-        _Critic(actor),
+        networks,
+        networks,
         clip_epsilon=clip,
         entropy_bonus=w_entropy > 0,
         entropy_coeff=w_entropy,
@@ -348,23 +328,6 @@ def _loss(actor: ActorCritic, clip: float, w_critic: float, w_entropy: float) ->
     )
     loss.set_keys(sample_log_prob="log_prob")
     return loss
-
-
-def _advantages(
-    reward: Tensor,
-    value: Tensor,
-    next_value: Tensor,
-    done: Tensor,
-    terminated: Tensor,
-    gamma: float,
-    lmbda: float,
-) -> tuple[Tensor, Tensor]:
-    """Return the generalised advantages and the targets of the values. All arrays have the shape
-    [N, 1].
-    """
-    from torchrl.objectives.value.functional import generalized_advantage_estimate
-
-    return generalized_advantage_estimate(gamma, lmbda, value, next_value, reward, done, terminated)
 
 
 def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarray:

@@ -91,14 +91,11 @@ class SafeguardLora(Objective):
         """Return the state for workers without the language model, which is large."""
         return {**self.__dict__, "_modules": {}}
 
-    def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
-        return self._batch(pieces)
-
     def weight(self, batch: dict[str, Any]) -> float:
         """Return the number of tokens in the completions."""
         return float(sum(int(group["completion"].sum()) for group in batch["groups"]))
 
-    def _batch(self, pieces: list[Encoded]) -> dict[str, Any]:
+    def collate(self, step: int, pieces: list[Encoded]) -> dict[str, Any]:
         encoded = sorted(pieces, key=lambda row: len(row[1]) + len(row[2]))
         pad = self.agent.tokenizer.pad_token_id
         groups = [
@@ -126,6 +123,6 @@ class SafeguardLora(Objective):
     def evaluate(self, step: int) -> dict[str, float]:
         """Return loss and accuracy on pairs that are never used in training."""
         pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
-        batches = self.micro_batches(self._batch(pieces))
+        batches = self.micro_batches(self.collate(step, pieces))
         values = [self(to_device(part, self.agent.device)) for part in batches]
         return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

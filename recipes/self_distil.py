@@ -44,7 +44,7 @@ from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.recipes.distil import feature_loss
-from mitigate.training.objective import Objective, check_weights
+from mitigate.training.objective import Objective, check_counts, check_weights
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World, depth_sensor
 
 RISE = 0.6  # fraction of training during which the severity rises (heuristic)
@@ -165,9 +165,9 @@ class SelfDistil(Objective):
             clean += [{n: frames[f] for n, frames in window.items()} for f in range(self.window)]
         self._picture = picture(corrupted[0][0])
         return {
-            "clean": _stacked(clean),
-            "first": _stacked(corrupted[0]),
-            "second": _stacked(corrupted[1]),
+            "clean": stacked(clean),
+            "first": stacked(corrupted[0]),
+            "second": stacked(corrupted[1]),
         }
 
     def schedule_at(self, step: int) -> Schedule:
@@ -237,9 +237,8 @@ class SelfDistil(Objective):
         while not world.done:
             met.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
             observation = world.step(self.agent.act(observation))
-        met += [met[-1]] * (
-            -len(met) % self.window
-        )  # the last window is filled with copies of its last frame
+        # the last window is filled with copies of its last frame
+        met += [met[-1]] * (-len(met) % self.window)
         starts = np.arange(0, len(met), self.window)
         most = max(1, self.frames // self.window)
         if len(starts) > most:
@@ -258,13 +257,6 @@ class SelfDistil(Objective):
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
         self._now = int(state["rounds"]) * self.every
-
-
-def check_counts(**counts: int) -> None:
-    """Raise ValueError for a count below 1."""
-    for name, value in counts.items():
-        if value < 1:
-            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
 
 
 def check_frames(policy: Policy) -> None:
@@ -293,7 +285,8 @@ def _mean(
     return torch.stack(pairs).mean()
 
 
-def _stacked(observations: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+def stacked(observations: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Stack the arrays of each sensor."""
     return {name: np.stack([o[name] for o in observations]) for name in observations[0]}
 
 

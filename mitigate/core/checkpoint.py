@@ -51,9 +51,8 @@ def weights_file(path: str | Path) -> Path:
             )
         raise FileNotFoundError(
             f"There are no weights at {path}: expected a .safetensors file or a folder that holds "
-            f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base`; "
-            "docs/agents.md lists the recipes of other agents (RECIPE=dagger, or "
-            "RECIPE=swap_encoder for topological_imagenet). Then set weights.base=runs/.../agent."
+            f"{WEIGHTS}, such as checkpoints/base. Train some with `make train RECIPE=base` (other "
+            "recipes are in docs/agents.md), and set weights.base=runs/.../agent."
         )
     return file
 
@@ -159,10 +158,9 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
 
 def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> None:
     """Load the tensors of ``file`` into ``module``; raise ValueError if they do not match."""
-    expected = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     borrowed = _borrowed(module)
-    expected = {k: v for k, v in expected.items() if k not in borrowed}
-    expected |= {k: v for k, v in borrowed.items() if k in tensors}
+    state = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
+    expected = {k: v for k, v in {**state, **borrowed}.items() if k not in borrowed or k in tensors}
     if not any(ADAPTER in name for name in tensors):
         expected = {name: value for name, value in expected.items() if ADAPTER not in name}
     wrong = sorted(
@@ -173,25 +171,19 @@ def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> No
     if wrong:
         raise ValueError(
             f"The weights {file} do not fit this {type(module).__name__}: {len(wrong)} tensors are "
-            f"missing, unknown, or of another shape or type ({', '.join(wrong[:4])} ...). "
-            "Build the agent with the config of these weights (config.yaml in their folder), or "
-            "choose other weights."
+            f"missing, unknown, or of another shape or type ({', '.join(wrong[:4])} ...). Build "
+            "the agent with the config of these weights (config.yaml), or choose other weights."
         )
     module.load_state_dict(tensors, strict=False)
     check_finite(module, f"The weights {file}")
 
 
 def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
-    return value.shape == expected.shape and _kind(value) == _kind(expected)
-
-
-def _kind(value: torch.Tensor) -> str:
-    """Return the kind of numbers in a tensor, without their precision."""
-    if value.dtype == torch.bool:
-        return "bool"
-    if value.is_complex():
-        return "complex"
-    return "float" if value.is_floating_point() else "integer"
+    """Return whether shape and kind of numbers are equal; the precision may differ."""
+    kinds = [
+        (x.dtype == torch.bool, x.is_complex(), x.is_floating_point()) for x in (value, expected)
+    ]
+    return value.shape == expected.shape and kinds[0] == kinds[1]
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
@@ -215,32 +207,25 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
-    problem = _header_problem(file) or folders.problem(file)
-    if not problem:
-        try:
+    try:
+        # the header must fit the size of the file: computing the sha256 of a sparse file of
+        # several terabytes would take hours
+        with safe_open(file, "pt"):
+            problem = folders.problem(file)
+        if not problem:
             tensors = load_file(file)
             bad = [name for name, value in tensors.items() if torch.isnan(value).any()]
             if not bad:
                 return tensors
             problem = f"holds NaN ({short(bad[0])})"
-        except (SafetensorError, OSError, KeyError) as error:
-            problem = f"cannot be read: {short(str(error), 200)}"
+    except PermissionError:
+        raise
+    except (SafetensorError, OSError, KeyError) as error:
+        problem = f"cannot be read: {short(str(error), 200)}"
     raise ValueError(
         f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
         f"{problem}. {_again(file)}"
     )
-
-
-def _header_problem(file: Path) -> str:
-    """Describe the problem if the header does not fit the size of the file; do not read tensors.
-
-    Without this check, computing the sha256 of a sparse file of several terabytes would take hours.
-    """
-    try:
-        with safe_open(file, "pt"):
-            return ""
-    except (SafetensorError, OSError) as error:
-        return f"cannot be read: {short(str(error), 200)}"
 
 
 def _again(file: Path) -> str:
@@ -248,10 +233,7 @@ def _again(file: Path) -> str:
     folder = file.resolve().parent
     # this is the layout of a training run
     if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):
-        return (
-            "They belong to a run: the same `make train` command writes them again from its "
-            "checkpoints."
-        )
+        return "They belong to a run: the same `make train` command writes them again."
     manifest = file.with_name(folders.MANIFEST)
     note = manifest if manifest.is_file() else checksums.sidecar(file)
     alone = f" If you know that only {note.name} is damaged, delete it." if note.is_file() else ""
@@ -350,11 +332,10 @@ def _leave_out(module: Any, state: dict[str, Any], prefix: str, _: Any) -> None:
 def _fill_in(module: Any, state: dict[str, Any], prefix: str, *_: Any) -> None:
     source = state.get(f"{prefix}public")
     if source is not None and not torch.equal(source.cpu(), module.public.cpu()):
+        needed, has = (bytes(sha.tolist()).hex()[:12] for sha in (source, module.public))
         raise ValueError(
-            f"These weights need {module.public_name} with sha256 "
-            f"{bytes(source.tolist()).hex()[:12]}, but the installed one has "
-            f"{bytes(module.public.tolist()).hex()[:12]}. Install the version that was used in "
-            "training."
+            f"These weights need {module.public_name} with sha256 {needed}, but the installed one "
+            f"has {has}. Install the version that was used in training."
         )
     for name, value in module.public_tensors.items():
         state.setdefault(prefix + name, value)

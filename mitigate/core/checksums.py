@@ -13,7 +13,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.files import atomic_text, read_bounded, sha256, write_atomically
+from mitigate.core.files import read_bounded, sha256, write_atomically, write_text
 
 SUFFIX = ".sha256"
 LARGEST = 4096  # maximum bytes of a sidecar (heuristic); a sidecar has one or two lines
@@ -103,5 +103,4 @@ def _sums(path: Path) -> list[str]:
 
 
 def _note(path: Path, digests: list[str]) -> None:
-    with atomic_text(sidecar(path)) as file:
-        file.writelines(f"{digest}  {path.name}\n" for digest in digests)
+    write_text(sidecar(path), "".join(f"{digest}  {path.name}\n" for digest in digests))

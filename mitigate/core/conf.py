@@ -141,10 +141,9 @@ def main(
     except (ValueError, OSError) as error:
         sys.exit(f"error: {error_message(error)}")
     except (MemoryError, RuntimeError, OverflowError) as error:
-        message = too_large_message(error)
-        if not message:
-            raise
-        sys.exit(f"error: {message}")
+        if message := too_large_message(error):
+            sys.exit(f"error: {message}")
+        raise
     except KeyboardInterrupt as error:
         command = shlex.join([*sys.argv[0].split(), *sys.argv[1:], *behind])
         print(f"\n{str(error) or 'SIGINT'}: stopped. {again}: {command}", file=sys.stderr)
@@ -179,7 +178,7 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
     folder_words, overrides = without_config_folder(words)
     overrides = [word for word in overrides if re.match(r"[^-].*=|~", word)]
     try:
-        cfg = _compose(primary, [*folder_words, *overrides], with_hydra=True)
+        cfg = load_config(primary, [*folder_words, *overrides], with_hydra=True)
         params = OmegaConf.select(cfg, "hydra.sweeper.params") or {}
         swept = [f"{key}={value}" for key, value in params.items()]
         choice = OmegaConf.select(cfg, "safeguard")
@@ -241,21 +240,17 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     return " ".join(str(error).split())
 
 
-def load_config(primary: str, words: Sequence[str] = ()) -> DictConfig:
+def load_config(primary: str, words: Sequence[str] = (), with_hydra: bool = False) -> DictConfig:
     """Compose ``conf/<primary>.yaml`` with the ``words`` of a command line, outside a Hydra
     program.
 
     The words are overrides, and optionally a folder with more configs (``--config-dir=mine``).
+    ``with_hydra`` adds Hydra's own settings as ``hydra``.
 
     Raises:
         ValueError: No imported module has registered the types of this file, or an address in the
             words contains a password.
     """
-    return _compose(primary, words)
-
-
-def _compose(primary: str, words: Sequence[str], with_hydra: bool = False) -> DictConfig:
-    """Compose like :func:`load_config`; ``with_hydra`` adds Hydra's own settings as ``hydra``."""
     check_arguments(words)
     if primary not in TYPES:
         raise ValueError(
@@ -263,8 +258,7 @@ def _compose(primary: str, words: Sequence[str], with_hydra: bool = False) -> Di
             "command first (mitigate/cli.py names it)."
         )
     _, overrides = without_config_folder(words)
-    folder = config_folder(words)
-    if folder is not None:
+    if folder := config_folder(words):
         place = str(folder.resolve()).replace("\\", "\\\\").replace('"', '\\"')
         overrides.append(f'hydra.searchpath=["file://{place}"]')
     GlobalHydra.instance().clear()
@@ -286,32 +280,28 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
     if not added:
         return []
     folder_words, overrides = without_config_folder(options)
+    kept = [word for word in overrides if re.match(r"[^-+].*=|~", word)]
     try:
-        cfg = load_config(
-            primary, [*folder_words, *(o for o in overrides if re.match(r"[^-+].*=|~", o))]
-        )
+        cfg = load_config(primary, [*folder_words, *kept])
     except (HydraException, OmegaConfBaseException):  # the program itself explains this error
         return []
     folders = (CONF, config_folder(options) or CONF)
-    return [
-        notice
+    found = [
+        _notice(key, whole, cfg)
         for key, whole in added.items()
         if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
-        and (
-            notice := _notice(key, whole, OmegaConf.select(cfg, key) is not None, [*map(str, cfg)])
-        )
     ]
+    return [notice for notice in found if notice]
 
 
-def _notice(key: str, whole: bool, exists: bool, names: list[str]) -> str:
+def _notice(key: str, whole: bool, cfg: DictConfig) -> str:
     """Return the warning for ``+key=``; ``whole`` is true if the value is a list or a mapping."""
-    if exists and not whole:
-        return ""  # Hydra rejects it
-    if exists:
-        return f"{key} already exists, and +{key}= replaces it. To add one, use another name."
+    if OmegaConf.select(cfg, key) is not None:  # Hydra itself rejects a value that is not whole
+        text = f"{key} already exists, and +{key}= replaces it. To add one, use another name."
+        return text if whole else ""
     if "." in key:
         return ""
-    near = difflib.get_close_matches(key, names, n=1)
+    near = difflib.get_close_matches(key, [*map(str, cfg)], n=1)
     hint = f" Did you mean {near[0]}=...?" if near else ""
     return f"+{key}= adds an option that only your own configs can use.{hint}"
 
@@ -359,10 +349,11 @@ def _choices(group: str, primary: str) -> str:
     files = [path for path in sorted((CONF / group).glob("*.yaml")) if path.stem not in rejected]
     if group != "agent":
         return ", ".join(path.stem for path in files)
-    others = [path.stem for path in files if not walks(path)]
     text = ", ".join(path.stem for path in files if walks(path))
-    parts = f"; cannot run episodes, have their own recipes: {', '.join(others)}"
-    return text + (parts if primary == "train" else "")
+    if primary != "train":
+        return text
+    others = ", ".join(path.stem for path in files if not walks(path))
+    return f"{text}; cannot run episodes, have their own recipes: {others}"
 
 
 def walks(file: Path) -> bool:
@@ -433,11 +424,8 @@ def _misfit(key: str, value: str, cfg: DictConfig) -> str:
         return f"{key} cannot be {value}."
     if not node:
         return f"{key} cannot be {value}. To add an entry, write +{key}.NAME=VALUE."
-    names = [str(name) for name in node]
-    return (
-        f"{key} cannot be {value}: it holds {', '.join(names)}. Set one of these: "
-        f"{key}.{names[0]}=VALUE."
-    )
+    names = [*map(str, node)]
+    return f"{key} cannot be {value}: it holds {', '.join(names)}. Set {key}.{names[0]}=VALUE."
 
 
 def _first(pattern: str, text: str) -> str | None:

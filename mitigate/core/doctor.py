@@ -165,31 +165,25 @@ def _software_frame() -> tuple[int, int]:
     pipe = core.GraphicsPipeSelection.get_global_ptr().make_pipe("TinyOffscreenGraphicsPipe")
     if pipe is None:
         raise RuntimeError("the module p3tinydisplay did not load")
-    window = engine.make_output(
-        pipe,
-        "doctor",
-        0,
-        core.FrameBufferProperties.get_default(),
-        core.WindowProperties.size(32, 32),
-        core.GraphicsPipe.BF_refuse_window,
-    )
+    properties, size = core.FrameBufferProperties.get_default(), core.WindowProperties.size(32, 32)
+    flags = core.GraphicsPipe.BF_refuse_window
+    window = engine.make_output(pipe, "doctor", 0, properties, size, flags)
     if window is None:
         raise RuntimeError("no offscreen buffer could be opened")
     engine.render_frame()
-    size = (window.get_x_size(), window.get_y_size())
+    pixels = (window.get_x_size(), window.get_y_size())
     engine.remove_window(window)
-    return size
+    return pixels
 
 
 def _files() -> list[str]:
     root = Path(__file__).resolve().parents[2]
-    required = {
+    problems = []
+    for name, what in {
         "conf": "options",
         "recipes": "recipes",
-        "checkpoints/base": "the shipped base agent",
-    }
-    problems = []
-    for name, what in required.items():
+        "checkpoints/base": "base agent",
+    }.items():
         exists = (root / name).is_dir() or (root / "mitigate" / name).is_dir()
         _line(name, "found" if exists else "missing")
         if not exists:

@@ -85,15 +85,17 @@ def own_place(error: BaseException) -> str:
 def too_large_message(error: Exception) -> str:
     """Return a paragraph if a setting or file that is too large caused the error, else ""."""
     cause = " ".join(str(error).split())[:200]
-    memory = isinstance(error, MemoryError) or "allocate memory" in cause
-    nested = isinstance(error, RecursionError)
-    if not (memory or nested or isinstance(error, OverflowError)):
+    if isinstance(error, MemoryError) or "allocate memory" in cause:
+        what = "more memory than available"
+    elif isinstance(error, RecursionError):
+        what = "too many levels"
+    elif isinstance(error, OverflowError):
+        what = "too large a number"
+    else:
         return ""
-    what = "more memory than available" if memory else "too many levels" if nested else ""
     return (
-        f"A setting or a file asks for {what or 'too large a number'} ("
-        f"{cause or type(error).__name__}). Check "
-        "the last option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
+        f"A setting or a file asks for {what} ({cause or type(error).__name__}). Check the last "
+        "option or file that you changed; HYDRA_FULL_ERROR=1 shows where it was used."
     )
 
 

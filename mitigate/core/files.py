@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, BinaryIO, TextIO
 
 from mitigate.core import output
-from mitigate.core.names import unknown
+from mitigate.core.names import printable, unknown
 
 GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 # first line of a pointer file (Git LFS specification)
@@ -63,11 +63,10 @@ def find(path: str | Path) -> Path:
             raise FileNotFoundError(unknown("weights folder", str(path), namesakes or shipped))
         package = find_spec(WEIGHTS_PACKAGE)
         raise FileNotFoundError(
-            f"There are no weights at {path}: not in this folder, not in the package "
-            f"mitigate-weights ({'installed' if package else 'not installed'}), not in "
-            f"{ROOT / WEIGHTS}, and not in the folder that {WEIGHTS_VARIABLE} names "
-            f"({os.environ.get(WEIGHTS_VARIABLE) or 'not set'}). Install mitigate-weights, work in "
-            f"a checkout, set {WEIGHTS_VARIABLE}, or name other weights, such as runs/.../agent."
+            f"There are no weights at {path}, neither here nor in {ROOT / WEIGHTS}. Install "
+            f"mitigate-weights ({'' if package else 'not '}installed), work in a checkout, "
+            f"set {WEIGHTS_VARIABLE} ({os.environ.get(WEIGHTS_VARIABLE) or 'not set'}), or name "
+            "other weights, such as runs/.../agent."
         )
     return place
 
@@ -185,14 +184,11 @@ def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]
     file.seek(max(0, size - TAIL_BYTES))
     text = file.read(TAIL_BYTES).decode("utf-8", "replace").replace("\t", " ")
     lines = [line for line in text.splitlines() if line.strip()][-count:]
-    return [_printable(line, width) for line in lines]
-
-
-def _printable(line: str, width: int) -> str:
     half = width // 2
-    if len(line) > width:
-        line = f"{line[:half]} ... {line[-half:]}"
-    return "".join(c if c.isprintable() else ascii(c)[1:-1] for c in line)
+    return [
+        printable(line if len(line) <= width else f"{line[:half]} ... {line[-half:]}")
+        for line in lines
+    ]
 
 
 def make_folder(folder: Path | str) -> Path:

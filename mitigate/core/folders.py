@@ -175,15 +175,14 @@ def add_file(folder: str | Path, name: str, text: str) -> None:
     """Write a text file into ``folder``, and add it to the manifest if there is one."""
     folder = Path(folder)
     manifest = check(folder)
-    if manifest is not None:
-        raw = text.encode()
-        entry = Entry(hashlib.sha256(raw).hexdigest(), len(raw))
-        new = Manifest(manifest.kind, {**manifest.files, name: entry}, {})
-        _write_manifest(folder, new._replace(replaced=manifest.files))
-        write_text(folder / name, text)
-        _write_manifest(folder, new)
-    else:
-        write_text(folder / name, text)
+    if manifest is None:
+        return write_text(folder / name, text)
+    raw = text.encode()
+    entry = Entry(hashlib.sha256(raw).hexdigest(), len(raw))
+    new = Manifest(manifest.kind, {**manifest.files, name: entry}, {})
+    _write_manifest(folder, new._replace(replaced=manifest.files))
+    write_text(folder / name, text)
+    _write_manifest(folder, new)
 
 
 def _entries(folder: Path) -> dict[str, Entry]:
@@ -200,9 +199,9 @@ def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
         if manifest is not None:
             return manifest.files
         present = [folder / name for name in new if (folder / name).is_file()]
-        sound = not any(checksums.problem(file) for file in present)
-        entries = {file.name: Entry(sha256(file), file.stat().st_size) for file in present}
-        return entries if sound else {}
+        if any(checksums.problem(file) for file in present):
+            return {}
+        return {file.name: Entry(sha256(file), file.stat().st_size) for file in present}
     except (ValueError, OSError):
         return {}
 
@@ -251,15 +250,13 @@ def _read_entries(file: Path, listed: Any, again: str) -> dict[str, Entry]:
         raise ValueError(f"{file} must list at most {MOST_FILES} files by name. {again}")
     entries = {}
     for name, entry in listed.items():
-        size, digest = (entry.get(k) if isinstance(entry, dict) else None for k in _KEYS)
+        fields = entry if isinstance(entry, dict) else {}
+        size, digest = fields.get("bytes"), fields.get("sha256")
         if type(size) is not int or not isinstance(digest, str) or not _SHA256.fullmatch(digest):
             raise ValueError(f"{file} must give bytes and sha256 of {short(name)}. {again}")
         entries[name] = Entry(digest, size)
     _check_names(file, entries)
     return entries
-
-
-_KEYS = ("bytes", "sha256")
 
 
 def _check_names(file: Path, names: Iterable[str]) -> None:
@@ -337,8 +334,8 @@ def problem(file: Path) -> str:
         manifest = read_manifest(file.parent)
     except ValueError as error:
         return f"cannot be compared with its manifest ({error})"
-    entries = [m.get(file.name) for m in (manifest.files, manifest.replaced)] if manifest else []
-    listed = [entry for entry in entries if entry is not None]
+    versions = (manifest.files, manifest.replaced) if manifest else ()
+    listed = [entries[file.name] for entries in versions if file.name in entries]
     if manifest is None or not listed:
         return checksums.problem(file)
     sound = any(_matches(file, entry) for entry in listed)

@@ -85,7 +85,8 @@ class FolderLock:
         self._file = file
         _locks[self.path] = file
         file.truncate(0)
-        json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": _command()}, file)
+        command = shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])
+        json.dump({"pid": os.getpid(), "host": socket.gethostname(), "command": command}, file)
         file.flush()
         self._root = output.register(self.folder, file)
         delete_leftovers(self.folder, self.within)
@@ -103,7 +104,9 @@ class FolderLock:
         finally:
             self._leave()
             if kind is not None:
-                _delete_empty(self._created)
+                with suppress(OSError):  # delete empty folders, innermost first
+                    for folder in self._created:
+                        folder.rmdir()
 
     def _leave(self) -> None:
         if self._root is not None:
@@ -133,13 +136,6 @@ class FolderLock:
         )
 
 
-def _delete_empty(folders: Iterable[Path]) -> None:
-    """Delete empty ``folders``, innermost first; stop at the first folder that is not empty."""
-    with suppress(OSError):
-        for folder in folders:
-            folder.rmdir()
-
-
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete unfinished files that ended processes left in ``folder``, and return them.
 
@@ -150,8 +146,8 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     this process must come from an earlier process with the same id, for example after a restart of
     a container.
     """
-    inside = [folder / name for name in within if not (folder / name / NAME).exists()]
-    inside = [place for place in inside if not place.is_symlink()]
+    inside = [folder / name for name in within]
+    inside = [p for p in inside if not (p.is_symlink() or (p / NAME).exists())]
     drafts = [path for place in (folder, *inside) for path in place.glob(".*.tmp")]
     return delete_abandoned(drafts, ours=True)
 
@@ -185,7 +181,3 @@ def is_alive(pid: int) -> bool:
     except PermissionError:
         return True
     return pid > 0
-
-
-def _command() -> str:
-    return shlex.join([Path(sys.argv[0]).name, *sys.argv[1:]])

@@ -59,10 +59,8 @@ class Root:
 
     def inner(self, path: Path) -> Path | None:
         """Return the absolute ``path`` relative to the folder, or None if it lies outside."""
-        for place in self.places:
-            if path.is_relative_to(place):
-                return path.relative_to(place)
-        return None
+        inner = (path.relative_to(p) for p in self.places if path.is_relative_to(p))
+        return next(inner, None)
 
     def check(self) -> None:
         """Raise FolderLostError if the folder or its lock file was removed or replaced."""
@@ -288,17 +286,14 @@ def _check_file(path: Path | str) -> None:
     """Raise UnsafePathError if ``path`` exists and is not a regular file with a single name."""
     with suppress(FileNotFoundError):
         status = os.lstat(path)
-        if not stat.S_ISREG(status.st_mode):
-            raise _unsafe(path, _kind(status.st_mode))
-        if status.st_nlink > 1:
-            raise _unsafe(path, "a hard link to a file with another name")
-
-
-def _unsafe(path: Path | str, kind: str) -> UnsafePathError:
-    return UnsafePathError(
-        f"{path} must be a regular file, got {kind}. Writing to it could change something outside "
-        "this folder. Delete it or move it away, or name another folder, and run the command again."
-    )
+        regular = stat.S_ISREG(status.st_mode)
+        if regular and status.st_nlink <= 1:
+            return
+        kind = "a hard link to a file with another name" if regular else _kind(status.st_mode)
+        raise UnsafePathError(
+            f"{path} must be a regular file, got {kind}. Writing to it could change something "
+            "outside this folder. Delete it, or name another folder, and run the command again."
+        )
 
 
 def _kind(mode: int) -> str:

@@ -29,12 +29,12 @@ def side_by_side(views: np.ndarray) -> np.ndarray:
     return np.concatenate(list(views), axis=1)
 
 
-def strip(views: np.ndarray, order: Sequence[int] = AHEAD_IN_THE_MIDDLE) -> np.ndarray:
+def strip(views: np.ndarray) -> np.ndarray:
     """Join the 12 views of a panorama, each cropped to 30 degrees, with the front view centred."""
     size = views.shape[2]
     half = int(round(np.tan(np.radians(15)) * size / 2))
     low, high = size // 2 - half, size // 2 + half
-    return np.concatenate([views[k, :, low:high] for k in order], axis=1)
+    return np.concatenate([views[k, :, low:high] for k in AHEAD_IN_THE_MIDDLE], axis=1)
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:

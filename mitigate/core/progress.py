@@ -32,8 +32,7 @@ class Progress:
     def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
         if not 0 <= start <= total:
             raise ValueError(
-                f"Progress of {title!r}: start={start} must be between 0 and "
-                f"total={total}. Pass the total number of {unit}s and how many are already done."
+                f"Progress of {title!r}: start={start} must be between 0 and {total=}."
             )
         self.title = title
         self.total = total

@@ -15,8 +15,8 @@ from typing import Any
 import yaml
 
 from mitigate.core import names
-from mitigate.core.files import PACKAGE
-from mitigate.core.output import is_regular
+from mitigate.core.files import PACKAGE, read_bounded
+from mitigate.core.output import UnsafePathError
 
 LARGEST = 1 << 16  # maximum bytes of a file (heuristic; the config of a run has about 4000)
 DEEPEST = 16  # maximum nesting of lists and mappings (heuristic; the config of a run has 8)
@@ -37,13 +37,10 @@ def read(file: Path) -> dict[str, Any]:
             interpolation, is larger than ``LARGEST`` bytes, or is nested deeper than ``DEEPEST``
             levels.
     """
-    is_regular(file)  # opening a FIFO would block forever
-    with open(file, "rb") as stream:
-        raw = stream.read(LARGEST + 1)
-    if len(raw) > LARGEST:
-        raise ValueError(f"{file} has more than {LARGEST} bytes. {_WARNING}")
     try:
-        settings = yaml.load(raw.decode("utf-8"), _PlainLoader)
+        settings = yaml.load(read_bounded(file, LARGEST).decode("utf-8"), _PlainLoader)
+    except UnsafePathError:
+        raise
     except (yaml.YAMLError, ValueError, OverflowError, RecursionError) as error:
         cause = names.escaped(" ".join(str(error).split()))
         raise ValueError(f"{file} is not plain YAML ({cause}). {_WARNING}") from error
@@ -52,8 +49,7 @@ def read(file: Path) -> dict[str, Any]:
             f"{file} must hold a mapping with the settings of an agent. Fetch or write it again."
         )
     for key, value in _entries(settings):
-        problem = _problem(value)
-        if problem:
+        if problem := _problem(value):
             raise ValueError(f"{file}: {_short(key)} {problem}. {_WARNING}")
     return settings
 
@@ -99,10 +95,8 @@ def named(target: object) -> str:
     """Return the value of the option ``agent=`` that selects the class ``target``, or "" if no
     config file selects it.
     """
-    files = sorted((PACKAGE / "conf" / "agent").glob("*.yaml"))
-    for file in files:
-        lines = file.read_text(encoding="utf-8").splitlines()
-        if f"_target_: {target}" in map(str.strip, lines):
+    for file in sorted((PACKAGE / "conf" / "agent").glob("*.yaml")):
+        if f"_target_: {target}" in map(str.strip, file.read_text(encoding="utf-8").splitlines()):
             return file.stem
     return ""
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any
 
@@ -39,15 +40,11 @@ class Discrete(ActionSpace):
 
     def check(self, action: Any) -> int:
         last = self.start + self.n - 1
-        try:
+        with suppress(TypeError):
             number = operator.index(_scalar(action))
-        except TypeError:
-            raise ValueError(
-                f"The action must be {self.start} to {last}, got {_text(action)}."
-            ) from None
-        if not self.start <= number <= last:
-            raise ValueError(f"The action must be {self.start} to {last}, got {number}.")
-        return number
+            if self.start <= number <= last:
+                return number
+        raise ValueError(f"The action must be {self.start} to {last}, got {_text(action)}.")
 
     def sample(self, rng: np.random.Generator) -> int:
         return self.start + int(rng.integers(self.n))
@@ -135,9 +132,8 @@ def from_gymnasium(space: Any) -> ActionSpace:
     """
     kind = type(space).__name__
     if kind == "Discrete":
-        return Discrete(
-            int(space.n), int(getattr(space, "start", 0))
-        )  # spaces of gym before 0.22 have no start
+        # spaces of gym before 0.22 have no start
+        return Discrete(int(space.n), int(getattr(space, "start", 0)))
     if kind == "Box":
         return Box(np.asarray(space.low), np.asarray(space.high))
     if kind == "MultiDiscrete":

@@ -231,13 +231,10 @@ class _Crew:
         self.crew.remove(worker)
         self.deaths += 1
         if self.deaths > DEATHS:
-            hint = " A script must keep its calls under `if __name__ == '__main__':`, since each "
-            hint += "worker imports it."
             raise WorkersDied(
                 f"A second worker process was {cause}. {self.done} of {self.total} jobs are "
-                f"finished. Free some memory, or use fewer than {self.size} workers "
-                "(workers=1 takes the least memory)."
-                f"{hint if cause.startswith('ended with') else ''}"
+                f"finished. Use fewer than {self.size} workers (workers=1 takes the least memory). "
+                "Scripts need `if __name__ == '__main__':`, since each worker imports them."
             )
         self.progress.say(
             f"A worker process was {cause}. Its unfinished jobs ({len(worker.left)}) start again "

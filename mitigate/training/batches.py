@@ -62,7 +62,10 @@ class Batches:
         jobs = self._jobs(step) if early and not self._ordered else []
         if not self._ordered and not jobs:
             with precision.computing(self.kind, self.device):
-                return self._alone(step)
+                if self.ranks.count == 1:
+                    return objective.batch(step)
+                jobs = self.ranks.share(objective.jobs(step))
+                return objective.collate(step, [do(objective, job) for job in jobs])
         fresh = self._taken and not objective.ahead and self._last(step) > self._newest(step)
         if fresh and self.workers is not None:
             self.workers.send_weights(objective)
@@ -91,13 +94,6 @@ class Batches:
         jobs = self.objective.jobs(step)
         return self.ranks.share(jobs) if jobs else []
 
-    def _alone(self, step: int) -> dict[str, Any]:
-        """Compute the batch of ``step`` in this process."""
-        if self.ranks.count == 1:
-            return self.objective.batch(step)
-        jobs = self.ranks.share(self.objective.jobs(step))
-        return self.objective.collate(step, [do(self.objective, job) for job in jobs])
-
     def _order(self, step: int, jobs: list[Any]) -> None:
         """Request the pieces of ``step``. The pieces are computed with the current weights."""
         if self.workers is None:
@@ -108,14 +104,8 @@ class Batches:
         if not self._taken:
             self.workers.take(self.objective, self.kind)
             self._taken = True
-        turn = self._turn(step)
+        # index of the workers: always 0 if jobs need the current weights, because then only one
+        # step is requested at a time
+        turn = step if self.objective.ahead or self.lag else 0
         self.workers.order(jobs, turn)
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))
-
-    def _turn(self, step: int) -> int:
-        """Return the index that determines which workers receive the pieces of ``step``.
-
-        The index is always 0 if jobs need the current weights, because then only one step is
-        requested at a time.
-        """
-        return step if self.objective.ahead or self.lag else 0

@@ -16,7 +16,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.cluster import programs
 from mitigate.core import build, conf
 from mitigate.core.addresses import check_arguments
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.evaluation import config as evaluate_options
@@ -97,18 +97,16 @@ class Cell:
     @property
     def agent(self) -> tuple[str, ...]:
         """The options of an evaluation that select the kind of agent, the world and the weights."""
-        if self.trains:
-            options = (*self.options, *self.train)
-            kind = tuple(option for option in options if option.startswith(OF_AGENT))
-            return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
-        return self.options
+        if not self.trains:
+            return self.options
+        kind = (option for option in self._agent_options if option.startswith(OF_AGENT))
+        return (*kind, f"checkpoint={self.folder / 'run' / 'agent'}")
 
     @property
     def training(self) -> list[str]:
         """Options of the cell's training run."""
         return [
-            *self.options,
-            *self.train,
+            *self._agent_options,
             f"seed={self.seed}",
             f"folder={self.folder / 'run'}",
             "evaluation.enabled=false",
@@ -171,8 +169,7 @@ class Cell:
 
     def keep(self) -> None:
         """Record the options that determine the agent of the cell's rows."""
-        with atomic_text(self.folder / OPTIONS) as file:
-            json.dump(self._agent_options, file)
+        write_text(self.folder / OPTIONS, json.dumps(self._agent_options))
 
     def check_kept(self) -> None:
         """Raise ValueError if the cell's folder contains the rows of a different agent."""
@@ -181,16 +178,11 @@ class Cell:
         if not (started and file.is_file()):
             return
         recorded = read_json(file, f"Delete {self.folder}, or choose another out=.")
-        if not isinstance(recorded, list):
-            raise ValueError(
-                f"{file} must hold a list of options, got {short(recorded)}. Delete "
-                f"{self.folder}, or choose another out=."
-            )
         if recorded != self._agent_options:
             raise ValueError(
-                f"{self.folder} holds rows of an agent with the options {recorded}, but the column "
-                f"has {self._agent_options}: the table would mix both. Choose another out=, rename "
-                "the column, or delete that folder."
+                f"{self.folder} holds rows of an agent with the options {short(recorded, 200)}, "
+                f"but the column has {self._agent_options}: the table would mix both. "
+                "Choose another out=, rename the column, or delete that folder."
             )
 
     @property
@@ -275,17 +267,10 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
                 raise ValueError(f"Column {cell.column}: {error}") from error
     for name, options in listed(config.evaluations, "evaluations").items():
         try:
-            _check_own(
-                options,
-                CELLS,
-                f"which takes {', '.join(CELLS)} from its columns and seeds. An additional "
-                "evaluation "
-                "may set suite, conditions, severity, severity_depth, split, episodes, safeguard, "
-                "restore, adapt and entries of env and agent.",
-            )
+            reason = f"which takes {', '.join(CELLS)} from its columns and seeds."
+            _check_own(options, CELLS, reason)
             evaluation = evaluation_of(table_cells[0].measurement(config, name, options))
-            names, severity = evaluation.condition_names, evaluation.severity
-            conditions(names, severity, evaluation.severity_depth)
+            conditions(evaluation.condition_names, evaluation.severity, evaluation.severity_depth)
             episodes(evaluation.env, evaluation.split, evaluation.episodes)
             _check_guards(evaluation)
         except (ValueError, FileNotFoundError) as error:

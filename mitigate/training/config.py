@@ -40,36 +40,22 @@ LIMITS: dict[str, tuple[float, float]] = {
     "weight_decay": (0.0, 100.0),
     "grad_clip": (0.0, 1e9),
     "lag": (0, 64),
-    **dict.fromkeys(("warmup", "log_every", "save_every"), (0, COUNT)),
-    **dict.fromkeys(("eval_every", "figure_every"), (0, COUNT)),
-}
-MEANS = {
-    "grad_clip": ": a norm above 0, or 0 for no clipping",
-    "steps": ", at least 1",
-    "keep": ", at least 1",
-    "lr": ", above 0",
+    **dict.fromkeys(
+        ("warmup", "log_every", "save_every", "eval_every", "figure_every"), (0, COUNT)
+    ),
 }
 # maps each option of a run to its minimum, its maximum and its description
 OPTIONS: dict[str, tuple[float, float, str]] = {
     "severity": (0, 1, "a severity from 0 (clean) to 1 (strongest), such as severity=0.6"),
     "severity_depth": (0, 1, "a severity from 0 (clean) to 1 (strongest); null uses severity"),
     "rollouts": (1, EPISODES, "a number of episodes per step, such as rollouts=24"),
-    "refresh_episodes": (
-        1,
-        EPISODES,
-        "a number of episodes per measured success rate, such as refresh_episodes=8",
-    ),
+    "refresh_episodes": (1, EPISODES, "a number of episodes per measured success rate, such as 8"),
     "workers": (
         0,
         PROCESSES,
-        "a number of processes that make batches; 0 uses only this process, null uses one per "
-        "core, at most 8",
+        "a number of processes; 0 uses this one, null uses one per core",
     ),
-    "evaluation.workers": (
-        1,
-        PROCESSES,
-        "a number of processes that run episodes; null uses one per core",
-    ),
+    "evaluation.workers": (1, PROCESSES, "a number of processes; null uses one per core"),
 }
 
 
@@ -114,12 +100,8 @@ class StageConfig:
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
         """Return the trainer settings that are not None; ``common`` overrides the stage."""
-        return {
-            name: value
-            for part in (self.trainer, common)
-            for name, value in vars(part).items()
-            if value is not None
-        }
+        pairs = [*vars(self.trainer).items(), *vars(common).items()]
+        return {name: value for name, value in pairs if value is not None}
 
 
 @dataclass
@@ -251,9 +233,8 @@ def check_limits(settings: Mapping[str, Any]) -> None:
         value = settings.get(name)
         if value is not None and not in_range(value, low, high):
             raise ValueError(
-                f"trainer.{name} must be a number from {low:g} to {high:g}{MEANS.get(name, '')}, "
-                f"got {number_text(value)}. Set it on the command line, e.g. trainer.steps=100 "
-                "trainer.lr=1e-3."
+                f"trainer.{name} must be a number from {low:g} to {high:g}, got "
+                f"{number_text(value)}. Set it on the command line, e.g. trainer.lr=1e-3."
             )
 
 

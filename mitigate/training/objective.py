@@ -188,6 +188,36 @@ class Objective(nn.Module):
         return {}
 
 
+class OnSource(Objective):
+    """Base class of objectives whose jobs come from a source with a schedule of corruptions."""
+
+    @property
+    def _source(self) -> Any:
+        """The source of batches, an attribute with the name of the constructor's parameter."""
+        return getattr(self, next(iter(self.sources)))
+
+    def identity(self) -> dict[str, str]:
+        return dict(self._source.identity())
+
+    def jobs(self, step: int) -> list[tuple]:
+        return list(self._source.jobs(step, self.workers))
+
+    def pieces(self) -> int:
+        return int(self._source.pieces)
+
+    def work(self, job: tuple) -> Any:
+        return self._source.work(job)
+
+    def figures(self, step: int) -> dict[str, np.ndarray]:
+        return dict(self._source.figures())
+
+    def get_extra_state(self) -> dict[str, Any]:
+        return {"schedule": self._source.schedule.state_dict()}
+
+    def set_extra_state(self, state: dict[str, Any]) -> None:
+        self._source.schedule.load_state_dict(state["schedule"])
+
+
 @torch.no_grad()
 def do(objective: Objective, job: Any) -> Any:
     """Run ``objective.work(job)`` in eval mode on one CPU thread."""
@@ -227,10 +257,8 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
     """Check that ``outputs`` of ``forward`` are numbers and contain a loss, and return them."""
     wrong = ""
     if not isinstance(outputs, dict) or "loss" not in outputs:
-        returned = (
-            ", ".join(map(repr, outputs)) if isinstance(outputs, dict) else type(outputs).__name__
-        )
-        wrong = f'returned no "loss", but {returned or "nothing"}'
+        names = map(repr, outputs) if isinstance(outputs, dict) else [type(outputs).__name__]
+        wrong = f'returned no "loss", but {", ".join(names) or "nothing"}'
     else:
         for name, value in outputs.items():
             if not isinstance(value, (Tensor, np.ndarray, Real)):
@@ -274,7 +302,14 @@ class ObjectiveSpec:
         """
         target = str(recipe["_target_"])
         kind = locate(target)
-        check_kind(kind, target)
+        if isinstance(kind, type):  # :meth:`build` checks the result of a function
+            if not is_objective(kind):
+                raise ValueError(not_an_objective(target))
+            names, is_open = _parameters(kind)
+            if "agent" not in names and not is_open:
+                raise ValueError(
+                    f"{target} takes no agent. Give its constructor a parameter agent."
+                )
         arguments = {name: value for name, value in recipe.items() if name != "_target_"}
         parameter = _source_of(kind, arguments)
         objective_arguments, source_arguments = split_arguments(kind, parameter, arguments, target)
@@ -355,28 +390,11 @@ def is_objective(kind: Any) -> bool:
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
-def check_kind(kind: Any, target: str) -> None:
-    """Raise ValueError if ``kind`` is a class that is not an objective or accepts no agent.
-
-    A function is not checked here. ``ObjectiveSpec.build`` checks its result.
-    """
-    if not isinstance(kind, type):
-        return
-    if not is_objective(kind):
-        raise ValueError(not_an_objective(target))
-    names, is_open = _parameters(kind)
-    if "agent" not in names and not is_open:
-        raise ValueError(
-            f"{target} takes no agent. Give its constructor a parameter agent, the module to train."
-        )
-
-
 def not_an_objective(target: str) -> str:
     """Return the error message for a ``target`` that is not an objective."""
     return (
-        f"{target} is not an objective. Make it a subclass of "
-        "mitigate.training.objective.Objective "
-        '(recipes/README.md, "A new objective").'
+        f"{target} is not an objective. Make it a subclass of mitigate.training.objective."
+        'Objective (recipes/README.md, "A new objective").'
     )
 
 
@@ -391,6 +409,22 @@ def check_weights(**weights: float) -> None:
                 f"recipe.{name} must be a number from 0 to {WEIGHT:g}, got {number_text(value)}. "
                 "It is the weight of a loss; 0 disables the loss."
             )
+
+
+def check_counts(**counts: int) -> None:
+    """Raise ValueError for a count below 1."""
+    for name, value in counts.items():
+        if value < 1:
+            raise ValueError(f"recipe.{name} must be a whole number >= 1, got {value}.")
+
+
+def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
+    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
+
+    Each job is a tuple (step, index of the job, number of jobs, number of items).
+    """
+    parts = np.array_split(np.arange(count), pieces)
+    return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
 
 
 def check_share(name: str, value: float) -> None:

@@ -141,7 +141,12 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     inherited = inherit_settings(config.agent, config.init)
     node = config.agent if config.init_parts else inherited
     agent = build_agent(node, weights=config.init, seed=config.seed, parts=config.init_parts)
-    check_teacher(config)
+    taught = any("teacher" in stage.recipe for stage in config.active_stages.values())
+    if config.teacher is not None and not taught:
+        raise ValueError(
+            f"teacher={config.teacher} would have no effect: recipe={config.name} does not use a "
+            "teacher. Leave it out, or choose recipe=ts_distill or stacked."
+        )
     warn_unused_schedule(config)
     leave_out_stages(config, agent)
     warn_warmup(config)
@@ -150,16 +155,6 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     check_fit(config, agent, stages, ranks)
     workers = min(MOST, cores()) if config.workers is None else config.workers
     return Plan(config, folder, agent, stages, workers)
-
-
-def check_teacher(config: TrainConfig) -> None:
-    """Raise ValueError if the options name a teacher that no stage uses."""
-    taught = any("teacher" in stage.recipe for stage in config.active_stages.values())
-    if config.teacher is not None and not taught:
-        raise ValueError(
-            f"teacher={config.teacher} would have no effect: recipe={config.name} does not use a "
-            "teacher. Leave it out, or choose recipe=ts_distill or stacked."
-        )
 
 
 def warn_unused_schedule(config: TrainConfig) -> None:
@@ -269,8 +264,7 @@ def warn_warmup(config: TrainConfig) -> None:
     """Warn if a stage ends before its warm-up ends."""
     for name, stage in config.active_stages.items():
         settings = stage.settings(config.trainer)
-        steps = settings.get("steps", 0)
-        warmup = settings.get("warmup", 0)
+        steps, warmup = settings.get("steps", 0), settings.get("warmup", 0)
         if 0 < steps <= warmup:
             say(
                 f"{name}: it ends after {steps} steps, before the warmup of {warmup} steps is "
@@ -304,8 +298,7 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
             raise ValueError(
                 f"{cause}, and the schedule of the stage {name} samples only "
                 f"{', '.join(schedule.names)}: it would train on clean frames. Choose from "
-                f"{', '.join(names(*sensors))} (schedule.names=[...]), or choose another agent "
-                "(docs/agents.md)."
+                f"{', '.join(names(*sensors))} (schedule.names=[...]), or choose another agent."
             )
         if len(remaining) < len(schedule.names):
             dropped |= dict.fromkeys(n for n in schedule.names if n not in remaining)
@@ -385,13 +378,11 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
                 f"{folder} holds a run of another recipe: it has a stage {name}, but the recipe "
                 f"{config.name} has {', '.join(config.stages)}. {states.OTHER_FOLDER}"
             )
-        if (
-            name in planned
-        ):  # the trainer also compares the complete identity, but only at the start of the stage
+        # the trainer also compares the complete identity, but only at the start of the stage
+        if name in planned:
             try:
                 recorded = read_object(file, states.OTHER_FOLDER)
-            # a damaged file is skipped, because the checkpoints contain the same data
-            except ValueError:
+            except ValueError:  # damaged; the checkpoints contain the same data
                 continue
             identity = states.as_json(planned[name].identity)
             states.check_same(file.parent, {key: recorded.get(key) for key in identity}, identity)

@@ -19,7 +19,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.corruptions.faults.camera import random_mount
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.training.objective import Objective, check_share
+from mitigate.training.objective import OnSource, check_counts, check_share, divided
 from mitigate.training.parts import OWN, SEEING
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
@@ -74,7 +74,7 @@ class Poses(DrawsBySuccess):
     def __post_init__(self) -> None:
         if self.modality not in ("rgb", "depth"):
             raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
-        check_panoramas(self.panoramas)
+        check_counts(panoramas=self.panoramas)
         check_share("camera_share", self.camera_share)
         self.sensor = self.modality
         self.schedule = self.schedule or Schedule("clean", 0.0)
@@ -107,10 +107,9 @@ class Poses(DrawsBySuccess):
             world = self.world()
             if not isinstance(world, Placeable):
                 raise ValueError(
-                    f"{type(world).__name__} has no random poses (scenes, enter, point, put), so "
-                    "it "
-                    "cannot train encoders on them. Leave out those stages (stages.NAME=null), or "
-                    "add these methods to the world (docs/bring-your-own.md)."
+                    f"{type(world).__name__} has no random poses (scenes, enter, point, put) to "
+                    "train encoders. Leave out those stages (stages.NAME=null), or add these "
+                    "methods to the world (docs/bring-your-own.md)."
                 )
             if self.camera_share and "mount" not in signature(world.put).parameters:
                 raise ValueError(
@@ -119,6 +118,10 @@ class Poses(DrawsBySuccess):
                 )
             self._placed = world
         return self._placed
+
+    def identity(self) -> dict[str, str]:
+        """Return an empty dict, because the settings determine the poses and no file is read."""
+        return {}
 
     @property
     def pieces(self) -> int:
@@ -134,10 +137,8 @@ class Poses(DrawsBySuccess):
         """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.refresh(step, workers)
-        pieces = self.pieces
-        counts = [len(part) for part in np.array_split(np.arange(self.panoramas), pieces)]
         state = self.schedule.state_dict()
-        return [(step, piece, pieces, count, state) for piece, count in enumerate(counts)]
+        return [(*job, state) for job in divided(step, self.panoramas, self.pieces)]
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
@@ -210,7 +211,7 @@ class Poses(DrawsBySuccess):
         return np.zeros(0, np.float32) if self.label is None else truth[self.label]
 
 
-class OnViews(Objective):
+class OnViews(OnSource):
     """Base class of objectives that train encoders on the views of a source ``poses``."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"poses": Poses}
@@ -218,15 +219,6 @@ class OnViews(Objective):
     needs = SEEING
     otherwise = VIEWS_ALONE
     poses: Poses
-
-    def jobs(self, step: int) -> list[tuple]:
-        return self.poses.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.poses.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.poses.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return self.poses.collate(pieces)
@@ -236,18 +228,3 @@ class OnViews(Objective):
         camera.
         """
         return float(len(batch["frames"]))
-
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.poses.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.poses.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.poses.schedule.load_state_dict(state["schedule"])
-
-
-def check_panoramas(panoramas: int) -> None:
-    """Raise ValueError if there is less than one panorama per step."""
-    if panoramas < 1:
-        raise ValueError(f"recipe.panoramas must be >= 1 per step, got {panoramas}.")

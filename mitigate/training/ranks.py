@@ -95,14 +95,9 @@ class Ranks:
         dist.all_gather_object(messages, message)
         weights, has_gradient = zip(*messages, strict=True)
         share = weight / max(sum(max(entry.values()) for entry in weights), 1e-12)
-        for parameter, any_gradient in zip(
-            parameters, map(any, zip(*has_gradient, strict=True)), strict=True
-        ):
-            if (
-                not any_gradient
-                # without a gradient, the optimizer skips the parameter, as it does in a single
-                # process
-            ):
+        any_has_gradient = map(any, zip(*has_gradient, strict=True))
+        for parameter, any_gradient in zip(parameters, any_has_gradient, strict=True):
+            if not any_gradient:  # the optimizer skips the parameter, as in a single process
                 continue
             if parameter.grad is None:  # this rank's part of the batch did not use this parameter
                 parameter.grad = torch.zeros_like(parameter)

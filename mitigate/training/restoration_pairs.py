@@ -15,7 +15,8 @@ from mitigate.corruptions import DepthSensor, Schedule
 from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.sources import TRAIN, Frames, Source, collect, corrupted, source_of
 from mitigate.training import success
-from mitigate.training.poses import Poses, check_panoramas
+from mitigate.training.objective import check_counts
+from mitigate.training.poses import Poses
 from mitigate.worlds.world import TrainingEpisodes
 
 GROUP = 12  # number of frames in a folder that count as one panorama of a batch
@@ -39,10 +40,6 @@ class PosePairs(Poses):
                 f"that it has ({', '.join(self.placed.sensors)})."
             )
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
-
-    def identity(self) -> dict[str, str]:
-        """Return an empty dict, because the settings determine the poses and no file is read."""
-        return {}
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """Return the batch of :meth:`Poses.collate` without targets."""
@@ -77,7 +74,7 @@ class FramePairs:
     ring: ClassVar[bool] = False  # each frame is a separate time step
 
     def __post_init__(self) -> None:
-        check_panoramas(self.panoramas)
+        check_counts(panoramas=self.panoramas)
 
     def start(self) -> None:
         """Read the frames at the first call."""
@@ -108,10 +105,8 @@ class FramePairs:
     def work(self, job: tuple[int, int, Frames]) -> tuple[np.ndarray, np.ndarray]:
         """Return corrupted and clean frames [GROUP, H, W, c] of a group."""
         step, group, clean = job
-        frames = []
-        for index in range(len(clean)):
-            corruptions = self.schedule.draw(self.seed, f"{step}-{group}-{index}", 0)
-            frames.append(corrupted(clean, index, *corruptions, self.depth))
+        drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(len(clean))]
+        frames = [corrupted(clean, i, *chosen, self.depth) for i, chosen in enumerate(drawn)]
         return np.stack(frames), clean.frames
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.training.objective import Objective, check_share
+from mitigate.training.objective import OnSource, check_counts, check_share, divided
 from mitigate.training.parts import OWN, TRAINABLE
 from mitigate.training.success import DrawsBySuccess, prior_rates
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
@@ -63,7 +63,7 @@ class Rollouts(DrawsBySuccess):
     refresh_episodes: int = 8
 
     def __post_init__(self) -> None:
-        check_episodes(self.episodes)
+        check_counts(rollouts=self.episodes)
         check_share("follow_oracle", self.follow_oracle)
         self.schedule = self.schedule or Schedule("clean", 0.0)
         self.clean = False
@@ -101,9 +101,8 @@ class Rollouts(DrawsBySuccess):
         due = due and not (step == 0 and self.prior)
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
-        parts = np.array_split(np.arange(self.episodes), self.pieces)
         state = self.schedule.state_dict()
-        return [(step, i, len(parts), len(part), state) for i, part in enumerate(parts)]
+        return [(*job, state) for job in divided(step, self.episodes, self.pieces)]
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
         """Run the episodes of a job; return their decisions and a picture of the last
@@ -134,25 +133,13 @@ class Rollouts(DrawsBySuccess):
         return {} if self.picture is None else {"seen": self.picture}
 
 
-class OnEpisodes(Objective):
+class OnEpisodes(OnSource):
     """Base class of objectives that learn from rollouts."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
     needs = TRAINABLE
     otherwise = f"This recipe trains on episodes that the agent runs. {OWN}"
     rollouts: Rollouts
-
-    def identity(self) -> dict[str, str]:
-        return self.rollouts.identity()
-
-    def jobs(self, step: int) -> list[tuple]:
-        return self.rollouts.jobs(step, self.workers)
-
-    def pieces(self) -> int:
-        return self.rollouts.pieces
-
-    def work(self, job: tuple) -> Any:
-        return self.rollouts.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return batch_of(self.rollouts.collate(pieces))
@@ -161,22 +148,7 @@ class OnEpisodes(Objective):
         """Return the sampling weights of the schedule, which are logged."""
         return {f"p/{name}": p for name, p in self.rollouts.schedule.weights.items()}
 
-    def figures(self, step: int) -> dict[str, np.ndarray]:
-        return self.rollouts.figures()
-
-    def get_extra_state(self) -> dict[str, Any]:
-        return {"schedule": self.rollouts.schedule.state_dict()}
-
-    def set_extra_state(self, state: dict[str, Any]) -> None:
-        self.rollouts.schedule.load_state_dict(state["schedule"])
-
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
     """Put decisions into a batch for the trainer."""
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}
-
-
-def check_episodes(episodes: int) -> None:
-    """Raise ValueError if there is less than one episode per step."""
-    if episodes < 1:
-        raise ValueError(f"episodes per step must be >= 1, got {episodes}. Set e.g. rollouts=20.")

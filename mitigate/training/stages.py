@@ -11,7 +11,7 @@ from torch import nn
 
 from mitigate.agents.fingerprint import code_sha
 from mitigate.core import checkpoint, seeding
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_text
 from mitigate.core.progress import say
 from mitigate.evaluation.evaluate import load
 from mitigate.training import states
@@ -37,8 +37,7 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
     plan.agent.cpu().eval()
     settings = OmegaConf.to_yaml({"agent": agent_config(config.agent, plan.agent)})
     checkpoint.save_agent(plan.agent, plan.folder / "agent", settings)
-    with atomic_text(plan.folder / "config.yaml") as file:
-        file.write(OmegaConf.to_yaml(plain_data(config)))
+    write_text(plan.folder / "config.yaml", OmegaConf.to_yaml(plain_data(config)))
     if config.evaluation.enabled:
         base = load(config.agent, config.init, config.seed) if config.has_base else None
         get_method(config.report)(config, base, plan.agent, plan.folder)
@@ -59,13 +58,11 @@ def train_stage(
     start = checkpoint.weights_sha(agent)
     objective = stage.objective.build(agent)
     objective.workers = plan.config.workers
-    code = code_sha(objective)
-    known_code = {"code_sha256": code} if code else {}
+    known_code = {"code_sha256": code} if (code := code_sha(objective)) else {}
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
     # if there are checkpoints, the trainer compares their recorded identity with this one
     if ranks.first and not states.checkpoints(stage.folder):
-        with atomic_text(stage.folder / IDENTITY) as file:
-            json.dump(identity, file, indent=2)
+        write_text(stage.folder / IDENTITY, json.dumps(identity, indent=2))
     trainer = Trainer(
         objective,
         folder=stage.folder,

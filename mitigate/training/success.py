@@ -134,14 +134,11 @@ def prior_rates(path: Path | str) -> dict[str, float]:
     for what, values in kinds.items():
         if len(values) > 1:
             raise ValueError(
-                f"{path} holds rows of several {what} ({', '.join(sorted(values))}), so its "
-                "success "
-                "rates do not describe one agent. Name a file of one evaluation (prior=...)."
+                f"{path} holds rows of several {what} ({', '.join(sorted(values))}). Name a file "
+                "of one evaluation (prior=...)."
             )
-    say(
-        f"uses success rates on {', '.join(kinds['splits'])} from {path}: evaluate on other "
-        "episodes"
-    )
+    splits = ", ".join(kinds["splits"])
+    say(f"uses success rates on {splits} from {path}: evaluate on other episodes")
     return success_rates(rows)
 
 

@@ -74,19 +74,14 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     if len(problems) < len(chains):
         write_table([Path(config.runs)], Path(config.runs))
     if problems:
-        again = "Run the same command again to resume them; their output is in"
         raise ValueError(
-            f"{len(problems)} of {len(chains)} runs failed. {again} {config.runs}/{LOGS}. "
-            + " ".join(problems)
+            f"{len(problems)} of {len(chains)} runs failed. Run the same command again to resume "
+            f"them; their output is in {config.runs}/{LOGS}. {' '.join(problems)}"
         )
 
 
 def run_chains(
-    title: str,
-    unit: str,
-    chains: Sequence[programs.Chain],
-    jobs: int,
-    place: Any,
+    title: str, unit: str, chains: Sequence[programs.Chain], jobs: int, place: Any
 ) -> list[str]:
     """Run ``chains`` of programs on the machines of the launcher ``place``, at most ``jobs`` at a
     time.

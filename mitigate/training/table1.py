@@ -7,19 +7,10 @@ agents with one sensor removed at a time. Run the same command again to resume.
 
 from __future__ import annotations
 
-import hydra
-from omegaconf import DictConfig
-
 from mitigate.core import conf
 from mitigate.training.tables import run
 
 
-@hydra.main(version_base="1.3", config_path=str(conf.CONF), config_name="table1")
-def hydra_main(cfg: DictConfig) -> None:
-    """Entry point for Hydra."""
-    run(cfg)
-
-
 def main() -> None:
     """Run from the command line."""
-    conf.main(hydra_main, "table1")
+    conf.main(conf.hydra_program("table1", lambda cfg: run(cfg)), "table1")

@@ -16,7 +16,7 @@ from typing import Any
 from omegaconf import DictConfig
 
 from mitigate.core import build
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_text
 from mitigate.core.markdown import plain_text
 from mitigate.core.output import is_regular, output_folder
 from mitigate.core.progress import say
@@ -77,7 +77,7 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
         raise ValueError("Every cell failed. " + " ".join(failed))
     problem = "Some cells failed. Run the same command again to resume them. " + " ".join(failed)
     measured = [cell.evaluation for cell in table_cells if _rows(cell.evaluation)]
-    if failed and not measured:
+    if not measured:
         raise ValueError(problem)
     report = write_report(config, out, measured)
     reports = [report, *write_additional_reports(table_cells, config, out)]
@@ -118,9 +118,9 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
             f"{', '.join(available)}. Set split= and severity=."
         )
     figures = {name: list(values) for name, values in config.paper.items()}
-    with atomic_text(out / REPORT) as file:
-        file.write("\n".join(report.beside(section, figures) for section in chosen))
-    print(plain_text((out / REPORT).read_text(encoding="utf-8")), flush=True)
+    text = "\n".join(report.beside(section, figures) for section in chosen)
+    write_text(out / REPORT, text)
+    print(plain_text(text), flush=True)
     return out / REPORT
 
 
@@ -136,12 +136,8 @@ def write_additional_reports(
 
     reports = []
     for name in listed(config.evaluations, "evaluations"):
-        paths = [
-            cell.evaluation_folder(name)
-            for cell in table_cells
-            if _rows(cell.evaluation_folder(name))
-        ]
-        if paths:
+        folders = [cell.evaluation_folder(name) for cell in table_cells]
+        if paths := [folder for folder in folders if _rows(folder)]:
             reports.append(report.write(gather(paths), out / name)[0])
     return reports
 

@@ -28,10 +28,8 @@ def run(cfg: DictConfig) -> Path:
     The folder contains ``config.yaml``, one subfolder per stage, ``agent/model.safetensors``, and
     the results of the evaluation. Mistakes of the user raise ValueError or FileNotFoundError.
     """
-    from mitigate.training.plan import (  # imports torch, which is slow and not needed for --help
-        check,
-        plan,
-    )
+    # this imports torch, which is slow and not needed for --help
+    from mitigate.training.plan import check, plan
     from mitigate.training.ranks import Ranks
     from mitigate.training.stages import run_plan
 
@@ -52,9 +50,8 @@ def hydra_main(cfg: DictConfig) -> None:
     try:
         run(cfg)
     except Exception as error:
-        if (
-            HydraConfig.get().mode == RunMode.MULTIRUN
-        ):  # otherwise Hydra continues with the next run and shows only the first error
+        # in a sweep, Hydra continues with the next run and shows only the first error
+        if HydraConfig.get().mode == RunMode.MULTIRUN:
             print(printable(f"failed: {cfg.folder}: {error}"), file=sys.stderr, flush=True)
         raise
 

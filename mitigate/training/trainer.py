@@ -234,16 +234,12 @@ class Trainer:
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
         saved = states.checkpoints(self.folder)
-        objective = type(self.objective).__name__
-        kind = "" if objective == self.name else f" ({objective})"
-        last = (
-            f"The last good checkpoint is {saved[-1]}" if saved else "No checkpoint was saved yet"
-        )
         return (
-            f"Training stopped at step {step} of {self.name}{kind}: the loss is {loss.item():g} "
-            f"and its gradient norm {norm.item():g}, which must be finite. Episodes of that batch: "
-            f"{episodes}. {last}; the step was not applied. Lower trainer.lr, use "
-            "trainer.precision=fp32, or check those episodes."
+            f"Training stopped at step {step} of {self.name} ({type(self.objective).__name__}): "
+            f"the loss is {loss.item():g} and its gradient norm {norm.item():g}, which must be "
+            f"finite. Episodes of that batch: {episodes}. The last good checkpoint is "
+            f"{saved[-1] if saved else 'none'}. Lower trainer.lr, use trainer.precision=fp32, or "
+            "check those episodes."
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
@@ -251,19 +247,16 @@ class Trainer:
         received.
         """
         if ending.number is None and self._due(self.eval_every, done):
-            self._evaluate(done, journal)
+            self.objective.eval()
+            with torch.no_grad():
+                values = self.objective.evaluate(done)
+            self.objective.train()
+            if values:
+                journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
+                text = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
+                journal.say(f"evaluated at step {done}  {text}")
         if ending.number is None and self._due(self.figure_every, done):
             journal.figures(done, self.objective.figures(done))
-
-    def _evaluate(self, done: int, journal: Journal) -> None:
-        self.objective.eval()
-        with torch.no_grad():
-            values = self.objective.evaluate(done)
-        self.objective.train()
-        if values:
-            journal.scalars(done, {f"eval/{k}": v for k, v in values.items()}, line=False)
-            text = "  ".join(f"{name} {value:.4g}" for name, value in values.items())
-            journal.say(f"evaluated at step {done}  {text}")
 
     def _lr(self) -> float:
         return max(group["lr"] for group in self.optimizer.param_groups)
@@ -297,15 +290,10 @@ class Trainer:
         precision = config.get("trainer", {}).get("precision")
         if self.requested_precision != "auto" or precision in (None, self.precision):
             return
-        cost = (
-            "which is up to 2 times slower here"
-            if precision == "fp32"
-            else "which is slower here (3 to 10 times on a processor without bf16)"
-        )
         say(
-            f"{self.name}: resumes in its first precision {precision}, {cost} than "
-            f"{self.precision}. To "
-            f"train in {self.precision}, start again in another folder (folder=...)."
+            f"{self.name}: resumes in its first precision {precision}, which is slower here than "
+            f"{self.precision}. To train in {self.precision}, start again in another folder "
+            "(folder=...)."
         )
         self.precision = self.config["trainer"]["precision"] = precision
 

@@ -23,19 +23,17 @@ from mitigate.core import precision
 from mitigate.core.memory import give_back
 from mitigate.core.progress import duration, say
 from mitigate.core.signals import leave_to_parent, start_worker
-from mitigate.core.workers import WorkersDied, context, packed, portable
+from mitigate.core.workers import DEATHS, STUCK, WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
 # more workers do not help, because a step has only 2 to 4 jobs and few steps are computed in
 # advance
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
-STUCK = 60.0  # seconds without an answer after which a slow worker is reported (heuristic)
 # number of jobs between two releases of memory; a release after every job costs 7 % of the time,
 # after every 8 jobs 1 %
 TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
-DEATHS = 1  # number of times that a worker is replaced before training stops
 
 
 class Workers:
@@ -175,15 +173,10 @@ class _Worker:
         code = self.process.exitcode
         what = f"worker {self.number} ended with code {code}"
         if self.deaths >= DEATHS or self.objective is None:
-            killed = code is not None and code < 0
-            cause = (
-                "it was killed, most likely because the memory ran out"
-                if killed
-                else "see its output for the cause"
-            )
             raise WorkersDied(
-                f"The {what}, for the second time: {cause}. Checkpoints are complete. Run the same "
-                "command again with fewer processes: workers=1, or 0 for none."
+                f"The {what}, for the second time. With a code below 0 it was killed, most likely "
+                "because the memory ran out. Checkpoints are complete. Run the same command again "
+                "with fewer processes: workers=1, or 0 for none."
             )
         self.deaths += 1
         say(f"{what}; a new one repeats its work")

@@ -103,7 +103,7 @@ def test_imitate_rejects_weights_of_unknown_losses():
 
 
 def test_step_needs_an_episode():
-    with pytest.raises(ValueError, match="must be >= 1, got"):
+    with pytest.raises(ValueError, match="must be a whole number >= 1, got"):
         schedule = Schedule("clean", 0.0)
         assemble(Imitate, TopologicalAgent(16, SMALL), **SOURCES, schedule=schedule, episodes=0)
 

@@ -54,12 +54,6 @@ def test_spec_rejects_an_argument_that_neither_constructor_names():
         ObjectiveSpec.of({"_target_": TARGET, "cuont": 5})
 
 
-def test_recipe_is_a_deprecated_name_of_objective():
-    with pytest.warns(DeprecationWarning, match="import Objective"):
-        from mitigate.training.recipe import Recipe
-    assert Recipe is Objective
-
-
 def test_build_never_trains_weights_that_are_not_floating_point():
     agent = TinyAgent()
     agent.register_parameter("bits", torch.nn.Parameter(torch.ones(2).byte(), requires_grad=False))

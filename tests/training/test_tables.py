@@ -112,7 +112,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
         ('+evaluations.mine=["safeguard=reader+none"]', "mine: There is no safeguard"),
         (
             '+evaluations.mine=["out=x"]',
-            "Evaluation mine: out=x is set by the table.* may set suite",
+            "Evaluation mine: out=x is set by the table.* from its columns",
         ),
         ('+evaluations.mine=["name=x"]', "Evaluation mine: name=x is set by the table"),
         ('+evaluations.mine=["seed=5"]', "Evaluation mine: seed=5 is set by the table"),

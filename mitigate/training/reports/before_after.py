@@ -34,11 +34,8 @@ def report_before_after(
     quick = config.evaluation
     chosen = episodes(config.env, quick.split, quick.episodes)
     suite = conditions(config.suite.conditions, config.severity, config.severity_depth)
-    agents: dict[str, Any] = {
-        "before": base_agent,
-        column_of(config.name, config.seed, folder): trained_agent,
-    }
-    agents = {name: agent for name, agent in agents.items() if agent is not None}
+    agents: dict[str, Any] = {} if base_agent is None else {"before": base_agent}
+    agents[column_of(config.name, config.seed, folder)] = trained_agent
     world = build.maker(config.env.world)
     rows: list[Any] = []
     first, made_by = provenance.first_world(world)

@@ -15,7 +15,7 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.building import build_agent
 from mitigate.core import checkpoint
 from mitigate.core.build import maker
-from mitigate.core.files import atomic_text, write_figure
+from mitigate.core.files import write_figure, write_text
 from mitigate.core.json_files import read_object
 from mitigate.core.markdown import markdown_table
 from mitigate.corruptions import CLEAN, SUITE_VERSION, Corruption
@@ -82,10 +82,8 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
     if checkpoint.weights_sha(encoder) != identity.get("encoder_sha256"):
         raise ValueError(
             f"agent.model={config.agent['model']} has other weights than at the start of the "
-            "training, so they cannot be compared: its file was changed, or its weights are "
-            "random. "
-            "Set agent.weights=FILE and train again in another folder. The trained encoder is in "
-            f"{folder / 'agent'}."
+            "training (its file was changed, or its weights are random). Set agent.weights=FILE "
+            f"and train again in another folder. The trained encoder is in {folder / 'agent'}."
         )
     return encoder
 
@@ -95,11 +93,8 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
     and unseen frames for the measurement.
     """
     recipe = next(iter(config.active_stages.values())).recipe
-    frames = recipe["frames"]
-    quick = config.evaluation
-    source = source_of(
-        maker(config.env.world), sensor, config.env.episodes, quick.split, recipe.get("label")
-    )
+    frames, quick, env = recipe["frames"], config.evaluation, config.env
+    source = source_of(maker(env.world), sensor, env.episodes, quick.split, recipe.get("label"))
     count = min(frames, EACH * quick.episodes) if quick.episodes else frames
     train = collect(source, TRAIN, min(frames, MOST_TRAIN), config.seed)
     return train, collect(source, UNSEEN, count, config.seed)
@@ -113,10 +108,8 @@ def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
     """
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
-    return [
-        CLEAN,
-        *conditions(chosen or list(names(sensor)), config.severity, config.severity_depth),
-    ]
+    chosen = chosen or list(names(sensor))
+    return [CLEAN, *conditions(chosen, config.severity, config.severity_depth)]
 
 
 def with_mean(scores: Scores) -> Scores:
@@ -134,10 +127,9 @@ def with_mean(scores: Scores) -> Scores:
 def write(scores: Scores, folder: Path, about: str) -> list[Path]:
     """Write ``features.md``, ``features.jsonl`` and ``features.png``; print the table."""
     text = table(scores, about)
-    with atomic_text(folder / "features.md") as file:
-        file.write(text)
-    with atomic_text(folder / "features.jsonl") as file:
-        file.writelines(json.dumps(row) + "\n" for row in rows(scores, about))
+    write_text(folder / "features.md", text)
+    lines_of_rows = (json.dumps(row) + "\n" for row in rows(scores, about))
+    write_text(folder / "features.jsonl", "".join(lines_of_rows))
     write_figure(folder / "features.png", picture(scores, about), dpi=120, facecolor="white")
     report_paths = [folder / f"features.{kind}" for kind in ("md", "jsonl", "png")]
     print(text, flush=True)

@@ -22,7 +22,7 @@ from torch import nn
 
 from mitigate.core import conf
 from mitigate.core.build import maker
-from mitigate.core.files import atomic_text, find, write_bytes
+from mitigate.core.files import find, write_bytes, write_text
 from mitigate.core.markdown import markdown_table
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB
@@ -123,8 +123,8 @@ def measure(
     changes.
     """
     scores: dict[tuple[str, str], Score] = {}
-    pairs = [(s, c) for c in corruptions for s in restorer.nets if c is CLEAN or s in c.modalities]
-    pairs = [(s, c) for s, c in pairs if s in data.clean[0]]
+    sensors = [sensor for sensor in restorer.nets if sensor in data.clean[0]]
+    pairs = [(s, c) for c in corruptions for s in sensors if c is CLEAN or s in c.modalities]
     with Progress("restoration", len(pairs), unit="condition") as progress:
         for sensor, corruption in pairs:
             rows = []
@@ -136,10 +136,8 @@ def measure(
                 errors = [float(part.mean()) * far * UNITS[sensor] for part in off]
                 right = [float((part < TOLERANCE).mean()) for part in off]
                 rows.append((*errors, *right, restored is not frames))
-            before, after, right, right_after, was_restored = np.array(rows, float).T
-            scores[sensor, corruption.name] = Score(
-                mean(before), mean(after), mean(right), mean(right_after), share(was_restored)
-            )
+            *means, was_restored = np.array(rows, float).T
+            scores[sensor, corruption.name] = Score._make([*map(mean, means), share(was_restored)])
             progress.advance(note=corruption.name)
     return scores
 
@@ -250,8 +248,7 @@ def write(
     scores = measure(restorer.eval(), seen, met, seed)
     about = f"{len(seen.clean)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)
-    with atomic_text(folder / "restoration.md") as file:
-        file.write(text)
+    write_text(folder / "restoration.md", text)
     print(f"{text}\nwrote {folder / 'restoration.md'}")
     picture = sheet(restorer, seen, [c for c in met if c is not CLEAN], seed)
     if picture is not None:

@@ -22,7 +22,7 @@ from torch import nn
 
 from mitigate.core.addresses import check_choice
 from mitigate.core.errors import error_message
-from mitigate.core.files import atomic_text, find, open_text
+from mitigate.core.files import atomic_text, find, open_text, write_text
 from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
 from mitigate.core.seeding import generator
@@ -95,11 +95,11 @@ def choose(name: str) -> Repairer:
         return list
     check_choice(name)
     safeguard = open_safeguard(name.removesuffix(ALONE))
-    if safeguard is None or (name.endswith(ALONE) and safeguard.rewriter is None):
+    if safeguard is not None and not name.endswith(ALONE):
+        return guarded(safeguard)
+    if safeguard is None or safeguard.rewriter is None:
         raise ValueError(f"{name} has no language model to use alone. Write lora{ALONE}.")
-    if name.endswith(ALONE) and safeguard.rewriter is not None:
-        return alone(safeguard.rewriter)
-    return guarded(safeguard)
+    return alone(safeguard.rewriter)
 
 
 def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> None:
@@ -136,8 +136,7 @@ def write(results: dict[str, list[Repair]], folder: Path, title: str) -> None:
     parts.append(summary({name: by_family(repairs) for name, repairs in results.items()}))
     for name, repairs in results.items():
         parts.append(f"\n## {name}\n\n{table(by_family(repairs))}\n")
-    with atomic_text(folder / "text.md") as file:
-        file.write("\n".join(parts))
+    write_text(folder / "text.md", "\n".join(parts))
     with atomic_text(folder / "repairs.jsonl") as file:
         for name, repairs in results.items():
             for r in repairs:
@@ -214,21 +213,15 @@ def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument(
-        "safeguards", nargs="+", help="none, classifier, lora, lora-alone, a folder, ..."
-    )
+    parser.add_argument("safeguards", nargs="+", help="none, classifier, lora-alone, a folder, ...")
     heard = parser.add_mutually_exclusive_group(required=True)
     heard.add_argument("--texts", help="episode file, or text file with one per line")
     heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, unchanged")
     parser.add_argument("--count", type=positive, help="number of texts; default all")
     parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
     parser.add_argument("--severity", type=float, default=1.0)
-    parser.add_argument(
-        "--split", default="test", help="split of the attacks: train, validation, test"
-    )
-    parser.add_argument(
-        "--examples", type=int, default=0, help="number of random examples to print"
-    )
+    parser.add_argument("--split", default="test", help="attacks: train, validation, test")
+    parser.add_argument("--examples", type=int, default=0, help="random examples to print")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
     options = parser.parse_args(arguments)
