@@ -13,7 +13,7 @@ from functools import lru_cache, partial
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor, flat, is_valid
+from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import (
     Key,
     cached,
@@ -178,7 +178,8 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
-    _add_noise(flat(views), streams, base, square, z_max, normal_table(), flat(out))
+    pixels, into = (each.reshape(len(views), -1) for each in (views, out))
+    _add_noise(pixels, streams, base, square, z_max, normal_table(), into)
     return out
 
 
@@ -262,27 +263,14 @@ def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 _record = partial(Record.of, "depth")
 RECORDS = (
-    _record(
-        gaussian_noise,
-        severity="sd s (0.02 + 0.02 z^2) metres",
-        source="D435 error model",
-        frame="noise",
-    ),
+    _record(gaussian_noise, "sd s (0.02 + 0.02 z^2) metres", "D435 error model", frame="noise"),
     _record(
         missing_data,
-        severity="loses 0.5 s of the pixels, a quarter reads far",
-        source="NavTrust, Zhang & Funkhouser 2018",
+        "loses 0.5 s of the pixels, a quarter reads far",
+        "NavTrust, Zhang & Funkhouser 2018",
         episode="field",
         frame="offset, every 5 frames",
     ),
-    _record(
-        multipath,
-        severity="strength 0.9 s of the echo beside edges",
-        source="Fuchs 2010, Jimenez 2014",
-    ),
-    _record(
-        quantization,
-        severity="steps of 0.5 s metres",
-        source="NavTrust, Ideses 2007, Wei 2013",
-    ),
+    _record(multipath, "strength 0.9 s of the echo beside edges", "Fuchs 2010, Jimenez 2014"),
+    _record(quantization, "steps of 0.5 s metres", "NavTrust, Ideses 2007, Wei 2013"),
 )
