@@ -143,8 +143,9 @@ def _weigh(values, centre, step, weights, rounding, total):
     """Write to ``total`` the weighted sum of ``values`` (int16) around the index ``centre``;
     neighbouring taps are ``step`` values apart.
     """
+    middle = values[centre:]
     for i in range(total.size):
-        twice = _I16(values[centre + i] + values[centre + i])
+        twice = _I16(middle[i] + middle[i])
         total[i] = _I16(rounding + _I16((_I32(twice) * _I32(weights[0])) >> _I32(16)))
     for k in range(1, weights.size, 2):
         one, two = k * step, (k + 1) * step
