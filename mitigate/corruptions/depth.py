@@ -8,6 +8,7 @@ clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -197,14 +198,9 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
     return np.tile(holes.astype(np.uint8) + far, 2)
 
 
-@lru_cache(maxsize=64)
-def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
-    return view_streams(Key(seed, episode, placement), "missing_offset", views)
-
-
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
-    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
+    return view_streams(replace(key, frame=int(key.frame) // HOLE_FRAMES), "missing_offset", views)
 
 
 @njit(cache=True)

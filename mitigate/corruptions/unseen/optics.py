@@ -61,7 +61,7 @@ def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.n
 
 
 @njit(cache=True)
-def displaced(view, down, right, out):
+def _displace(view, down, right, out):
     """Displace a view: out[y, x] is the view at (y + down, x + right), interpolated bilinearly,
     with repeated edges.
 
@@ -79,6 +79,14 @@ def displaced(view, down, right, out):
                 upper = view[top, left, c] * (256 - a) + view[top, beside, c] * a
                 lower = view[below, left, c] * (256 - a) + view[below, beside, c] * a
                 out[y, x, c] = (upper * (256 - b) + lower * b + 32768) >> 16
+
+
+def displaced(views: np.ndarray, down: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Displace all views by the same offsets in pixels, float32 [H, W]."""
+    out = np.empty_like(views)
+    for view, into in zip(views, out, strict=True):
+        _displace(view, down, right, into)
+    return out
 
 
 @cached
@@ -99,10 +107,7 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)
-    out = np.empty_like(views)
-    for view, into in zip(views, out, strict=True):
-        displaced(view, down * reach, right * reach, into)
-    return out
+    return displaced(views, down * reach, right * reach)
 
 
 def scratch_strength(severity: float, number: int) -> float:

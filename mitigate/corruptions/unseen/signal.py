@@ -45,10 +45,7 @@ def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) 
     """
     _, height, width, _ = views.shape
     right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
-    level, out = np.zeros_like(right), np.empty_like(views)
-    for view, into in zip(views, out, strict=True):
-        displaced(view, level, right, into)
-    return out
+    return displaced(views, np.zeros_like(right), right)
 
 
 def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray:
