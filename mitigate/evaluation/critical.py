@@ -70,7 +70,7 @@ def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.n
     Between measured severities, the fit is interpolated linearly.
 
     Args:
-        severities: K severities in ascending order, the first of which is 0 (clean).
+        severities: K severities in ascending order; the first severity is 0 (clean).
         rates: success rates [..., K].
         loss: fraction of the clean success rate, between 0 and 1.
 
@@ -228,7 +228,7 @@ class Scores:
 
     @property
     def measures(self) -> tuple[float | None, ...]:
-        """The losses, followed by None, which represents the area."""
+        """The losses to search for, followed by None, which stands for the area under the curve."""
         return (*self.losses, None)
 
     @property

@@ -1,8 +1,8 @@
 """Define the interface of objectives, which consist of a loss and a source of batches.
 
 A stage of a recipe (YAML) names an objective and lists arguments. Some arguments belong to the
-constructor of the objective, and others to that of its source. :class:`ObjectiveSpec` passes each
-argument to the constructor that declares it.
+constructor of the objective, and others to the constructor of its source. :class:`ObjectiveSpec`
+passes each argument to the constructor that declares it.
 """
 
 from __future__ import annotations
@@ -81,8 +81,8 @@ class Objective(nn.Module):
         """Return the batch of ``step``, where the first step is 0.
 
         The batch must be a pure function of the seed, the step and the weights. The trainer moves
-        its tensors to the training device. If the batch has an entry ``episode_ids`` (list of str),
-        the error message for a loss that is not finite contains these ids.
+        the tensors of the batch to the training device. If the batch has an entry ``episode_ids``
+        (list of str), the error message for a loss that is not finite contains these ids.
 
         State that grows over steps, such as a buffer, must be rebuilt from the seed and the
         weights, or saved as extra state. If the state is not restored, a resumed run gives
@@ -306,7 +306,7 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and those of its source.
+    """Return the arguments of the objective ``kind`` and the arguments of its source.
 
     An argument that both constructors declare is in both results. Raises ValueError for an argument
     that neither of them declares.
@@ -337,7 +337,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the parameter of ``kind`` that receives its source.
+    """Return the name of the parameter of ``kind`` that takes the data source.
 
     Returns "" if there is no such parameter or if ``arguments`` already sets it.
     """

@@ -36,7 +36,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safe
 def write_adapter(
     folder: str | Path, network: Any, tensors: dict[str, Tensor], card: dict[str, Any]
 ) -> None:
-    """Write the adapter of a PEFT ``network``, with its weights ``tensors`` and a ``card``.
+    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``.
 
     All files are replaced together, and a manifest lists them.
     """
@@ -57,8 +57,8 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
         raise FileNotFoundError(
-            f"There is no adapter at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
+            f"There is no adapter at {folder}: {', '.join(missing)} missing. Train an adapter with "
+            "`make train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
         )
     card, config = (_entries(Path(folder) / name, kinds) for name, kinds in ENTRIES.items())
     named = all(isinstance(target, str) for target in config["target_modules"])
