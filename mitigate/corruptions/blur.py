@@ -131,15 +131,6 @@ def _smooth(row, near, far):
 
 
 @njit(cache=True)
-def _start(total, centre, weight, a, b, wa, c, d, wc, rounding):
-    for i in range(total.size):
-        part = _I16((_I32(_I16(centre[i] + centre[i])) * _I32(weight)) >> _I32(16))
-        near = _I16((_I32(_I16(a[i] + b[i])) * _I32(wa)) >> _I32(16))
-        far = _I16((_I32(_I16(c[i] + d[i])) * _I32(wc)) >> _I32(16))
-        total[i] = _I16(_I16(_I16(rounding + part) + near) + far)
-
-
-@njit(cache=True)
 def _add_pairs(total, a, b, wa, c, d, wc):
     for i in range(total.size):
         near = _I16((_I32(_I16(a[i] + b[i])) * _I32(wa)) >> _I32(16))
@@ -148,30 +139,19 @@ def _add_pairs(total, a, b, wa, c, d, wc):
 
 
 @njit(cache=True)
-def _weigh_rows(rows, centre, step, weights, rounding, total):
+def _weigh(values, centre, step, weights, rounding, total):
+    """Write to ``total`` the weighted sum of ``values`` (int16) around the index ``centre``;
+    neighbouring taps are ``step`` values apart.
+    """
+    middle = values[centre:]
+    for i in range(total.size):
+        twice = _I16(middle[i] + middle[i])
+        total[i] = _I16(rounding + _I16((_I32(twice) * _I32(weights[0])) >> _I32(16)))
     for k in range(1, weights.size, 2):
         one, two = k * step, (k + 1) * step
-        a, b, c, d = rows[centre - one], rows[centre + one], rows[centre - two], rows[centre + two]
-        if k == 1:
-            _start(total, rows[centre], weights[0], a, b, weights[1], c, d, weights[2], rounding)
-        else:
-            _add_pairs(total, a, b, weights[k], c, d, weights[k + 1])
-
-
-@njit(cache=True)
-def _weigh_columns(row, centre, step, weights, rounding, total):
-    for k in range(1, weights.size, 2):
-        one, two = k * step, (k + 1) * step
-        a, b, c, d = (
-            row[centre - one :],
-            row[centre + one :],
-            row[centre - two :],
-            row[centre + two :],
-        )
-        if k == 1:
-            _start(total, row[centre:], weights[0], a, b, weights[1], c, d, weights[2], rounding)
-        else:
-            _add_pairs(total, a, b, weights[k], c, d, weights[k + 1])
+        a, b = values[centre - one :], values[centre + one :]
+        c, d = values[centre - two :], values[centre + two :]
+        _add_pairs(total, a, b, weights[k], c, d, weights[k + 1])
 
 
 @njit(cache=True)
@@ -201,8 +181,9 @@ def gaussian(views, weights, levels, out):
             for y in range(rows):
                 _smooth(padded[y], padded[y + gap], padded[y + 2 * gap])
         for y in range(height):
-            _weigh_rows(padded, y + r * step, step, weights, rounding, tall)
             length = tall.size
+            centre = (y + r * step) * length
+            _weigh(padded.reshape(-1), centre, step * length, weights, rounding, tall)
             for level in range(levels):
                 gap = 3 << level
                 length -= 2 * gap
@@ -210,7 +191,7 @@ def gaussian(views, weights, levels, out):
                     spare[i] = tall[i]
                 _smooth(tall, spare[gap : gap + length], spare[2 * gap :])
             half = _I16(rounding + 32)
-            _weigh_columns(tall, 3 * r * step, 3 * step, weights, half, total)
+            _weigh(tall, 3 * r * step, 3 * step, weights, half, total)
             target = out[v, y].reshape(-1)
             for i in range(size):
                 target[i] = min(max(total[i], _I16(0)), _I16(16320)) >> 6

@@ -8,12 +8,13 @@ clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
 from numba import njit
 
-from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor, flat, is_valid
+from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor, is_valid
 from mitigate.corruptions.keying import (
     Key,
     cached,
@@ -178,7 +179,8 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
-    _add_noise(flat(views), streams, base, square, z_max, normal_table(), flat(out))
+    pixels, into = (each.reshape(len(views), -1) for each in (views, out))
+    _add_noise(pixels, streams, base, square, z_max, normal_table(), into)
     return out
 
 
@@ -196,14 +198,9 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
     return np.tile(holes.astype(np.uint8) + far, 2)
 
 
-@lru_cache(maxsize=64)
-def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
-    return view_streams(Key(seed, episode, placement), "missing_offset", views)
-
-
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
-    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
+    return view_streams(replace(key, frame=int(key.frame) // HOLE_FRAMES), "missing_offset", views)
 
 
 @njit(cache=True)
@@ -262,27 +259,14 @@ def quantization(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
 
 _record = partial(Record.of, "depth")
 RECORDS = (
-    _record(
-        gaussian_noise,
-        severity="sd s (0.02 + 0.02 z^2) metres",
-        source="D435 error model",
-        frame="noise",
-    ),
+    _record(gaussian_noise, "sd s (0.02 + 0.02 z^2) metres", "D435 error model", frame="noise"),
     _record(
         missing_data,
-        severity="loses 0.5 s of the pixels, a quarter reads far",
-        source="NavTrust, Zhang & Funkhouser 2018",
+        "loses 0.5 s of the pixels, a quarter reads far",
+        "NavTrust, Zhang & Funkhouser 2018",
         episode="field",
         frame="offset, every 5 frames",
     ),
-    _record(
-        multipath,
-        severity="strength 0.9 s of the echo beside edges",
-        source="Fuchs 2010, Jimenez 2014",
-    ),
-    _record(
-        quantization,
-        severity="steps of 0.5 s metres",
-        source="NavTrust, Ideses 2007, Wei 2013",
-    ),
+    _record(multipath, "strength 0.9 s of the echo beside edges", "Fuchs 2010, Jimenez 2014"),
+    _record(quantization, "steps of 0.5 s metres", "NavTrust, Ideses 2007, Wei 2013"),
 )

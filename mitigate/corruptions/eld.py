@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -93,8 +94,7 @@ def _photon_table(means, points, deviates, out):
             out[level, q] = count
 
 
-@dataclass(frozen=True)
-class Tables:
+class Tables(NamedTuple):
     """The look-up tables of one severity. int32 tables hold values in units of 1/256 of a sensor
     unit.
 
@@ -171,11 +171,9 @@ def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) 
     clipped at 0, which brightens the frame, so that severity 1 is not darker than severity 0.8.
     """
     count, height, width, _ = views.shape
-    t = tables(severity)
     mask = low_light_mask(digest(key, "low_light"), severity, height, width)
     streams = view_streams(key, "low_light_noise", count)
     row_streams = view_streams(key, "row_noise", count)
     out = np.empty_like(views)
-    parts = t.photons, t.read, t.row, t.decode, t.offset
-    _sample(views, mask, streams, row_streams, *parts, out)
+    _sample(views, mask, streams, row_streams, *tables(severity), out)
     return out

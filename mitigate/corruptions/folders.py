@@ -5,10 +5,11 @@ written atomically.
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from hashlib import blake2b
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
@@ -36,6 +37,7 @@ from mitigate.corruptions.stream import FrameStream, shows_past
 from mitigate.corruptions.suite import SUITE_VERSION, Corruption, check_gate, check_name
 
 SUMMARY = "corrupt.json"
+FIX = "Name another folder, or delete this one."
 UNITS = {"mm": 0.001, "cm": 0.01, "m": 1.0}
 EPISODES = ("folder", "all")
 FORMATS = ("png", "same")
@@ -158,16 +160,12 @@ def _corrupt_all(source: Path, out: Path, settings: Settings, plan: Plan) -> dic
                 _corrupt_frame(source, out, target, frame, settings, plan, summary, stream)
             names.add(target)
     finally:  # a resumed run then does not compute these frames again
-        _write_summary(out, summary)
-    missing = [
-        out / outputs[frame.path]
-        for frame in plan.frames
-        if frame.path.as_posix() not in plan.left_out and not (out / outputs[frame.path]).is_file()
-    ]
-    if missing:
-        raise lost(missing[0])
+        write_summary(out, summary)
+    for path, target in outputs.items():
+        if path.as_posix() not in plan.left_out and not (out / target).is_file():
+            raise lost(out / target)
     summary["left_out"] = [{"file": f, "reason": r} for f, r in sorted(plan.left_out.items())]
-    _write_summary(out, summary)
+    write_summary(out, summary)
     return summary
 
 
@@ -187,8 +185,8 @@ def _corrupt_frame(
     files = (source / frame.path, out / target)
     exists = is_regular(out / target)
     corruption = Corruption(settings.corruption, settings.severity)
-    known_checksum = exists and name in checksums and not shows_past(corruption)
-    if known_checksum and checksums[name] == _checksum(*files):
+    is_known = exists and name in checksums and not shows_past(corruption)
+    if is_known and checksums[name] == checksum(*files):
         summary["there"] += 1
         return
     key = Key(settings.seed, frame.episode, frame.number)
@@ -212,15 +210,15 @@ def _corrupt_frame(
         write_bytes(files[1], data)
         summary["written"] += 1
         summary["replaced"] += [name] * exists
-    checksums[name] = _checksum(*files)
+    checksums[name] = checksum(*files)
 
 
-def _checksum(source: Path, output: Path) -> str:
-    """Return one checksum for the input file and the output file of a frame, or "" if one of them
-    cannot be read.
+def checksum(*paths: Path) -> str:
+    """Return one checksum for an input file and its output file, or "" if one of them cannot be
+    read.
     """
     try:
-        return _short_hash(sha256(source) + sha256(output))
+        return short_hash("".join(map(sha256, paths)))
     except OSError:
         return ""
 
@@ -240,14 +238,14 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
     """
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
-    checksums: dict[str, str] = {}
-    if out.is_dir() and any(path.name[0] != "." for path in out.iterdir()):
-        checksums = _check_earlier(out, settings_now, plan.episodes())
+    earlier, episodes = earlier_summary(out, settings_now), plan.episodes()
+    if earlier:
+        _check_episodes(out, earlier, episodes)
     summary = {
         "settings": settings_now,
         "episodes": {
             name: {"frames": len(frames), "names": _digest(frames)}
-            for name, frames in plan.episodes().items()
+            for name, frames in episodes.items()
         },
         "written": 0,
         "there": 0,
@@ -255,68 +253,65 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
         "other_modality": plan.other_modality,
         "other_files": plan.other_files,
         "left_out": [],
-        "checksums": checksums,
+        "checksums": earlier.get("checksums", {}),
     }
-    _write_summary(out, summary)
+    write_summary(out, summary)
     return summary
 
 
-def _check_earlier(out: Path, settings: dict, episodes: dict[str, list[str]]) -> dict[str, str]:
-    """Return the checksums of an earlier run; the dict is empty if an old version wrote no
-    checksums.
+def earlier_summary(out: Path, settings: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the summary of an earlier run in ``out``, or an empty dict if the folder is empty.
 
     Raises:
-        ValueError: ``out`` was written with different settings or frames.
+        ValueError: ``out`` contains other files, or was written with different settings.
     """
-    unknown = f"The content of {out} is unknown. Name a new folder, or delete this one."
+    if all(path.name[0] == "." for path in out.iterdir()):
+        return {}
     try:
-        earlier = read_object(out / SUMMARY, unknown, LARGEST_LIST)
+        earlier = read_object(out / SUMMARY, FIX, LARGEST_LIST)
     except FileNotFoundError:
         raise ValueError(
-            f"{out} must be empty or contain {SUMMARY}, which this program writes. "
-            "Name a new or an empty folder."
+            f"{out} must be empty or contain {SUMMARY}, which this program writes. {FIX}"
         ) from None
-    try:
-        earlier_settings = dict(earlier["settings"])
-        # in earlier versions, only the pixel value 0 meant "no reading", so no_reading=0 resumes
-        # their folders
-        is_rgb = Corruption(settings["corruption"], settings["severity"]).modality == RGB
-        earlier_settings.setdefault("no_reading", settings["no_reading"] if is_rgb else 0)
-        recorded = dict(earlier["episodes"]).items()
-        digests = {name: (int(e["frames"]), str(e["names"])) for name, e in recorded}
-        checksums = {str(k): str(v) for k, v in dict(earlier.get("checksums", {})).items()}
-    except (ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"{out / SUMMARY} is damaged ({error!r:.100}). {unknown}") from error
+    before = earlier.get("settings")
+    if not isinstance(before, dict) or not isinstance(earlier.get("checksums"), dict):
+        raise ValueError(f"{out / SUMMARY} is damaged. {FIX}")
     different = [
-        escaped(f"{name}={earlier_settings.get(name)} there, {name}={settings.get(name)} now")
-        for name in {**earlier_settings, **settings}
-        if earlier_settings.get(name) != settings.get(name)
+        escaped(f"{name}={before.get(name)} there, {name}={settings.get(name)} now")
+        for name in {**before, **settings}
+        if before.get(name) != settings.get(name)
     ]
     if different:
-        raise ValueError(
-            f"{out} was made with other settings: {'; '.join(different)}. Name another folder, or "
-            "delete this one."
-        )
-    for name, (count, digest) in digests.items():
+        raise ValueError(f"{out} was made with other settings: {'; '.join(different)}. {FIX}")
+    return earlier
+
+
+def _check_episodes(out: Path, earlier: dict[str, Any], episodes: dict[str, list[str]]) -> None:
+    """Raise ValueError if the frames of an earlier run have other numbers now."""
+    try:
+        recorded = [(n, int(e["frames"]), e["names"]) for n, e in earlier["episodes"].items()]
+    except (ValueError, KeyError, TypeError, AttributeError) as error:
+        raise ValueError(f"{out / SUMMARY} is damaged ({error!r:.100}). {FIX}") from error
+    for name, count, digest in recorded:
         if _digest(episodes.get(name, [])[:count]) != digest:
             raise ValueError(
                 f"{out} was made from other frames: among the first {count} frames of episode "
                 f"{short(name, 200)}, files were added, removed or renamed, so frame numbers "
-                "changed. Name another folder, or delete this one. (Frames may be added at "
-                "the end.)"
+                f"changed. (Frames may be added at the end.) {FIX}"
             )
-    return checksums
 
 
 def _digest(names: list[str]) -> str:
-    return _short_hash("\n".join(names))
+    return short_hash("\n".join(names))
 
 
-def _short_hash(text: str) -> str:
+def short_hash(text: str) -> str:
+    """Return a 64-bit hash of ``text`` as hex digits."""
     return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
 
 
-def _write_summary(out: Path, summary: dict) -> None:
+def write_summary(out: Path, summary: dict) -> None:
+    """Write ``corrupt.json``."""
     write_bytes(out / SUMMARY, (json.dumps(summary, indent=1) + "\n").encode())
 
 

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image, ImageOps
@@ -24,10 +25,14 @@ from mitigate.core.files import lfs_problem
 from mitigate.core.observation import DEPTH, RGB
 
 SUFFIXES = (".png", ".jpg", ".jpeg", ".npy")
-# JPEG quality (heuristic), with full colour resolution; used only with format=same
-JPEG_QUALITY = 95
-# zlib level; it takes half the time of the default level 6, and files are a few per cent larger
-PNG_LEVEL = 3
+# how Pillow writes each format
+SAVED: dict[str, dict[str, Any]] = {
+    # zlib level; it takes half the time of the default level 6, and files are a few per cent larger
+    "PNG": {"compress_level": 3},
+    # heuristic quality, with full colour resolution; used only with format=same
+    "JPEG": {"quality": 95, "subsampling": 0},
+    "TIFF": {"compression": "raw"},
+}
 PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
@@ -94,21 +99,27 @@ def corrupt_file(
         LeftOutError: The file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
-        return _encode(Image.fromarray(corrupt_frame(_decode(path))), suffix)
-    if path.suffix.lower() == ".npy":
-        stored = _load(path)
-        with np.errstate(over="ignore"):
-            metres = stored.astype(np.float32)
-        corrupted = corrupt_frame(metres)
-        with io.BytesIO() as file:
-            merged = np.where(_same(corrupted, metres), stored, corrupted).astype(stored.dtype)
-            np.save(file, merged)
-            return file.getvalue()
-    stored = _decode(path)
-    metres = _metres(stored, unit, no_reading)
+        form = "PNG" if suffix.lower() == ".png" else "JPEG"
+        return encode(corrupt_frame(_decode(path)), form)
+    is_npy = path.suffix.lower() == ".npy"
+    stored = _load(path) if is_npy else _decode(path)
+    metres = _float32(stored) if is_npy else _metres(stored, unit, no_reading)
     corrupted = corrupt_frame(metres)
-    merged = np.where(_same(corrupted, metres), stored, counts(corrupted, unit))
-    return _encode(Image.fromarray(merged), suffix)
+    same = (corrupted == metres) | (np.isnan(corrupted) & np.isnan(metres))
+    new = corrupted if is_npy else counts(corrupted, unit)
+    merged = np.where(same, stored, new).astype(stored.dtype)
+    if not is_npy:
+        return encode(merged, "PNG")
+    with io.BytesIO() as file:
+        np.save(file, merged)
+        return file.getvalue()
+
+
+def encode(pixels: np.ndarray, form: str) -> bytes:
+    """Return the content of an image file of the format "PNG", "JPEG" or "TIFF"."""
+    with io.BytesIO() as file:
+        Image.fromarray(pixels).save(file, form, **SAVED[form])
+        return file.getvalue()
 
 
 def counts(metres: np.ndarray, unit: float) -> np.ndarray:
@@ -135,8 +146,7 @@ def read(path: Path, unit: float) -> np.ndarray:
     metres = _load(path) if path.suffix.lower() == ".npy" else _metres(_decode(path), unit)
     if metres.ndim < 2 or metres.shape[2:] not in ((), (1,)) or not metres.size:
         raise LeftOutError(f"has the shape {list(metres.shape)}: depth must be [H, W] or [H, W, 1]")
-    with np.errstate(over="ignore"):  # float64 values beyond float32 become infinite
-        return metres.astype(np.float32).reshape(*metres.shape[:2], 1)
+    return _float32(metres).reshape(*metres.shape[:2], 1)
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
@@ -157,8 +167,7 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         with suppress(LeftOutError):  # damaged files are reported later, when they are read
             if modality(path) == DEPTH:
                 stored = (_load(path) if suffix == ".npy" else _decode(path)).reshape(-1)
-                with np.errstate(over="ignore"):  # float64 values beyond float32 become infinite
-                    readings = stored[:: stored.size // SCALE_PIXELS + 1].astype(np.float32)
+                readings = _float32(stored[:: stored.size // SCALE_PIXELS + 1])
                 valid = np.isfinite(readings) & (readings > 0) & (readings != NO_READING)
                 samples[suffix].append(readings[valid])
     counts, metres = (np.concatenate(parts or [np.zeros(0)]) for parts in samples.values())
@@ -178,6 +187,12 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
             f"readings are {z_max:g} m or more (median {np.median(counts) * unit:.3g} m). "
             f"Set unit= to the metres per count ({likely}), or to {unit:g} if that is right."
         )
+
+
+def _float32(numbers: np.ndarray) -> np.ndarray:
+    """Convert to float32; float64 values beyond its range become infinite."""
+    with np.errstate(over="ignore"):
+        return numbers.astype(np.float32)
 
 
 def _metres(stored: np.ndarray, unit: float, no_reading: int = NO_READING) -> np.ndarray:
@@ -206,10 +221,11 @@ def _load(path: Path) -> np.ndarray:
     try:
         # the file is memory-mapped, because a wrong shape in its header could require too much
         # memory
-        mapped = np.load(path, mmap_mode="r", allow_pickle=False)
-        if isinstance(mapped, np.ndarray) and mapped.size > MAX_PIXELS:
-            raise ValueError(f"it has {mapped.shape} numbers")
-        stored = np.array(mapped) if isinstance(mapped, np.ndarray) else mapped
+        stored = np.load(path, mmap_mode="r", allow_pickle=False)
+        if isinstance(stored, np.ndarray):
+            if stored.size > MAX_PIXELS:
+                raise ValueError(f"it has {stored.shape} numbers")
+            stored = np.array(stored)
     except Exception as error:  # numpy raises many kinds of errors for untrusted files
         raise LeftOutError(
             f"cannot be loaded with allow_pickle=False: {' '.join(str(error).split())[:200]}"
@@ -218,19 +234,6 @@ def _load(path: Path) -> np.ndarray:
         kind = stored.dtype if isinstance(stored, np.ndarray) else "an archive"
         raise LeftOutError(f"holds {kind}: NPY depth must be floating-point metres")
     return stored
-
-
-def _same(corrupted: np.ndarray, metres: np.ndarray) -> np.ndarray:
-    return (corrupted == metres) | (np.isnan(corrupted) & np.isnan(metres))
-
-
-def _encode(image: Image.Image, suffix: str) -> bytes:
-    with io.BytesIO() as file:
-        if suffix.lower() == ".png":
-            image.save(file, "PNG", compress_level=PNG_LEVEL)
-        else:
-            image.save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
-        return file.getvalue()
 
 
 @dataclass(frozen=True)

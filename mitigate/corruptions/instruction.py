@@ -87,14 +87,9 @@ def corrupt_instruction(
     if name in MANNERS:
         rewritten = is_rewritten(name, severity, key)
         return restyle(text, name, key, rewrite).text if rewritten else text
-    if name == "capitalize":
-        return _replaced(
-            text, _eligible(text, name, tagger), severity, digest(key, name), str.upper
-        )
-    if name == "mask":
-        return _replaced(
-            text, _eligible(text, name, tagger), severity, digest(key, name), lambda _: mask_token
-        )
+    if name in ("capitalize", "mask"):
+        change = str.upper if name == "capitalize" else lambda _: mask_token
+        return _replaced(text, _eligible(text, name, tagger), severity, digest(key, name), change)
     return " ".join((*stacked(severity, key, split), text))
 
 

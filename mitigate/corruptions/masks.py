@@ -85,6 +85,13 @@ def cover(views, alpha, colour, out):
                 target[i] = source[i] + ((part[i] + 32) >> 6)
 
 
+def covered(views: np.ndarray, alpha: np.ndarray, colour: np.ndarray) -> np.ndarray:
+    """Return the result of ``cover`` as a new array."""
+    out = np.empty_like(views)
+    cover(views, alpha, colour, out)
+    return out
+
+
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
     """Return the terms whose sum gives ``light_ramp``.
 
@@ -138,12 +145,6 @@ def spatter_mask(value: int, severity: float, height: int, width: int) -> np.nda
 def spatter_colour(value: int) -> tuple[int, int, int]:
     """Return the colour of mud or water."""
     return SPATTER_COLOURS[uniform(value) < 0.5]
-
-
-@lru_cache(maxsize=64)
-def spatter_row(value: int, width: int) -> np.ndarray:
-    """Return an image row in the colour of mud or water, int16 [3 W]."""
-    return colour_row(spatter_colour(value), width)
 
 
 @lru_cache(maxsize=64)

@@ -45,9 +45,15 @@ def corrupt_normalised(
     check_sensor(sensor)
     if observation.DEPTH not in {*obs}.intersection(check_corruption(corruption).modalities):
         return corrupt_observation(obs, corruption, key, sensor, hfov)
-    clean = np.ascontiguousarray(_checked(np.asarray(obs[observation.DEPTH])))
+    clean = np.ascontiguousarray(obs[observation.DEPTH])
+    if clean.dtype != np.float32:
+        raise ValueError(
+            f"Normalised depth must be float32 from 0 to 1, got {clean.dtype}. Convert it: "
+            "depth.astype(np.float32)."
+        )
     metres = np.empty_like(clean)
-    range_ = _range(sensor)
+    # the minimum and the length of the range, in metres
+    range_ = np.float32(sensor.z_min), np.float32(sensor.z_max - sensor.z_min)
     maximum = _to_metres(clean.reshape(-1), *range_, metres.reshape(-1))
     if maximum > 1.0:
         raise ValueError(
@@ -69,20 +75,6 @@ def check_sensor(sensor: DepthSensor) -> None:
             "For normalised depth, missing must be 0 (no reading) or a depth in metres, got "
             f"{sensor}."
         )
-
-
-def _checked(clean: np.ndarray) -> np.ndarray:
-    if clean.dtype != np.float32:
-        raise ValueError(
-            f"Normalised depth must be float32 from 0 to 1, got {clean.dtype}. Convert it: "
-            "depth.astype(np.float32)."
-        )
-    return clean
-
-
-def _range(sensor: DepthSensor) -> tuple[np.float32, np.float32]:
-    """Return the minimum and the length of the range, in metres."""
-    return np.float32(sensor.z_min), np.float32(sensor.z_max - sensor.z_min)
 
 
 @njit(cache=True)

@@ -18,6 +18,7 @@ from mitigate.corruptions.keying import Key
 MODALITIES = ("rgb", "depth", "instruction")
 FRAMES = "rgb+depth"  # modality of faults that affect both sensors, or the only available one
 ACTION = "action"  # modality of motion faults
+OF_NO_FRAME = ("instruction", ACTION)  # modalities of corruptions that do not change frames
 TEMPORAL, CAMERA, MOTION = "temporal", "camera", "motion"
 FAMILIES = (TEMPORAL, CAMERA, MOTION)  # families of faults; each has a suite of the same name
 VALIDATION, TEST = "validation", "test"  # the two sets of unseen corruptions
@@ -84,9 +85,30 @@ class Record:
             )
 
     @classmethod
-    def of(cls, modality: str, apply: Callable[..., np.ndarray], **fields: Any) -> Record:
-        """Return the record of a corruption that has the name of its function."""
-        return cls(apply.__name__, modality, apply, **fields)
+    def of(
+        cls,
+        modality: str,
+        apply: Callable[..., np.ndarray],
+        severity: str,
+        source: str,
+        **fields: Any,
+    ) -> Record:
+        """Return the record of a corruption that has the name of its function ``apply``."""
+        return cls(apply.__name__, modality, apply, severity, source=source, **fields)
+
+    @classmethod
+    def drawn(
+        cls,
+        family: str,
+        modality: str,
+        draw: Callable[[float, Key], Any],
+        severity: str,
+        source: str = "heuristic",
+        **fields: Any,
+    ) -> Record:
+        """Return the record of a fault that has the name of its function ``draw``."""
+        more = {"source": source, "version": "1", "family": family, "draw": draw, **fields}
+        return cls(draw.__name__, modality, None, severity, **more)
 
     @property
     def modalities(self) -> tuple[str, ...]:

@@ -62,9 +62,7 @@ def plugin_records() -> dict[str, Record]:
     for point in entry_points(group=GROUP):
         try:
             record = point.load()
-            problem = _problem(
-                record, {"clean", *SUITE, *UNSEEN, *SENSORS, *BROAD, *FAULTS, *records}
-            )
+            problem = _problem(record, {"clean", *INCLUDED, *records})
         except Exception as error:  # the code of an installed package may raise any error
             problem = f"cannot be imported ({type(error).__name__}: {error})"
         if problem:

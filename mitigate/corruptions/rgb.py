@@ -85,17 +85,11 @@ def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> n
     return out
 
 
-def _covered(views: np.ndarray, alpha: np.ndarray, colours: np.ndarray) -> np.ndarray:
-    out = np.empty_like(views)
-    masks.cover(views, alpha, colours, out)
-    return out
-
-
 def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Darken with a gradient mask, which is the same for all views of the episode."""
     height, width = views.shape[1:3]
     mask = masks.low_light_mask(digest(key, "low_light"), severity, height, width)
-    return _covered(views, mask, masks.colour_row(BLACK, width))
+    return masks.covered(views, mask, masks.colour_row(BLACK, width))
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -104,7 +98,8 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
     """
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
-    return _covered(views, mask, masks.spatter_row(digest(key, "spatter_colour"), width))
+    colour = masks.spatter_colour(digest(key, "spatter_colour"))
+    return masks.covered(views, mask, masks.colour_row(colour, width))
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -181,53 +176,44 @@ _record = partial(Record.of, "rgb")
 RECORDS = (
     _record(
         motion_blur,
-        severity="line of 0.10 s of the width, blended 0.5 + 0.5 s",
-        source="ImageNet-C, NavTrust",
+        "line of 0.10 s of the width, blended 0.5 + 0.5 s",
+        "ImageNet-C, NavTrust",
         episode="direction",
     ),
     _record(
         low_light,
-        severity="loses s (0.60 to 0.97) of the light",
+        "loses s (0.60 to 0.97) of the light",
+        "NavTrust, RobustNav, 3DCC",
         label="L-L w/o noise",
-        source="NavTrust, RobustNav, 3DCC",
         episode="gradient",
     ),
     _record(
         low_light_noise,
-        severity="low_light, then light / 300^s and gain",
+        "low_light, then light / 300^s and gain",
+        "ELD, TPAMI 2021",
         label="L-L w/ noise",
-        source="ELD, TPAMI 2021",
         episode="gradient",
         frame="noise",
     ),
     _record(
         spatter,
-        severity="covers 0.45 s of the frame, opacity 0.5 + 0.5 s",
-        source="ImageNet-C",
+        "covers 0.45 s of the frame, opacity 0.5 + 0.5 s",
+        "ImageNet-C",
         episode="mask, mud or water",
     ),
-    _record(
-        flare,
-        severity="brightness of the glow",
-        source="NavTrust",
-        episode="place, at a world yaw",
-    ),
+    _record(flare, "brightness of the glow", "NavTrust", episode="place, at a world yaw"),
     _record(
         defocus,
-        severity="Gaussian, sigma 5 s px at 224 px",
-        source="NavTrust, ImageNet-C",
+        "Gaussian, sigma 5 s px at 224 px",
+        "NavTrust, ImageNet-C",
         episode="width, +- 20 %",
     ),
-    _record(
-        foreign_object,
-        severity="disk of radius 0.5 s of the short side",
-        source="NavTrust",
-    ),
+    _record(foreign_object, "disk of radius 0.5 s of the short side", "NavTrust"),
     _record(
         black_out,
-        severity="probability that a view is black",
+        "probability that a view is black",
+        "NavTrust",
         label="Black-out",
-        source="NavTrust",
         frame="which views",
     ),
 )

@@ -103,11 +103,7 @@ class Schedule:
                 f"alpha and floor must be finite and >= 0, got alpha = {self.alpha!r} and floor = "
                 f"{self.floor!r}."
             )
-        success = self.success
-        self.success = None
-        self._weights = [1.0 / len(self.names)] * len(self.names)
-        if success is not None:
-            self.refresh(success)
+        self.load_state_dict({"success": self.success})
 
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:

@@ -22,6 +22,7 @@ from mitigate.corruptions.keying import Key, digest, mix, normal_table, uniform,
 from mitigate.corruptions.record import Record
 
 PUBLISHED = 0.5  # severity at which errors have their published size
+BIAS = "systematic error"  # constant during an episode, if the camera has one
 
 
 @dataclass(frozen=True)
@@ -48,21 +49,25 @@ class Profile:
     scale: float = 0.0
 
 
+# The Kinect for Xbox 360 uses structured light.
 # Sources: axial and lateral noise for surfaces that face the camera, with images that are 640
 # pixels wide (Nguyen, Izadi and Lovell 2012); steps of 1/8 pixel (Barron and Malik 2013); range
 # (datasheet).
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
 )
+# The camera uses active stereo.
 # The RMS error is z^2 * e / (f * B), with e = 0.08 pixels, the baseline B = 0.05 m, and the focal
 # length f of images that are 848 pixels and 90 degrees wide (Grunnet-Jepsen, Sweetser and Woodfill
 # 2018). Steps of 1/32 pixel and the range come from the datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
+# The camera scans with a laser.
 # The datasheet gives, indoors, a standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m, and a mean
 # error of 5 mm and 14 mm.
 REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
+# The camera uses time of flight.
 # The datasheet gives a standard deviation of up to 17 mm, a systematic error of up to 11 mm + 0.1
 # %, and the range of the narrow mode. Tolgyessy et al. 2021 confirm these values.
 AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
@@ -103,9 +108,9 @@ def _measure(views, streams, sd, origin, lateral, steps, bias, limits, missing, 
 
 
 def measured(
-    views: np.ndarray, profile: Profile, name: str, severity: float, key: Key, sensor: DepthSensor
+    name: str, profile: Profile, views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
 ) -> np.ndarray:
-    """Return depth with the errors of ``profile``.
+    """Return depth with the errors of the camera ``name``, which has this ``profile``.
 
     The published errors are multiplied by ``severity / PUBLISHED``; the range is divided by this
     factor.
@@ -131,52 +136,22 @@ def measured(
     return out
 
 
-def kinect_v1(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Return depth as a Kinect for Xbox 360, which uses structured light, measures it."""
-    return measured(views, KINECT_V1, "kinect_v1", severity, key, sensor)
-
-
-def realsense_d435(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Return depth as a RealSense D435, which uses active stereo, measures it."""
-    return measured(views, REALSENSE_D435, "realsense_d435", severity, key, sensor)
-
-
-def realsense_l515(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Return depth as a RealSense L515, which scans with a laser, measures it."""
-    return measured(views, REALSENSE_L515, "realsense_l515", severity, key, sensor)
-
-
-def azure_kinect(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Return depth as an Azure Kinect, which uses time of flight, measures it."""
-    return measured(views, AZURE_KINECT, "azure_kinect", severity, key, sensor)
-
-
-_record = partial(Record.of, "depth", version="1", frame="noise")
-RECORDS = (
-    _record(
-        kinect_v1,
-        severity="2 s times the errors of the camera",
-        label="Kinect v1",
-        source="Nguyen 2012, Barron & Malik 2013",
-    ),
-    _record(
-        realsense_d435,
-        severity="2 s times the errors of the camera",
-        label="RealSense D435",
-        source="Grunnet-Jepsen 2018",
-    ),
-    _record(
-        realsense_l515,
-        severity="2 s times the errors of the camera",
-        label="RealSense L515",
-        source="datasheet",
-        episode="systematic error",
-    ),
-    _record(
-        azure_kinect,
-        severity="2 s times the errors of the camera",
-        label="Azure Kinect",
-        source="Tolgyessy 2021, datasheet",
-        episode="systematic error",
-    ),
+RECORDS = tuple(
+    Record(
+        name,
+        "depth",
+        partial(measured, name, profile),
+        "2 s times the errors of the camera",
+        label=label,
+        source=source,
+        episode=episode,
+        frame="noise",
+        version="1",
+    )
+    for name, profile, label, source, episode in (
+        ("kinect_v1", KINECT_V1, "Kinect v1", "Nguyen 2012, Barron & Malik 2013", "-"),
+        ("realsense_d435", REALSENSE_D435, "RealSense D435", "Grunnet-Jepsen 2018", "-"),
+        ("realsense_l515", REALSENSE_L515, "RealSense L515", "datasheet", BIAS),
+        ("azure_kinect", AZURE_KINECT, "Azure Kinect", "Tolgyessy 2021, datasheet", BIAS),
+    )
 )

@@ -20,7 +20,7 @@ from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.faults.camera import NARROWEST, WIDEST, Mount, warp
 from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
-from mitigate.corruptions.record import ACTION, CAMERA, FRAMES, MODALITIES, MOTION, TEMPORAL
+from mitigate.corruptions.record import CAMERA, FRAMES, MODALITIES, MOTION, OF_NO_FRAME, TEMPORAL
 
 # maximum views per time step; R2R's discrete panoramas have 12 views at each of 3 elevations,
 # VLN-CE has 12 views
@@ -67,8 +67,7 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
             f"{frame.shape}. Corrupt the time steps of a batch one at a time, because each has its "
             "own key."
         )
-    views = frame.reshape((1, *shape) if len(shape) == 2 else shape)
-    views = _one_instant(np.ascontiguousarray(views))
+    views = _one_instant(np.ascontiguousarray(frame.reshape(-1, *shape[-2:])))
     check_unit(views, sensor)
     return views
 
@@ -213,8 +212,7 @@ def _check_pair(name: str) -> None:
         check_name(part, (*registry.known(*MODALITIES), *registry.FAULTS))
     if GATE in names:
         gated = registry.record(names[-1])
-        of_frames = gated.modality not in ("instruction", ACTION)
-        if names[0] != GATE or not of_frames or gated.family == TEMPORAL:
+        if names[0] != GATE or gated.modality in OF_NO_FRAME or gated.family == TEMPORAL:
             raise ValueError(
                 f"{GATE!r} must be the first name of a pair. The second one must be a corruption "
                 f"of frames that is not a temporal fault, got {name!r}. An example is "
@@ -400,41 +398,27 @@ def corrupt_observation(
         ValueError: The modality is missing, the shape of the pose is not [3], ``corruption`` is not
             a Corruption, or ``corrupt`` raises an error.
     """
-    result = dict(obs)
-    for part in check_corruption(corruption).parts:
-        if part.modality not in ("instruction", ACTION):
-            result |= _corrupt_entry(result, part, key, sensor, hfov or {})
-    return result
-
-
-def _corrupt_entry(
-    obs: dict,
-    part: Corruption,
-    key: Key | int | str,
-    sensor: DepthSensor,
-    hfov: Mapping[str, float | None],
-) -> dict:
-    """Apply one corruption, and return the entries that it changes as a dict."""
-    pose = obs.get(observation.POSE)
-    entries = changed_entries(obs, part)
+    parts = [p for p in check_corruption(corruption).parts if p.modality not in OF_NO_FRAME]
+    pose = obs.get(observation.POSE) if parts else None
     if pose is not None and np.shape(pose) != (3,):
         raise ValueError(
             f"{observation.POSE!r} must be [3] = (x, y, heading), got {np.shape(pose)}. Leave "
             "it out if the heading is unknown; a flare then keeps its position in view 0."
         )
     heading = None if pose is None else float(pose[2])
-    return {
-        entry: corrupt(
-            obs[entry],
-            part.name,
-            part.severity,
-            key=key,
-            heading=heading,
-            sensor=sensor,
-            hfov=hfov.get(entry),
-        )
-        for entry in entries
-    }
+    result = dict(obs)
+    for part in parts:
+        for entry in changed_entries(obs, part):
+            result[entry] = corrupt(
+                result[entry],
+                part.name,
+                part.severity,
+                key=key,
+                heading=heading,
+                sensor=sensor,
+                hfov=(hfov or {}).get(entry),
+            )
+    return result
 
 
 def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
@@ -444,9 +428,8 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
         ValueError: The observation has no entry that the corruption could change.
     """
     modalities = registry.record(part.name).modalities
-    entries = tuple(
-        name for name in modalities if name in obs
-    )  # entries have the names of modalities
+    # entries have the names of modalities
+    entries = tuple(name for name in modalities if name in obs)
     if not entries:
         raise ValueError(
             f"{part.name!r} needs the entry {' or '.join(map(repr, modalities))}, which the "

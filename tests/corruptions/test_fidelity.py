@@ -56,7 +56,6 @@ def test_landmarks_numbers_and_the_rest_are_read():
     assert message.numbers == ("first", "two step", "three meter")
     assert (message.compass, message.attributes, message.denials) == (("north",), ("grey",), 1)
     assert facts("First, turn left. Then take a right.").numbers == ()
-    assert facts("Turn left, take a right, then turn around.").turns == 3
 
 
 @pytest.mark.parametrize(
@@ -145,10 +144,10 @@ def test_style_frames_add_no_facts(manner):
         assert check(f"go to the {noun}", f"go to the {other}") == []
 
 
-def test_false_model_answer_is_replaced_and_reported():
+def test_false_model_answer_is_replaced():
     text = "Turn left at the sofa and stop."
     liar = restyle(text, "formal", Key(0, "1"), lambda text, manner: text.replace("left", "right"))
-    assert "left" in liar.text and liar.tries == 2 and liar.refused[0].startswith("directions")
+    assert "left" in liar.text and liar.passed and liar.tries == 2
     honest = restyle(text, "formal", Key(0, "1"), lambda *_: "Kindly turn left at the couch, stop.")
     assert honest.text.startswith("Kindly turn left at the couch") and honest.tries == 1
     assert restyle(text, "formal", Key(0, "1"), lambda *_: " ").passed

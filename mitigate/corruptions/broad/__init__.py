@@ -9,6 +9,8 @@ imported when the first frame is corrupted, so an agent can be loaded without Op
 
 from __future__ import annotations
 
+from functools import partial
+
 import numpy as np
 
 from mitigate.corruptions.depth_sensor import DepthSensor
@@ -36,27 +38,10 @@ def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     return depth.compose(views, severity, key, sensor)
 
 
+_record = partial(
+    Record.of, severity="strongest primitive", episode=STATE, frame="noise, views, or maps"
+)
 RECORDS = (
-    Record(
-        name="broad_rgb",
-        modality="rgb",
-        apply=broad_rgb,
-        version="2",
-        label="Broad RGB",
-        severity="strongest primitive",
-        source="PRIME, AugMix",
-        episode=STATE,
-        frame="noise, views, or maps",
-    ),
-    Record(
-        name="broad_depth",
-        modality="depth",
-        apply=broad_depth,
-        version="1",
-        label="Broad depth",
-        severity="strongest primitive",
-        source="after PRIME",
-        episode=STATE,
-        frame="noise, views, or maps",
-    ),
+    _record("rgb", broad_rgb, source="PRIME, AugMix", label="Broad RGB", version="2"),
+    _record("depth", broad_depth, source="after PRIME", version="1"),
 )

@@ -31,6 +31,7 @@ PITCH, ROLL, YAW = 30.0, 20.0, 30.0  # degrees at severity 1
 FOV = 30.0  # degrees at severity 1
 NARROWEST, WIDEST = 10.0, 150.0  # limits of the field of view in degrees
 TWO_FAULTS = 0.3  # probability of a second fault in training (heuristic)
+RIGHT, FORWARD, UP = range(3)  # axes of rotations
 _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the last bit of sin()
 
 
@@ -60,24 +61,18 @@ class Mount:
         """Return the rotation matrix [3, 3] for the axes (right, forward, up); it applies roll,
         then pitch, then yaw.
         """
-        yaw, pitch, roll = (math.radians(angle) for angle in (self.yaw, self.pitch, self.roll))
-        about_forward = np.array(
-            [[math.cos(roll), 0, math.sin(roll)], [0, 1, 0], [-math.sin(roll), 0, math.cos(roll)]]
+        return np.round(
+            _turn(UP, self.yaw) @ _turn(RIGHT, self.pitch) @ _turn(FORWARD, self.roll), _DECIMALS
         )
-        about_right = np.array(
-            [
-                [1, 0, 0],
-                [0, math.cos(pitch), -math.sin(pitch)],
-                [0, math.sin(pitch), math.cos(pitch)],
-            ]
-        )
-        return np.round(_about_up(yaw) @ about_right @ about_forward, _DECIMALS)
 
 
-def _about_up(angle: float) -> np.ndarray:
-    """Return the matrix of a rotation by ``angle`` radians to the left."""
-    cos, sin = math.cos(angle), math.sin(angle)
-    return np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+def _turn(axis: int, degrees: float) -> np.ndarray:
+    """Return the matrix of a rotation about an axis."""
+    cos, sin = math.cos(math.radians(degrees)), math.sin(math.radians(degrees))
+    plane = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[np.ix_(plane, plane)] = [[cos, -sin], [sin, cos]]
+    return matrix
 
 
 def total(mounts: Iterable[Mount]) -> Mount:
@@ -103,7 +98,7 @@ def warp(
         ``sensor.missing``.
     """
     rotation = mount.rotation()
-    turns = [_about_up(math.radians(-VIEW_STEP_DEGREES * view)) for view in range(len(views))]
+    turns = [_turn(UP, -VIEW_STEP_DEGREES * view) for view in range(len(views))]
     rotations = np.round(np.stack([turn.T @ rotation @ turn for turn in turns]), _DECIMALS)
     before, after = (math.tan(math.radians(angle) / 2) for angle in (hfov, mount.hfov(hfov)))
     out = np.zeros_like(views)
@@ -219,16 +214,11 @@ def random_mount(key: Key) -> Mount:
     return total(DRAWS[place](uniform(value, 3 + place), key) for place in chosen)
 
 
-_record = partial(
-    Record, modality=FRAMES, apply=None, family=CAMERA, source="heuristic", version="1"
-)
-RECORDS = tuple(
-    _record(draw.__name__, draw=draw, severity=severity, label=label, episode="direction")
-    for draw, severity, label in (
-        (camera_height, f"height, up to +-{HEIGHT:g} m", "Camera height"),
-        (camera_pitch, f"pitch, up to +-{PITCH:g} degrees", "Camera pitch"),
-        (camera_roll, f"roll, up to +-{ROLL:g} degrees", "Camera roll"),
-        (camera_yaw, f"yaw offset, up to +-{YAW:g} degrees", "Camera yaw"),
-        (camera_fov, f"field of view, up to +-{FOV:g} degrees", "Field of view"),
-    )
+_record = partial(Record.drawn, CAMERA, FRAMES, episode="direction")
+RECORDS = (
+    _record(camera_height, f"height, up to +-{HEIGHT:g} m"),
+    _record(camera_pitch, f"pitch, up to +-{PITCH:g} degrees"),
+    _record(camera_roll, f"roll, up to +-{ROLL:g} degrees"),
+    _record(camera_yaw, f"yaw offset, up to +-{YAW:g} degrees"),
+    _record(camera_fov, f"field of view, up to +-{FOV:g} degrees", label="Field of view"),
 )

@@ -78,40 +78,24 @@ def _happens(severity: float, key: Key, name: str) -> bool:
     return uniform(digest(key, name, frame=True)) < severity * LOST
 
 
-_record = partial(
-    Record, modality=ACTION, apply=None, family=MOTION, source="heuristic", version="1"
-)
+_record = partial(Record.drawn, MOTION, ACTION)
 RECORDS = (
     _record(
-        "motion_slip",
-        draw=motion_slip,
-        severity=f"part of each movement that may be lost, up to {SLIP:g}",
+        motion_slip,
+        f"part of each movement that may be lost, up to {SLIP:g}",
         frame="part, per step",
     ),
     _record(
-        "motion_drift",
-        draw=motion_drift,
-        severity=f"degrees per forward step, up to {DRIFT:g}",
-        source="RobustNav",
-        episode="side",
+        motion_drift, f"degrees per forward step, up to {DRIFT:g}", "RobustNav", episode="side"
+    ),
+    _record(motion_gain, f"range of the gains, up to +-{GAIN:g}", episode="gains"),
+    _record(
+        dropped_action, f"probability of a lost command, up to {LOST:g}", frame="loss, per step"
     ),
     _record(
-        "motion_gain",
-        draw=motion_gain,
-        severity=f"range of the gains, up to +-{GAIN:g}",
-        episode="gains",
-    ),
-    _record(
-        "dropped_action",
-        draw=dropped_action,
-        severity=f"probability of a lost command, up to {LOST:g}",
-        frame="loss, per step",
-    ),
-    _record(
-        "repeated_action",
-        draw=repeated_action,
-        severity=f"probability of the previous command, up to {LOST:g}",
-        source="Machado et al. 2018",
+        repeated_action,
+        f"probability of the previous command, up to {LOST:g}",
+        "Machado et al. 2018",
         frame="repetition, per step",
     ),
 )

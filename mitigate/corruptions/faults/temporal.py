@@ -52,11 +52,6 @@ def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) 
     return place - begin + 1 if begin <= place < begin + length else 0
 
 
-def _burst(severity: float, key: Key) -> int:
-    length = round(severity * LONGEST_BURST)
-    return _frames_inside("burst", BURST_PERIOD, LONGEST_BURST, length, key)
-
-
 def frozen_frame(severity: float, key: Key) -> int:
     """Return the age of the frame that arrives; a freeze repeats the last frame before it."""
     length = round(severity * LONGEST_FREEZE)
@@ -67,7 +62,8 @@ def repeated_frames(severity: float, key: Key) -> int:
     """Return the age of the frame that arrives; a burst of lost frames repeats the last frame
     before it.
     """
-    return _burst(severity, key)
+    length = round(severity * LONGEST_BURST)
+    return _frames_inside("burst", BURST_PERIOD, LONGEST_BURST, length, key)
 
 
 def frame_delay(severity: float, key: Key) -> int:
@@ -84,7 +80,7 @@ def dropped_frames(
     views: np.ndarray, severity: float, key: Key, context: DepthSensor | float | None
 ) -> np.ndarray:
     """During the bursts of ``repeated_frames``, return black RGB, or depth without readings."""
-    if not _burst(severity, key):
+    if not repeated_frames(severity, key):
         return views.copy()
     if isinstance(context, DepthSensor):
         valid = np.isfinite(views) & (views > 0)
@@ -101,7 +97,7 @@ def exposure_flicker(
     return np.minimum(np.rint(levels), 255).astype(np.uint8)[views]
 
 
-def is_active(severity: float, key: Key) -> bool:
+def intermittent(severity: float, key: Key) -> bool:
     """Return whether the corruption that is paired with ``intermittent`` is active in this frame.
 
     The result does not depend on the severity.
@@ -109,53 +105,37 @@ def is_active(severity: float, key: Key) -> bool:
     return _frames_inside(GATE, ACTIVE_PERIOD, ACTIVE, ACTIVE, key) > 0
 
 
-_record = partial(Record, family=TEMPORAL, apply=None, source="heuristic", version="1")
+_drawn = partial(Record.drawn, TEMPORAL)
+_applied = partial(Record.of, source="heuristic", version="1", family=TEMPORAL)
+_INTERVALS = {"episode": "phase", "frame": "start"}  # what an interval's place depends on
 RECORDS = (
-    _record(
-        "frozen_frame",
+    _drawn(
         FRAMES,
-        draw=frozen_frame,
-        severity=f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}",
-        episode="phase",
-        frame="start",
+        frozen_frame,
+        f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}",
+        **_INTERVALS,
     ),
-    _record(
-        "repeated_frames",
+    _drawn(
         FRAMES,
-        draw=repeated_frames,
-        severity=f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        episode="phase",
-        frame="start",
+        repeated_frames,
+        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
+        **_INTERVALS,
     ),
-    _record(
-        "dropped_frames",
+    _applied(
         FRAMES,
-        apply=dropped_frames,
-        severity=f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        episode="phase",
-        frame="start",
+        dropped_frames,
+        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
+        **_INTERVALS,
     ),
-    _record("frame_delay", FRAMES, draw=frame_delay, severity=f"delay, up to {DELAY} frames"),
-    _record(
-        "depth_lag",
+    _drawn(FRAMES, frame_delay, f"delay, up to {DELAY} frames"),
+    _drawn(
         "depth",
-        draw=depth_lag,
-        severity=f"frames that depth is older than RGB, up to {DELAY}",
+        depth_lag,
+        f"frames that depth is older than RGB, up to {DELAY}",
         label="Depth behind RGB",
     ),
-    _record(
-        "exposure_flicker",
-        "rgb",
-        apply=exposure_flicker,
-        severity=f"range of the exposure, up to {STOPS:g} stops",
-        frame="exposure",
+    _applied(
+        "rgb", exposure_flicker, f"range of the exposure, up to {STOPS:g} stops", frame="exposure"
     ),
-    _record(
-        GATE,
-        FRAMES,
-        draw=is_active,
-        severity="of the other corruption of the pair",
-        episode="phase",
-        frame="start",
-    ),
+    _drawn(FRAMES, intermittent, "of the other corruption of the pair", **_INTERVALS),
 )

@@ -64,18 +64,13 @@ def clauses(text: str) -> list[Clause]:
             pending = ""
             if not part:
                 continue
-            if _hanging(part):
+            if _BEGINS_CONDITION.match(part) and _divided(part) is None:  # of the next command
                 pending = part + ", "
                 continue
             parsed.append(_clause(part))
         if pending:
             parsed.append(_clause(pending.rstrip(", ")))
     return parsed or [Clause("", text.strip())]
-
-
-def _hanging(part: str) -> bool:
-    """Return whether ``part`` contains only a condition for the next command."""
-    return bool(_BEGINS_CONDITION.match(part)) and _divided(part) is None
 
 
 def _clause(part: str) -> Clause:

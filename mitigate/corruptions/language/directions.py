@@ -74,22 +74,6 @@ def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
     return names
 
 
-def turns(tokens: list[Token], turned: dict[int, int]) -> int:
-    """Count the commands to turn: turning verbs, and phrases such as "take a left"."""
-    count = len(turned)
-    inside = {place for first, last in turned.items() for place in range(first, last + 1)}
-    for place, token in enumerate(tokens):
-        if place in inside:
-            continue
-        before = [t.lower for t in tokens[max(0, place - 4) : place]]
-        if token.lower in TURN_VERBS and token.tag == "VERB":
-            count += 1
-        elif token.lower in ("left", "right") and token.tag != "ADJ":
-            is_turn = any(verb in before for verb in ("take", "make", "go", "head"))
-            count += is_turn and TURN_VERBS.isdisjoint(before)
-    return count
-
-
 def _repeats(name: str, between: list[Token]) -> bool:
     if name in ("up", "down"):
         return len(between) <= 2

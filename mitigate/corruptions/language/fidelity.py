@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
@@ -37,7 +37,6 @@ class Facts:
         compass: compass words.
         attributes: colours, shapes and sizes.
         relations: into, out, past, between, behind and similar words, in order.
-        turns: number of commands to turn.
         denials: number of negations (not, never, avoid and similar words).
     """
 
@@ -47,7 +46,6 @@ class Facts:
     compass: tuple[str, ...]
     attributes: tuple[str, ...]
     relations: tuple[str, ...]
-    turns: int
     denials: int
 
 
@@ -74,8 +72,7 @@ def check(original: str, rewritten: str) -> list[str]:
     invented", "landmark order", "number lost", "number invented", "compass lost", "compass
     invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
     "denial".
-    Synonyms in ``landmarks.py`` are treated as equal. The number of turns is not compared, because
-    the directions of the turns are already compared. The order of landmarks may change within a
+    Synonyms in ``landmarks.py`` are treated as equal. The order of landmarks may change within a
     clause.
     """
     before, after = _read(original), _read(rewritten)
@@ -84,33 +81,25 @@ def check(original: str, rewritten: str) -> list[str]:
     changes = []
     if old.directions != new.directions:
         changes.append(f"directions: {_listed(old.directions)} -> {_listed(new.directions)}")
-    changes += _changes("landmark", old.landmarks, new.landmarks, old_words, new_words)
+    changes += _absent("landmark lost", old.landmarks, new_words)
+    changes += _absent("landmark invented", new.landmarks, old_words)
     clauses = [before.clause[name] for name in after.clause if name in before.clause]
     if clauses != sorted(clauses):
         changes.append(f"landmark order: {_listed(old.landmarks)} -> {_listed(new.landmarks)}")
     changes += _counted("number", old.numbers, new.numbers)
-    changes += _changes("compass", old.compass, new.compass, old_words, new_words)
+    changes += _absent("compass lost", old.compass, new_words)
+    changes += _absent("compass invented", new.compass, old_words)
     changes += _counted("attribute", old.attributes, new.attributes)
-    changes += _changes("relation", old.relations, new.relations, old.relations, new.relations)
+    changes += _absent("relation lost", old.relations, new.relations)
+    changes += _absent("relation invented", new.relations, old.relations)
     if old.denials != new.denials:
         changes.append(f"denial: {old.denials} -> {new.denials}")
     return changes
 
 
-def _changes(
-    kind: str,
-    old: Iterable[str],
-    new: Iterable[str],
-    old_words: Iterable[str],
-    new_words: Iterable[str],
-) -> list[str]:
-    """List names in ``old`` that are missing in ``new_words``, and names in ``new`` that are
-    missing in ``old_words``.
-    """
-    lost = [f"{kind} lost: {name}" for name in dict.fromkeys(old) if name not in new_words]
-    return lost + [
-        f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old_words
-    ]
+def _absent(change: str, names: Iterable[str], others: Collection[str]) -> list[str]:
+    """List the names that are not in ``others``."""
+    return [f"{change}: {name}" for name in dict.fromkeys(names) if name not in others]
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
@@ -118,7 +107,7 @@ def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
     ``new``.
     """
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
-    return lost + [f"{kind} invented: {name}" for name in dict.fromkeys(new) if name not in old]
+    return lost + _absent(f"{kind} invented", new, old)
 
 
 def _listed(names: Iterable[str]) -> str:
@@ -137,7 +126,6 @@ def _read(text: str) -> _Reading:
         compass=tuple(t.lower for t in tokens if COMPASS.match(t.lower)),
         attributes=tuple(a for t in tokens if (a := _same(t)) in ATTRIBUTES),
         relations=tuple(_relations(tokens)),
-        turns=directions.turns(tokens, turned),
         denials=sum(token.lower in DENIALS for token in tokens),
     )
     numbers = _clauses(tokens)

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
-from typing import Any
 
 from mitigate.corruptions.language.clauses import COMMANDS
 from mitigate.corruptions.language.words import read_data
@@ -21,6 +20,10 @@ BARE_VERB = (
 _WALK = (
     r"(?:walk|go|head|proceed|continue|move|travel|advance|come|run|step|keep (?:going|walking)|"
     r"make your way|continue (?:walking|going))"
+)
+_STAIRS = (
+    r"(?P<thing>(?:the |a |these |those |this )?(?:[\w-]+ ){0,3}"
+    r"(?:stairs|steps|staircase|stairway))(?P<rest>\b.*)$"
 )
 _TAIL = (
     r"(?P<rest>|,.*|\s(?:at|into|onto|in|and|through|toward|towards|to|before|after|when|once|past|"
@@ -44,14 +47,8 @@ PATTERNS = {
         r"(?: (?P<how>slight|slightly|sharp|sharply|hard|immediate|quick))?"
         r"(?: turn)?(?: to)?(?: the| your)? (?P<side>left|right)(?: turn)?" + _TAIL
     ),
-    "climb": _pattern(
-        rf"^(?:{_WALK}|climb) up (?P<thing>(?:the |a |these |those |this )?(?:[\w-]+ ){{0,3}}"
-        r"(?:stairs|steps|staircase|stairway))(?P<rest>\b.*)$"
-    ),
-    "descend": _pattern(
-        rf"^(?:{_WALK}|climb) down (?P<thing>(?:the |a |these |those |this )?(?:[\w-]+ ){{0,3}}"
-        r"(?:stairs|steps|staircase|stairway))(?P<rest>\b.*)$"
-    ),
+    "climb": _pattern(rf"^(?:{_WALK}|climb) up {_STAIRS}"),
+    "descend": _pattern(rf"^(?:{_WALK}|climb) down {_STAIRS}"),
     "past": _pattern(rf"^(?:{_WALK} (?:right )?past|pass(?: by)?) (?P<rest>(?!through)\S.*)$"),
     "through_to": _pattern(rf"^{_WALK} through to (?P<rest>\S.*)$"),
     "through": _pattern(rf"^(?:{_WALK}|pass) through (?P<rest>(?!to\b)\S.*)$"),
@@ -85,10 +82,10 @@ class Voice:
     clause, closers, and synonyms of nouns.
     """
 
-    openers: tuple[str, ...]
-    frames: dict[str, tuple[str, ...]]
-    commands: dict[str, tuple[str, ...]]
-    closers: tuple[str, ...]
+    openers: list[str]
+    frames: dict[str, list[str]]
+    commands: dict[str, list[str]]
+    closers: list[str]
     nouns: dict[str, str]
 
 
@@ -98,13 +95,4 @@ def swap_nouns(text: str, nouns: dict[str, str]) -> str:
     return re.sub(rf"\b({'|'.join(names)})\b", lambda m: nouns[m.group()], text)
 
 
-def _voice(entry: dict[str, Any]) -> Voice:
-    """Convert an entry of ``voices.json`` to the phrases of a style; lists become tuples."""
-    frames, commands = (
-        {name: tuple(options) for name, options in entry[part].items()}
-        for part in ("frames", "commands")
-    )
-    return Voice(tuple(entry["openers"]), frames, commands, tuple(entry["closers"]), entry["nouns"])
-
-
-VOICES = {name: _voice(entry) for name, entry in read_data("voices.json").items()}
+VOICES = {name: Voice(**entry) for name, entry in read_data("voices.json").items()}

@@ -8,8 +8,9 @@ a text, the instruction is rewritten again with fewer changes.
 
 from __future__ import annotations
 
+import itertools
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from mitigate.corruptions.keying import Key, digest, uniform
@@ -21,6 +22,7 @@ from mitigate.corruptions.language.text import check_text
 MANNERS = ("friendly", "novice", "professional", "formal")
 TRIES = 3  # maximum number of attempts before the original text is used (heuristic)
 Rewrite = Callable[[str, str], str]
+Draw = Callable[[Sequence[str]], str]  # makes a random choice
 
 
 @dataclass(frozen=True)
@@ -34,7 +36,6 @@ class Restyled:
         plain: number of clauses that kept their words: no template matched, or the gate rejected
             the result.
         clauses: number of clauses.
-        refused: the problems that the gate found in rejected rewrites.
     """
 
     text: str
@@ -42,7 +43,6 @@ class Restyled:
     passed: bool
     plain: int
     clauses: int
-    refused: tuple[str, ...]
 
 
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:
@@ -53,34 +53,19 @@ def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) ->
     without a word.
     """
     check_text(text)
-    refused: list[str] = []
     tries = count = 0
     if rewrite is not None:
         answer = rewrite(text, manner)
         rewritten = answer.strip() if isinstance(answer, str) else ""
-        tries, problems = 1, check(text, rewritten) if rewritten else ["empty answer"]
-        if not problems:
-            return Restyled(rewritten, tries, True, 0, 0, ())
-        refused += problems
+        tries = 1
+        if rewritten and not check(text, rewritten):
+            return Restyled(rewritten, tries, True, 0, 0)
     for attempt in range(TRIES):
         rewritten, plain, count = _speak(text, manner, digest(key, f"{manner}-{attempt}"), attempt)
         tries += 1
-        problems = check(text, rewritten)
-        if not problems:
-            return Restyled(rewritten, tries, True, plain, count, tuple(refused))
-        refused += problems
-    return Restyled(text, tries, False, count, count, tuple(refused))
-
-
-class _Draw:
-    """Makes random choices from one stream of random numbers."""
-
-    def __init__(self, stream: int) -> None:
-        self._stream, self._count = stream, 0
-
-    def __call__(self, options: tuple[str, ...]) -> str:
-        self._count += 1
-        return options[int(uniform(self._stream, self._count) * len(options))]
+        if not check(text, rewritten):
+            return Restyled(rewritten, tries, True, plain, count)
+    return Restyled(text, tries, False, count, count)
 
 
 def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int, int]:
@@ -89,8 +74,11 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
     The first attempt uses templates and synonyms. The second uses only templates, and the third
     only frames.
     """
-    draw, voice = _Draw(stream), phrases.VOICES[manner]
-    parts = clauses(text)
+    numbers, voice, parts = itertools.count(1), phrases.VOICES[manner], clauses(text)
+
+    def draw(options: Sequence[str]) -> str:
+        return options[int(uniform(stream, next(numbers)) * len(options))]
+
     sentences, plain, last = [draw(voice.openers)], 0, ""
     for index, clause in enumerate(parts):
         command = _say(clause, voice, draw, attempt)
@@ -108,7 +96,7 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
     return " ".join(part for part in (*sentences, draw(voice.closers)) if part), plain, len(parts)
 
 
-def _say(clause: Clause, voice: phrases.Voice, draw: _Draw, attempt: int) -> str | None:
+def _say(clause: Clause, voice: phrases.Voice, draw: Draw, attempt: int) -> str | None:
     """Rewrite the command of ``clause`` in the style; return None if the command must keep its
     words.
     """

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
 
@@ -43,6 +43,9 @@ class Token:
         return bool(WORD.match(self.text))
 
 
+NOTHING = Token("", 0, "")  # the neighbour of the first and of the last token
+
+
 def tokens(text: str) -> list[Token]:
     """Split ``text`` into untagged tokens: words, punctuation and special tokens such as
     ``[MASK]``.
@@ -56,12 +59,10 @@ def tokens(text: str) -> list[Token]:
 def tag(text: str) -> list[Token]:
     """Return the tokens of ``text`` with the tags of the built-in tagger."""
     untagged = tokens(text)
-    tagged: list[Token] = []
-    for index, token in enumerate(untagged):
-        before = tagged[-1] if tagged else None
-        after = untagged[index + 1] if index + 1 < len(untagged) else None
-        tagged.append(Token(token.text, token.start, token.lower, _tag(token, before, after)))
-    return tagged
+    tagged = [NOTHING]
+    for token, after in zip(untagged, [*untagged[1:], NOTHING], strict=True):
+        tagged.append(replace(token, tag=_tag(token, tagged[-1], after)))
+    return tagged[1:]
 
 
 def named(name: str = "own") -> Callable[[str], list[Token]]:
@@ -104,12 +105,12 @@ def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
     return [
         token
         if token.lower in words.OVERRIDES or token.start not in places
-        else Token(token.text, token.start, token.lower, places[token.start])
+        else replace(token, tag=places[token.start])
         for token in tag(text)
     ]
 
 
-def _tag(token: Token, before: Token | None, after: Token | None) -> str:
+def _tag(token: Token, before: Token, after: Token) -> str:
     word = token.lower
     if not token.is_word:
         return "X" if len(word) > 1 else "PUNCT"
@@ -118,10 +119,10 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
     if word.endswith(("'m", "'re", "'ve", "'ll", "'d")):
         return "PRON"
     if word == "there":
-        return "PRON" if after is not None and after.lower in ("is", "are", "will") else "ADV"
+        return "PRON" if after.lower in ("is", "are", "will") else "ADV"
     if word == "back":
         return "NOUN" if _determined(before) and not _can_be_noun(after) else "ADV"
-    if word == "passed" and before is not None and before.tag == "AUX":
+    if word == "passed" and before.tag == "AUX":
         return "VERB"
     if word in words.AMBIGUOUS:
         return _by_context(word, before, after)
@@ -131,12 +132,12 @@ def _tag(token: Token, before: Token | None, after: Token | None) -> str:
         return "ADV"
     if word.endswith("ing") and not _determined(before):
         return "VERB"
-    if word.endswith(("ed", "ish", "ous", "ful", "less")) and after is not None and after.is_word:
+    if word.endswith(("ed", "ish", "ous", "ful", "less")) and after.is_word:
         return "ADJ"
     return "NOUN"
 
 
-def _by_context(word: str, before: Token | None, after: Token | None) -> str:
+def _by_context(word: str, before: Token, after: Token) -> str:
     """Choose between the two classes of a word by its neighbours: after a determiner, for example,
     it is a noun.
     """
@@ -144,47 +145,45 @@ def _by_context(word: str, before: Token | None, after: Token | None) -> str:
     if word in ("left", "right"):
         return _side(before, after)
     if word == "to":
-        return "PART" if after is not None and after.lower in words.VERBS else "ADP"
+        return "PART" if after.lower in words.VERBS else "ADP"
     if (first, second) == ("DET", "PRON"):
         return first if _begins_noun(after) else second
     if (first, second) == ("ADP", "ADV"):
-        of = after is not None and after.lower == "of"
-        return first if of or _begins_noun(after) else second
+        return first if after.lower == "of" or _begins_noun(after) else second
     if (first, second) == ("VERB", "NOUN"):
-        is_command = before is not None and before.tag in ("PART", "AUX")
+        is_command = before.tag in ("PART", "AUX")
         return first if is_command or not (_determined(before) or _governed(before)) else second
     if (first, second) == ("ADJ", "NOUN"):
         return first if _can_be_noun(after) else second
-    known = _determined(before) or (before is not None and before.tag == "AUX")
-    return first if known else second
+    return first if _determined(before) or before.tag == "AUX" else second
 
 
-def _side(before: Token | None, after: Token | None) -> str:
+def _side(before: Token, after: Token) -> str:
     """Tag the word "left" or "right"; after "the" or "your", it is a noun or an adjective."""
-    if before is not None and before.lower in words.POSSESSORS:
+    if before.lower in words.POSSESSORS:
         return "ADJ" if _can_be_noun(after) else "NOUN"
-    if before is not None and before.lower in ("have", "has", "you've", "having"):
+    if before.lower in ("have", "has", "you've", "having"):
         return "VERB"
     return "ADV"
 
 
-def _determined(before: Token | None) -> bool:
-    return before is not None and (before.tag in _BEFORE_NOUN or before.lower in words.POSSESSORS)
+def _determined(before: Token) -> bool:
+    return before.tag in _BEFORE_NOUN or before.lower in words.POSSESSORS
 
 
-def _governed(before: Token | None) -> bool:
-    return before is not None and before.lower in ("of", "with", "to", "by", "from", "in", "at")
+def _governed(before: Token) -> bool:
+    return before.lower in ("of", "with", "to", "by", "from", "in", "at")
 
 
-def _begins_noun(after: Token | None) -> bool:
-    if after is None or not after.is_word:
+def _begins_noun(after: Token) -> bool:
+    if not after.is_word:
         return False
     known = words.TAGS.get(after.lower)
     return known in (None, "DET", "ADJ", "NUM", "PRON") or after.lower in words.AMBIGUOUS_NOUNS
 
 
-def _can_be_noun(after: Token | None) -> bool:
-    if after is None or not after.is_word:
+def _can_be_noun(after: Token) -> bool:
+    if not after.is_word:
         return False
     if after.lower in words.AMBIGUOUS:
         return after.lower in words.AMBIGUOUS_NOUNS

@@ -11,23 +11,31 @@ import json
 import os
 import shutil
 from bisect import bisect_left
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from functools import partial
-from hashlib import blake2b
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from mitigate.core.files import make_folder, sha256, write_atomically, write_bytes
-from mitigate.core.json_files import LARGEST_LIST, read_object
+from mitigate.core.files import make_folder, sha256, write_atomically
 from mitigate.core.names import counted, escaped, short
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import is_regular, lost, open_output, output_folder
 from mitigate.core.progress import Progress
-from mitigate.corruptions.folders import SUMMARY, Settings, check_folders
+from mitigate.corruptions.folders import (
+    SUMMARY,
+    Settings,
+    check_folders,
+    checksum,
+    earlier_summary,
+    short_hash,
+    write_summary,
+)
+from mitigate.corruptions.frame_files import encode
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.lerobot import images, videos
 from mitigate.corruptions.lerobot.dataset import TOLERANCE, Dataset, open_dataset, rows_of
@@ -44,6 +52,9 @@ MAX_LISTED = 5  # maximum number of files that are printed
 ENCODER_KEYS = ("g", "crf", "preset", "fast_decode", "extra_options", "video_backend")
 
 
+Instant = tuple[float, int, int]  # time of a frame in its video, its episode and its number there
+
+
 @dataclass
 class Copy:
     """A copy in progress.
@@ -53,10 +64,11 @@ class Copy:
         out: Folder of the copy.
         settings: Corruption and format.
         cameras: Cameras to corrupt.
-        encodings: Encoding of the videos of each camera.
         tolerance: Maximum seconds between a row and its video frame.
-        summary: Content of ``corrupt.json``.
+        encodings: Encoding of the videos of each camera.
+        frames: Number of frames to corrupt in each file that contains such frames.
         progress: Progress bar that counts corrupted frames.
+        summary: Content of ``corrupt.json``.
     """
 
     dataset: Dataset
@@ -64,9 +76,10 @@ class Copy:
     settings: Settings
     cameras: Sequence[Camera]
     tolerance: float
-    encodings: dict[str, Encoding] = field(default_factory=dict)
+    encodings: Mapping[str, Encoding]
+    frames: Counter[str]
+    progress: Progress
     summary: dict[str, Any] = field(default_factory=dict)
-    progress: Progress | None = None
 
 
 def run(
@@ -103,26 +116,32 @@ def run(
     """
     source, out = Path(source), Path(out)
     check_folders(source, out)
-    defaults = Settings(settings.corruption, settings.severity)
-    for name in UNUSED:
-        if getattr(settings, name) != getattr(defaults, name):
+    for option in fields(Settings):
+        if option.name in UNUSED and getattr(settings, option.name) != option.default:
             raise ValueError(
-                f"{name}= does not apply to the LeRobot dataset {source}: its metadata determine "
-                f"this setting. Remove {name}=."
+                f"{option.name}= does not apply to the LeRobot dataset {source}: its metadata "
+                f"determine this setting. Remove {option.name}=."
             )
     if not 0 < tolerance < 1:
         raise ValueError(f"tolerance must be above 0 and below 1 (seconds), got {tolerance:g}.")
     dataset = open_dataset(source)
-    work = Copy(dataset, out, settings, _choose_cameras(dataset, settings, cameras), tolerance)
-    for camera in work.cameras:
-        if camera.stored == VIDEO:
-            work.encodings[camera.name] = _encoding(dataset, camera, settings.format)
-    with output_folder(out, SUMMARY):
+    chosen = _choose_cameras(dataset, settings, cameras)
+    encodings = {
+        camera.name: _encoding(dataset, camera, settings.format)
+        for camera in chosen
+        if camera.stored == VIDEO
+    }
+    frames = _frames_per_file(dataset, chosen)
+    with (
+        output_folder(out, SUMMARY),
+        Progress(settings.corruption, frames.total(), unit="frame") as progress,
+    ):
+        work = Copy(dataset, out, settings, chosen, tolerance, encodings, frames, progress)
         _begin(work)
         try:
             _copy(work)
         finally:  # a resumed run then does not write finished files again
-            _write_summary(work)
+            write_summary(out, work.summary)
     return work.summary
 
 
@@ -181,22 +200,19 @@ def _copy(work: Copy) -> None:
     for name in sorted(films):
         writers[name] = partial(_corrupt_video, work, name, films[name], instants[name])
     writers[INFO] = partial(_write_info, work)
-    frames = _frames_per_file(work)
-    with Progress(work.settings.corruption, sum(frames.values()), unit="frame") as progress:
-        work.progress = progress
-        for name, write in writers.items():
-            if not _write(work, name, write):
-                progress.advance(frames.get(name, 0))
-    missing = [work.out / name for name in writers if not (work.out / name).is_file()]
-    if missing:
-        raise lost(missing[0])
+    for name, write in writers.items():
+        if not _write(work, name, write):
+            work.progress.advance(work.frames[name])
+    for name in writers:
+        if not (work.out / name).is_file():
+            raise lost(work.out / name)
 
 
-def _frames_per_file(work: Copy) -> Counter[str]:
+def _frames_per_file(dataset: Dataset, cameras: Sequence[Camera]) -> Counter[str]:
     """Count the frames to corrupt in each file that contains such frames."""
     frames: Counter[str] = Counter()
-    for episode in work.dataset.episodes.values():
-        for camera in work.cameras:
+    for episode in dataset.episodes.values():
+        for camera in cameras:
             is_video = camera.stored == VIDEO
             file = episode.videos[camera.name][0] if is_video else episode.data
             frames[file] += episode.length
@@ -220,7 +236,7 @@ def _write(work: Copy, name: str, write: Callable[[Path], Any]) -> bool:
     checksums = work.summary["checksums"]
     paths = (work.dataset.path / name, work.out / name)
     exists = is_regular(paths[1])
-    if exists and name in checksums and checksums[name] == _checksum(*paths):
+    if exists and name in checksums and checksums[name] == checksum(*paths):
         work.summary["there"] += 1
         return False
     checksums.pop(name, None)
@@ -228,25 +244,13 @@ def _write(work: Copy, name: str, write: Callable[[Path], Any]) -> bool:
     write_atomically(paths[1], write)
     work.summary["written"] += 1
     work.summary["replaced"] += [name] * exists
-    checksums[name] = _checksum(*paths)
+    checksums[name] = checksum(*paths)
     return True
 
 
 def _copy_file(source: Path, path: Path) -> None:
     with open(source, "rb") as original, open_output(path, "wb") as file:
         shutil.copyfileobj(original, file)
-
-
-def _checksum(*paths: Path) -> str:
-    """Return one checksum for a file and its copy, or "" if one of them cannot be read."""
-    try:
-        return _short_hash("".join(map(sha256, paths)))
-    except OSError:
-        return ""
-
-
-def _short_hash(text: str) -> str:
-    return blake2b(text.encode("utf-8", "surrogateescape"), digest_size=8).hexdigest()
 
 
 # ----------------------------------------------------------------------------------- frames
@@ -263,43 +267,25 @@ def _corrupt(work: Copy, camera: Camera, frame: np.ndarray, episode: str, number
         raise ValueError(f"{camera.name}, {episode}, frame {number}: {error}") from error
 
 
-def _advance(work: Copy) -> None:
-    if work.progress is not None:
-        work.progress.advance()
-
-
 def _name(episode: int) -> str:
     """Return the name of an episode, which is part of the keys of its frames."""
     return f"episode-{episode:06d}"
 
 
-@dataclass
-class Instants:
-    """The times of all frames in a video, in increasing order, and the (episode, frame) at each
-    time.
-    """
-
-    times: list[float] = field(default_factory=list)
-    names: list[tuple[int, int]] = field(default_factory=list)
-
-
-def _instants(dataset: Dataset, cameras: Sequence[Camera]) -> dict[str, Instants]:
-    """Return the times of the frames in each video of ``cameras``."""
-    unsorted: dict[str, list[tuple[float, tuple[int, int]]]] = {}
+def _instants(dataset: Dataset, cameras: Sequence[Camera]) -> dict[str, list[Instant]]:
+    """Return the times of the frames in each video of ``cameras``, in increasing order."""
+    instants: defaultdict[str, list[Instant]] = defaultdict(list)
     for episode, rows, _ in rows_of(dataset, list(dataset.episodes.values())):
-        times = rows.times.tolist()
         for camera in cameras:
             file, start = episode.videos[camera.name]
-            places = [(start + time, (episode.index, n)) for n, time in enumerate(times)]
-            unsorted.setdefault(file, []).extend(places)
-    instants = {}
-    for file, listed in unsorted.items():
-        listed.sort()
-        instants[file] = Instants([time for time, _ in listed], [name for _, name in listed])
-    return instants
+            times = rows.times.tolist()
+            instants[file] += [(start + time, episode.index, n) for n, time in enumerate(times)]
+    return {file: sorted(listed) for file, listed in instants.items()}
 
 
-def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, path: Path) -> None:
+def _corrupt_video(
+    work: Copy, name: str, camera: Camera, instants: list[Instant], path: Path
+) -> None:
     """Write a corrupted video.
 
     Frames that belong to no episode are also corrupted, so that frame numbers do not change.
@@ -308,9 +294,8 @@ def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, pa
     used: set[int] = set()
 
     def change(frame: np.ndarray, time: float, number: int) -> np.ndarray:
-        place = bisect_left(instants.times, time - work.tolerance)
-        is_near = place < len(instants.times) and instants.times[place] <= time + work.tolerance
-        if not is_near:
+        place = bisect_left(instants, time - work.tolerance, key=itemgetter(0))
+        if place == len(instants) or instants[place][0] > time + work.tolerance:
             return _corrupt(work, camera, frame, f"unused-{name}", number)
         if place in used:
             raise ValueError(
@@ -318,19 +303,18 @@ def _corrupt_video(work: Copy, name: str, camera: Camera, instants: Instants, pa
                 "set a smaller tolerance=."
             )
         used.add(place)
-        episode, index = instants.names[place]
-        _advance(work)
+        _, episode, index = instants[place]
+        work.progress.advance()
         return _corrupt(work, camera, frame, _name(episode), index)
 
     videos.corrupt_video(source, path, camera, work.encodings[camera.name], change)
-    absent = [index for index in range(len(instants.times)) if index not in used]
+    absent = [instant for place, instant in enumerate(instants) if place not in used]
     if absent:
-        episode, index = instants.names[absent[0]]
+        moment, episode, index = absent[0]
         raise ValueError(
-            f"{source} must have a frame within {work.tolerance:g} s of "
-            f"{instants.times[absent[0]]:.6f} s, for frame {index} of episode {episode}. "
-            f"{len(absent)} of {len(instants.times)} frames are missing. Copy the dataset again, "
-            "or set tolerance= to a larger value if its clock is inexact."
+            f"{source} must have a frame within {work.tolerance:g} s of {moment:.6f} s, for frame "
+            f"{index} of episode {episode}. {len(absent)} of {len(instants)} frames are missing. "
+            "Copy the dataset again, or set a larger tolerance= if its clock is inexact."
         )
 
 
@@ -363,9 +347,10 @@ def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
         clean = images.as_frame(stored, camera)
         corrupted = _corrupt(work, camera, clean, _name(episode), number)
         pixels = corrupted if camera.kind == RGB else images.store_depth(corrupted, stored, camera)
-        data = images.encode(pixels, form, keep_format=work.settings.format == "same")
-        _advance(work)
-        values.append({**column[row].as_py(), "bytes": data})
+        if form == "JPEG" and work.settings.format == "png":
+            form = "PNG"
+        work.progress.advance()
+        values.append({**column[row].as_py(), "bytes": encode(pixels, form)})
     index = rows.schema.get_field_index(camera.name)
     return rows.set_column(index, rows.schema.field(index), pyarrow.array(values, column.type))
 
@@ -396,7 +381,7 @@ def _digest(dataset: Dataset) -> str:
     }
     for name in names:
         check_file(dataset.path / name)
-    return _short_hash("".join(name + sha256(dataset.path / name) for name in sorted(names)))
+    return short_hash("".join(name + sha256(dataset.path / name) for name in sorted(names)))
 
 
 def _begin(work: Copy) -> None:
@@ -410,49 +395,19 @@ def _begin(work: Copy) -> None:
         "tolerance": work.tolerance,
         "dataset": _digest(work.dataset),
     }
-    checksums: dict[str, str] = {}
-    if any(path.name[0] != "." for path in work.out.iterdir()):
-        checksums = _earlier_checksums(work.out, now)
+    earlier = earlier_summary(work.out, now)
     codecs = {name: f"{e.name} {e.stored}" for name, e in work.encodings.items()}
     work.summary = {
         "settings": now,
         "episodes": len(work.dataset.episodes),
-        "frames": _frames_per_file(work).total(),
+        "frames": work.frames.total(),
         "videos": codecs,
         "written": 0,
         "there": 0,
         "replaced": [],
-        "checksums": checksums,
+        "checksums": earlier.get("checksums", {}),
     }
-    _write_summary(work)
-
-
-def _earlier_checksums(out: Path, now: Mapping[str, Any]) -> dict[str, str]:
-    """Return the checksums of an earlier run; raise ValueError if its settings differ."""
-    fix = "Name another folder, or delete this one."
-    try:
-        earlier = read_object(out / SUMMARY, fix, LARGEST_LIST)
-    except FileNotFoundError:
-        raise ValueError(
-            f"{out} must be empty or contain {SUMMARY}, which this program writes. {fix}"
-        ) from None
-    try:
-        before = dict(earlier["settings"])
-        checksums = {str(k): str(v) for k, v in dict(earlier["checksums"]).items()}
-    except (KeyError, TypeError, ValueError) as error:
-        raise ValueError(f"{out / SUMMARY} is damaged ({error!s:.200}). {fix}") from error
-    different = [
-        escaped(f"{name}={short(before.get(name))} there, {name}={short(now.get(name))} now")
-        for name in {**before, **now}
-        if before.get(name) != now.get(name)
-    ]
-    if different:
-        raise ValueError(f"{out} was made with other settings: {'; '.join(different)}. {fix}")
-    return checksums
-
-
-def _write_summary(work: Copy) -> None:
-    write_bytes(work.out / SUMMARY, (json.dumps(work.summary, indent=1) + "\n").encode())
+    write_summary(work.out, work.summary)
 
 
 def report(summary: Mapping[str, Any], out: str) -> str:

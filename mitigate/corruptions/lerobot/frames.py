@@ -40,10 +40,11 @@ def read_frames(
         FileNotFoundError: A file is missing.
         ValueError: A file is damaged, or a video has no frame near one of the times.
     """
-    streams: list[Iterator[dict[str, np.ndarray]]] = []
-    for camera in cameras:
-        if camera.stored == VIDEO:
-            streams.append(_video_frames(dataset, episode, camera, times, tolerance))
+    streams = [
+        _video_frames(dataset, episode, camera, times, tolerance)
+        for camera in cameras
+        if camera.stored == VIDEO
+    ]
     in_rows = [camera for camera in cameras if camera.stored != VIDEO]
     if in_rows:
         streams.append(_image_frames(dataset.path / episode.data, episode.index, in_rows, chosen))
@@ -74,8 +75,8 @@ def _image_frames(
                 if pending and is_in_episode[row] and number == pending[-1]:
                     pending.pop()
                     yield {
-                        camera.name: read_image(path, batch, row, camera, number)
-                        for camera in cameras
+                        c.name: images.as_frame(stored_image(path, batch, row, c, number)[0], c)
+                        for c in cameras
                     }
     if pending:
         raise ValueError(f"{path} lacks frame {pending[-1]} of episode {episode}. {FIX}")
@@ -109,12 +110,6 @@ def _is_binary(kind: Any) -> bool:
     from pyarrow import types
 
     return types.is_binary(kind) or types.is_large_binary(kind)
-
-
-def read_image(path: Path, table: Any, row: int, camera: Camera, number: int) -> np.ndarray:
-    """Return an image in a table as a frame: uint8 [H, W, 3], or float32 metres [H, W]."""
-    stored, _ = stored_image(path, table, row, camera, number)
-    return images.as_frame(stored, camera)
 
 
 def stored_image(

@@ -1,4 +1,4 @@
-"""Decode and encode the images in the rows of a LeRobot dataset: RGB is PNG or JPEG, depth is TIFF
+"""Decode the images in the rows of a LeRobot dataset: RGB is PNG or JPEG, depth is TIFF
 or 16-bit PNG.
 """
 
@@ -11,7 +11,7 @@ import numpy as np
 from PIL import Image
 
 from mitigate.core.observation import RGB
-from mitigate.corruptions.frame_files import JPEG_QUALITY, MAX_PIXELS, PNG_LEVEL, counts
+from mitigate.corruptions.frame_files import MAX_PIXELS, counts
 from mitigate.corruptions.lerobot.metadata import Camera
 
 FORMATS = {"rgb": ("PNG", "JPEG"), "depth": ("PNG", "TIFF")}
@@ -78,26 +78,6 @@ def _unit(stored: np.ndarray, camera: Camera) -> float:
     if camera.unit is not None:
         return camera.unit
     return MILLIMETRE if stored.dtype == np.uint16 else 1.0
-
-
-def encode(pixels: np.ndarray, form: str, keep_format: bool) -> bytes:
-    """Encode an image, which is an array as :func:`decode` returns it.
-
-    Args:
-        pixels: The image.
-        form: Format of the original file.
-        keep_format: Whether an image from a JPEG is written as JPEG. If false, it is written as
-            PNG, which is lossless.
-    """
-    with io.BytesIO() as file:
-        image = Image.fromarray(pixels)
-        if form == "TIFF":
-            image.save(file, "TIFF", compression="raw")
-        elif form == "JPEG" and keep_format:
-            image.save(file, "JPEG", quality=JPEG_QUALITY, subsampling=0)
-        else:
-            image.save(file, "PNG", compress_level=PNG_LEVEL)
-        return file.getvalue()
 
 
 def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:

@@ -158,16 +158,17 @@ def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | s
         return f"has {count} channels instead of {channels[0]} ({DEPTH if is_depth else RGB})"
     if height * width > MAX_PIXELS:
         return f"has more than {MAX_PIXELS} pixels"
-    kind, stored = (DEPTH if is_depth else RGB), feature["dtype"]
+    stored = feature["dtype"]
     if not is_depth:
-        return Camera(name, kind, stored, height, width)
+        return Camera(name, RGB, stored, height, width)
     if stored == VIDEO:
-        return Camera(name, kind, stored, height, width, code=DepthCode.of(info, f"{file}, {name}"))
+        code = DepthCode.of(info, f"{file}, {name}")
+        return Camera(name, DEPTH, stored, height, width, code=code)
     unit = info.get("depth_unit")
     if unit not in (None, "m", "mm"):
         raise ValueError(f"{file}: depth_unit of {name} must be m or mm, got {short(unit)}.")
     metres = {None: None, "m": 1.0, "mm": 0.001}[unit]
-    return Camera(name, kind, stored, height, width, unit=metres)
+    return Camera(name, DEPTH, stored, height, width, unit=metres)
 
 
 def read_tasks(path: Path) -> dict[int, str]:

@@ -57,17 +57,12 @@ DEPTH = Encoding(
 )
 # lerobot's encodings of RGB (RGBEncoderConfig); the keys are codecs of original videos
 LOSSY = {
-    "av1": Encoding(
-        "libsvtav1", "av1", "yuv420p", "yuv420p", {"crf": "30", "preset": "12", "g": GROUP}
-    ),
-    "h264": Encoding("libx264", "h264", "yuv420p", "yuv420p", {"crf": "30", "g": GROUP}),
-    "hevc": Encoding(
-        "libx265",
-        "hevc",
-        "yuv420p",
-        "yuv420p",
-        {"crf": "30", "g": GROUP, "x265-params": "log-level=none"},
-    ),
+    name: Encoding(codec, name, "yuv420p", "yuv420p", {"crf": "30", "g": GROUP, **options})
+    for name, codec, options in (
+        ("av1", "libsvtav1", {"preset": "12"}),
+        ("h264", "libx264", {}),
+        ("hevc", "libx265", {"x265-params": "log-level=none"}),
+    )
 }
 
 
@@ -221,11 +216,8 @@ def encode(
     with open_output(target, "wb") as file, av.open(file, "w", format=CONTAINER) as output:
         output_stream = _add_stream(output, camera, encoding, fps)
         for frame in frames:
-            if camera.code is None:
-                new = av.VideoFrame.from_ndarray(frame, format=RGB_PIXELS)
-            else:
-                new = av.VideoFrame.from_ndarray(camera.code.codes(frame), format=DEPTH_PIXELS)
-            output.mux(output_stream.encode(new))
+            pixels = frame if camera.code is None else camera.code.codes(frame)
+            output.mux(output_stream.encode(_video_frame(pixels)))
         output.mux(output_stream.encode(None))
 
 
@@ -271,19 +263,16 @@ def corrupt_video(
             if frame.pts is None:
                 raise ValueError(f"{source}: frame {number} has no timestamp. {FIX}")
             corrupted = corrupt(clean, float(frame.pts * stream.time_base), number)
-            new = _encoded(av, frame, clean, corrupted, camera, source)
+            if camera.code is not None:  # unchanged depth keeps its code
+                codes = camera.code.codes(corrupted)
+                corrupted = np.where(corrupted == clean, read_codes(source, frame), codes)
+            new = _video_frame(corrupted)
             new.pts, new.time_base = frame.pts, stream.time_base
             output.mux(output_stream.encode(new))
         output.mux(output_stream.encode(None))
 
 
-def _encoded(
-    av: Any, frame: Any, clean: np.ndarray, corrupted: np.ndarray, camera: Camera, source: Path
-) -> Any:
-    """Convert a corrupted frame to the format of the encoder. Unchanged depth keeps its code."""
-    if camera.kind == RGB:
-        return av.VideoFrame.from_ndarray(corrupted, format=RGB_PIXELS)
-    assert camera.code is not None
-    codes = camera.code.codes(corrupted)
-    codes = np.where(corrupted == clean, read_codes(source, frame), codes)
-    return av.VideoFrame.from_ndarray(codes, format=DEPTH_PIXELS)
+def _video_frame(pixels: np.ndarray) -> Any:
+    """Return a frame for the encoder from RGB [H, W, 3] or codes of depth [H, W]."""
+    form = RGB_PIXELS if pixels.ndim == 3 else DEPTH_PIXELS
+    return video_library().VideoFrame.from_ndarray(pixels, format=form)

@@ -1,8 +1,8 @@
 """The four depth corruptions of the standard suite for batches [B, V, H, W] in float32 metres.
 
-Every function of ``FUNCTIONS`` takes the views and the parameters of their rows, and returns a new
-batch. The formulas are in ``mitigate/corruptions/depth.py``, which also samples the random numbers
-per row.
+Every function that has the name of a corruption takes the views and the parameters of their rows,
+and returns a new batch. The formulas are in ``mitigate/corruptions/depth.py``, which also samples
+the random numbers per row.
 """
 
 from __future__ import annotations
@@ -66,6 +66,3 @@ def quantization(views: Tensor, rows: Rows) -> Tensor:
     """Round depth to multiples of 0.5 * severity metres."""
     step = on_device([depth.depth_step(severity) for severity in rows.severities], views, 3)
     return clip_valid(views, (views / step).round() * step, rows.sensor)
-
-
-FUNCTIONS = (gaussian_noise, missing_data, multipath, quantization)

@@ -11,12 +11,10 @@ from mitigate.core.observation import DEPTH
 from mitigate.corruptions.depth_sensor import LEAST, DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.corruptions.record import ACTION
+from mitigate.corruptions.record import OF_NO_FRAME
 from mitigate.corruptions.suite import SENSOR, Corruption, changed_entries, check_corruption
 from mitigate.corruptions.tensors.pixels import is_valid
 from mitigate.corruptions.tensors.suite import corrupt_tensors
-
-OF_NO_FRAME = ("instruction", ACTION)  # modalities of corruptions that do not change frames
 
 
 @torch.no_grad()

@@ -1,8 +1,8 @@
 """The eight RGB corruptions of the standard suite for uint8 batches [B, V, H, W, 3].
 
-Every function of ``FUNCTIONS`` takes the views and the parameters of their rows, and returns a new
-batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also samples the random numbers
-per row.
+Every function that has the name of a corruption takes the views and the parameters of their rows,
+and returns a new batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also samples the
+random numbers per row.
 """
 
 from __future__ import annotations
@@ -43,8 +43,8 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
     ]
     down, right = (max(int(np.abs(line[axis]).max()) for line in taps) for axis in (0, 1))
     kernels = np.zeros((len(taps), 1, 2 * down + 1, 2 * right + 1), np.float32)
-    for kernel, (dy, dx, weights) in zip(kernels, taps, strict=True):
-        np.add.at(kernel[0], (dy + down, dx + right), weights)
+    for kernel, (dy, dx, shares) in zip(kernels, taps, strict=True):
+        np.add.at(kernel[0], (dy + down, dx + right), shares)
     units = kernels.sum((1, 2, 3)).astype(int)
     blurred = np.rint((0.5 + 0.5 * np.array(rows.severities)) * 65536.0 / units).astype(int)
 
@@ -54,7 +54,8 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
     smooth = (smooth.add_(2.0) * 0.25).floor_()
     every_second = _per_plane(steps == 2, views)[:, None, None]
     source = torch.where(every_second, smooth, padded[..., 1:-1])
-    total = _filtered(source, _per_plane(kernels, views)).int()
+    weights = _per_plane(kernels, views)  # each plane has its own kernel
+    total = functional.conv2d(source, weights, groups=len(weights)).int()
     total *= _per_plane(blurred, views).int()[:, None, None]
     rest = _per_plane(65536 - blurred * units, views).int()[:, None, None]
     return _frames((total + planes.int() * rest + 32768) >> 16, views)
@@ -78,11 +79,6 @@ def _frames(planes: Tensor, views: Tensor) -> Tensor:
     """Convert integer planes [1, B * V * 3, H, W] to a batch with the shape of ``views``."""
     apart = planes.to(torch.uint8).reshape(*views.shape[:2], 3, *views.shape[2:4])
     return apart.permute(0, 1, 3, 4, 2).contiguous()
-
-
-def _filtered(planes: Tensor, kernels: Tensor) -> Tensor:
-    """Correlate each plane (of [1, n, h, w]) with its own kernel (of [n, 1, y, x])."""
-    return functional.conv2d(planes, kernels, groups=len(kernels))
 
 
 def darkness(views: Tensor, rows: Rows) -> Tensor:
@@ -239,15 +235,3 @@ def black_out(views: Tensor, rows: Rows) -> Tensor:
         for value, severity in zip(values, rows.severities, strict=True)
     ]
     return views * on_device(visible, views, 3).to(torch.uint8)
-
-
-FUNCTIONS = (
-    motion_blur,
-    low_light,
-    low_light_noise,
-    spatter,
-    flare,
-    defocus,
-    foreign_object,
-    black_out,
-)

@@ -31,10 +31,12 @@ from mitigate.corruptions.tensors.pixels import is_valid
 BACKENDS = ("numpy", "torch")
 # maximum pixels per pass (heuristic); the temporary tensors then need about a gigabyte
 MAX_PIXELS = 1 << 23
+# the functions that have the name of a corruption
 FUNCTIONS: dict[str, Callable[[Tensor, Rows], Tensor]] = {
-    function.__name__: function
+    name: vars(module)[name]
     for module in (rgb, depth, unseen_rgb, unseen_depth)
-    for function in module.FUNCTIONS
+    for name in registry.INCLUDED
+    if name in vars(module)
 }
 
 

@@ -146,17 +146,3 @@ def glossy_floor(views: Tensor, rows: Rows) -> Tensor:
     wall = clean.masked_fill(~is_valid(clean), 0.0).amax(2, keepdim=True)
     mirrored = torch.minimum(returns.UPSIDE_DOWN * clean, wall)
     return torch.where(floor & (mirrored > clean), mirrored, clean)
-
-
-FUNCTIONS = (
-    scale_error,
-    misalignment,
-    wiggling,
-    fattening,
-    edge_shadow,
-    flying_pixels,
-    ripple,
-    range_limit,
-    mismatches,
-    glossy_floor,
-)

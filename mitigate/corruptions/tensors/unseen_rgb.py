@@ -168,19 +168,3 @@ def lost_slices(views: Tensor, rows: Rows) -> Tensor:
             starts[view, lines] = start
     lost = torch.arange(width, device=views.device) >= on_device(first, views, 1)
     return views.flatten(3).masked_fill(per_colour(lost), codec.NOTHING).reshape(views.shape)
-
-
-FUNCTIONS = (
-    white_balance,
-    overexposure,
-    haze,
-    hue_shift,
-    ghosting,
-    refraction,
-    scratches,
-    rolling_shutter,
-    flicker_bands,
-    impulse_noise,
-    compression,
-    lost_slices,
-)

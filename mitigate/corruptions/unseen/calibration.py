@@ -15,6 +15,7 @@ import numpy as np
 from mitigate.corruptions.depth_sensor import LIGHT_SPEED, NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
+from mitigate.corruptions.unseen.optics import shifted
 
 SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # limits of the error as a fraction of depth, at severity 1
 ASIDE = 0.12  # horizontal shift as a fraction of the image width, at severity 1
@@ -65,11 +66,7 @@ def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     """Shift depth by 0.12 * severity * W; edges are repeated, and pixels whose source is invalid
     keep their depth.
     """
-    _, height, width = views.shape
-    down, across = depth_offset(severity, key, width)
-    rows = np.clip(np.arange(height) + down, 0, height - 1)
-    columns = np.clip(np.arange(width) + across, 0, width - 1)
-    moved = np.take(np.take(views, rows, axis=1), columns, axis=2)
+    moved = shifted(views, *depth_offset(severity, key, views.shape[2]))
     return clip_valid(views, np.where(valid(moved), moved, views), sensor)
 
 
@@ -94,27 +91,25 @@ def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) 
     return clip_valid(views, clean + table[place.astype(np.int32)], sensor)
 
 
-_record = partial(Record.of, "depth", version="1")
+_validation = partial(Record.of, "depth", version="1", half=VALIDATION)
+_test = partial(Record.of, "depth", version="1", half=TEST)
 RECORDS = (
-    _record(
+    _validation(
         scale_error,
-        half=VALIDATION,
-        severity="all depth off by 0.25 s to 0.4 s",
-        source="Khoshelham & Elberink 2012",
+        "all depth off by 0.25 s to 0.4 s",
+        "Khoshelham & Elberink 2012",
         episode="sign and size",
     ),
-    _record(
+    _validation(
         wiggling,
-        half=VALIDATION,
-        severity="0.3 s metres too near and too far by turns",
-        source="Lindner & Kolb 2006",
+        "0.3 s metres too near and too far by turns",
+        "Lindner & Kolb 2006",
         episode="phase p",
     ),
-    _record(
+    _test(
         misalignment,
-        half=TEST,
-        severity="moved by 0.12 s of the width against RGB",
-        source="Khoshelham & Elberink 2012",
+        "moved by 0.12 s of the width against RGB",
+        "Khoshelham & Elberink 2012",
         episode="direction",
     ),
 )

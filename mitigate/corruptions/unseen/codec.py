@@ -168,19 +168,11 @@ def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> n
     return out
 
 
-_record = partial(Record.of, "rgb", version="1")
+_validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
+_test = partial(Record.of, "rgb", version="1", half=TEST)
 RECORDS = (
-    _record(
-        compression,
-        half=VALIDATION,
-        severity="patterns of amplitude under 0.4 s are lost",
-        source="ImageNet-C, H.264, H.265",
+    _validation(
+        compression, "patterns of amplitude under 0.4 s are lost", "ImageNet-C, H.264, H.265"
     ),
-    _record(
-        lost_slices,
-        half=TEST,
-        severity="0.8 s of the slices are lost",
-        source="Wenger 2003",
-        frame="which, from where",
-    ),
+    _test(lost_slices, "0.8 s of the slices are lost", "Wenger 2003", frame="which, from where"),
 )

@@ -121,26 +121,20 @@ def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
     return out
 
 
-_record = partial(Record.of, "depth", version="1")
+_validation = partial(Record.of, "depth", version="1", half=VALIDATION)
+_test = partial(Record.of, "depth", version="1", half=TEST)
 RECORDS = (
-    _record(
-        fattening,
-        half=VALIDATION,
-        severity="near surfaces grow by 0.08 s side",
-        source="Kanade & Okutomi 1994",
-    ),
-    _record(
+    _validation(fattening, "near surfaces grow by 0.08 s side", "Kanade & Okutomi 1994"),
+    _validation(
         edge_shadow,
-        half=VALIDATION,
-        severity="the projector is 0.5 s metres aside",
-        source="Khoshelham & Elberink 2012",
+        "the projector is 0.5 s metres aside",
+        "Khoshelham & Elberink 2012",
         episode="side",
     ),
-    _record(
+    _test(
         flying_pixels,
-        half=TEST,
-        severity="the share s of the pixels beside edges",
-        source="Reynolds et al. 2011",
+        "the share s of the pixels beside edges",
+        "Reynolds et al. 2011",
         frame="which, and their depth",
     ),
 )

@@ -29,10 +29,7 @@ HUE_DEGREES = 180.0  # rotation of the hue at severity 1
 
 def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
     """Map each colour channel of views (uint8 [V, H, W, 3]) by its own table (uint8 [256])."""
-    out = np.empty_like(views)
-    for colour, table in enumerate(tables):
-        out[..., colour] = table[views[..., colour]]
-    return out
+    return np.stack([table[views[..., c]] for c, table in enumerate(tables)], axis=-1)
 
 
 def _amplified(stops: float) -> np.ndarray:
@@ -133,42 +130,24 @@ def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     not change.
     """
     matrix = hue_matrix(hue_degrees(severity, key))
-    colours = [views[..., c].astype(np.int32) for c in range(3)]
-    out = np.empty_like(views)
-    for c, row in enumerate(matrix):
-        level = sum(colour * weight for colour, weight in zip(colours, row, strict=True))
-        out[..., c] = np.clip((level + 2048) >> 12, 0, 255)
-    return out
+    turned = (views.astype(np.int32) @ matrix.T + 2048) >> 12
+    return np.clip(turned, 0, 255).astype(np.uint8)
 
 
-_record = partial(Record.of, "rgb", version="1")
+_validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
+_test = partial(Record.of, "rgb", version="1", half=TEST)
 RECORDS = (
-    _record(
+    _validation(
         white_balance,
-        half=VALIDATION,
-        severity="2 s stops between red and blue",
-        source="Afifi & Brown 2019",
+        "2 s stops between red and blue",
+        "Afifi & Brown 2019",
         episode="direction",
     ),
-    _record(
-        haze,
-        half=VALIDATION,
-        severity=f"optical depth {HAZE_DEPTH:g} s",
-        source="3DCC, ImageNet-C",
-        episode="field, place by view",
+    _validation(
+        haze, f"optical depth {HAZE_DEPTH:g} s", "3DCC, ImageNet-C", episode="field, place by view"
     ),
-    _record(
-        overexposure,
-        half=TEST,
-        severity="2 s stops too much light",
-        source="ImageNet-C, 3DCC",
-        episode="stops, +- 20 %",
-    ),
-    _record(
-        hue_shift,
-        half=TEST,
-        severity="hues turned by 180 s degrees",
-        source="after ImageNet-C's saturate",
-        episode="sense",
+    _test(overexposure, "2 s stops too much light", "ImageNet-C, 3DCC", episode="stops, +- 20 %"),
+    _test(
+        hue_shift, "hues turned by 180 s degrees", "after ImageNet-C's saturate", episode="sense"
     ),
 )

@@ -42,21 +42,26 @@ def ghost_weight(severity: float) -> int:
     return round(65536 * GHOST * severity)
 
 
+def shifted(views: np.ndarray, down: int, right: int) -> np.ndarray:
+    """Return, for each pixel (y, x) of views [V, H, W, ...], the pixel at (y + down, x + right);
+    edges are repeated.
+    """
+    height, width = views.shape[1:3]
+    rows = np.clip(np.arange(height) + down, 0, height - 1)
+    columns = np.clip(np.arange(width) + right, 0, width - 1)
+    return np.take(np.take(views, rows, axis=1), columns, axis=2)
+
+
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Blend each view x with a shifted copy x' (with repeated edges): out = (1 - a) * x + a * x',
     where a = 0.5 * severity.
     """
-    _, height, width, _ = views.shape
-    down, across = ghost_offset(key, height, width)
-    rows = np.clip(np.arange(height) + down, 0, height - 1)
-    columns = np.clip(np.arange(width) + across, 0, width - 1)
-    moved = np.take(np.take(views, rows, axis=1), columns, axis=2).astype(np.int32)
-    gap = moved - views
+    gap = shifted(views, *ghost_offset(key, *views.shape[1:3])).astype(np.int32) - views
     return (views + ((gap * ghost_weight(severity) + 32768) >> 16)).astype(np.uint8)
 
 
 @njit(cache=True)
-def displaced(view, down, right, out):
+def _displace(view, down, right, out):
     """Displace a view: out[y, x] is the view at (y + down, x + right), interpolated bilinearly,
     with repeated edges.
 
@@ -74,6 +79,14 @@ def displaced(view, down, right, out):
                 upper = view[top, left, c] * (256 - a) + view[top, beside, c] * a
                 lower = view[below, left, c] * (256 - a) + view[below, beside, c] * a
                 out[y, x, c] = (upper * (256 - b) + lower * b + 32768) >> 16
+
+
+def displaced(views: np.ndarray, down: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """Displace all views by the same offsets in pixels, float32 [H, W]."""
+    out = np.empty_like(views)
+    for view, into in zip(views, out, strict=True):
+        _displace(view, down, right, into)
+    return out
 
 
 @cached
@@ -94,10 +107,7 @@ def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)
-    out = np.empty_like(views)
-    for view, into in zip(views, out, strict=True):
-        displaced(view, down * reach, right * reach, into)
-    return out
+    return displaced(views, down * reach, right * reach)
 
 
 def scratch_strength(severity: float, number: int) -> float:
@@ -114,28 +124,20 @@ def scratch_line(value: int, number: int) -> tuple[float, float, float, float]:
     return draw[0], draw[1], math.pi * draw[2], half
 
 
-def _along(value: int, number: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return, for each pixel, the distances across a scratch's line and along it beyond its ends,
-    float64 [H, W], as fractions of the shorter side.
-    """
-    row, column, angle, half = scratch_line(value, number)
-    side = min(height, width)
-    y = ((np.arange(height) + 0.5 - row * height) / side)[:, None]
-    x = ((np.arange(width) + 0.5 - column * width) / side)[None, :]
-    along = x * math.cos(angle) + y * math.sin(angle)
-    across = y * math.cos(angle) - x * math.sin(angle)
-    return np.abs(across), np.maximum(np.abs(along) - half, 0.0)
-
-
 @cached
 def scratch_mask(value: int, severity: float, height: int, width: int) -> np.ndarray:
     """Return the opacity of the scratches, int16 [H, 3 W] in units of 1/32768."""
-    clear = np.ones((height, width))
+    clear, side = np.ones((height, width)), min(height, width)
     for number in range(SCRATCHES):
         strength = scratch_strength(severity, number)
         if strength > 0.0:
-            across, beyond = _along(value, number, height, width)
-            far = np.hypot(across, beyond)
+            row, column, angle, half = scratch_line(value, number)
+            y = ((np.arange(height) + 0.5 - row * height) / side)[:, None]
+            x = (np.arange(width) + 0.5 - column * width) / side
+            along = x * math.cos(angle) + y * math.sin(angle)
+            across = y * math.cos(angle) - x * math.sin(angle)
+            # distance to the line, as a fraction of the shorter side
+            far = np.hypot(across, np.maximum(np.abs(along) - half, 0.0))
             for reach, most in SCRATCH_PARTS:
                 clear *= 1.0 - strength * most * np.exp(-0.5 * (far / reach) ** 2)
     return masks.opacity_mask((1.0 - clear).astype(np.float32), 1.0, masks.NEUTRAL)
@@ -145,32 +147,15 @@ def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     """Draw the first 14 * severity scratches of the episode as bright lines with a glow."""
     height, width = views.shape[1:3]
     mask = scratch_mask(digest(key, "scratches"), severity, height, width)
-    out = np.empty_like(views)
-    masks.cover(views, mask, masks.colour_row(SCRATCH_COLOUR, width), out)
-    return out
+    return masks.covered(views, mask, masks.colour_row(SCRATCH_COLOUR, width))
 
 
-_record = partial(Record.of, "rgb", version="1")
+_validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
+_test = partial(Record.of, "rgb", version="1", half=TEST)
 RECORDS = (
-    _record(
-        ghosting,
-        half=VALIDATION,
-        severity="a second picture of opacity 0.5 s",
-        source="Shih et al. 2015",
-        episode="displacement",
+    _validation(
+        ghosting, "a second picture of opacity 0.5 s", "Shih et al. 2015", episode="displacement"
     ),
-    _record(
-        refraction,
-        half=TEST,
-        severity="displaced by 0.045 s side, rms",
-        source="ImageNet-C-bar",
-        episode="surface",
-    ),
-    _record(
-        scratches,
-        half=TEST,
-        severity=f"the first {SCRATCHES} s scratches",
-        source="RobustNav",
-        episode="where they are",
-    ),
+    _test(refraction, "displaced by 0.045 s side, rms", "ImageNet-C-bar", episode="surface"),
+    _test(scratches, f"the first {SCRATCHES} s scratches", "RobustNav", episode="where they are"),
 )

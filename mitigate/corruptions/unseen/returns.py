@@ -98,17 +98,6 @@ def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
     return out
 
 
-def below_camera(views: np.ndarray) -> np.ndarray:
-    """Return how far each pixel is below a level camera, float32 [V, H, W]; values are <= 0 for
-    pixels above the camera.
-
-    The unit is half the width that the image covers at a depth of one metre.
-    """
-    _, height, width = views.shape
-    down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
-    return np.where(valid(views), views, 0) * down.astype(np.float32)[:, None]
-
-
 def gloss_offset(key: Key, view: int, width: int) -> int:
     """Return the number of columns by which the glossy areas are shifted to the right in a view."""
     return int(uniform(scramble(digest(key, "glossy_floor"), view)) * width)
@@ -117,13 +106,13 @@ def gloss_offset(key: Key, view: int, width: int) -> int:
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
     """Set a fraction ``severity`` of the floor to the depth of the mirror image in the floor."""
     _, height, width = views.shape
-    value, out, depth = (
-        digest(key, "glossy_floor"),
-        clip_valid(views, views, sensor),
-        below_camera(views),
-    )
-    smooth, cells = field(value, height, width, GLOSS_CORRELATION)
+    smooth, cells = field(digest(key, "glossy_floor"), height, width, GLOSS_CORRELATION)
     gloss = smooth >= top_share(cells, severity)
+    # how far each pixel is below a level camera, in units of half the width that the image covers
+    # at a depth of one metre
+    slope = ((np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)).astype(np.float32)
+    depth = np.where(valid(views), views, 0) * slope[:, None]
+    out = clip_valid(views, views, sensor)
     for view, clean in enumerate(out):
         floor = (depth[view] > 0) & (depth[view] >= FLOOR * depth[view].max())
         floor &= np.roll(gloss, gloss_offset(key, view, width), axis=1)
@@ -133,34 +122,24 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     return out
 
 
-_record = partial(Record.of, "depth", version="1")
+_validation = partial(Record.of, "depth", version="1", half=VALIDATION)
+_test = partial(Record.of, "depth", version="1", half=TEST)
 RECORDS = (
-    _record(
+    _validation(
         ripple,
-        half=VALIDATION,
-        severity="waves of sd 0.06 s z^2 metres",
-        source="Keselman et al. 2017",
+        "waves of sd 0.06 s z^2 metres",
+        "Keselman et al. 2017",
         episode="field",
         frame="offset, by view",
     ),
-    _record(
-        range_limit,
-        half=TEST,
-        severity="no reading beyond z_max 0.1^s",
-        source="Fankhauser et al. 2015",
-    ),
-    _record(
+    _test(range_limit, "no reading beyond z_max 0.1^s", "Fankhauser et al. 2015"),
+    _test(
         mismatches,
-        half=TEST,
-        severity="0.3 s of the readings are anywhere",
-        source="Scharstein 2002",
+        "0.3 s of the readings are anywhere",
+        "Scharstein 2002",
         frame="which, and their depth",
     ),
-    _record(
-        glossy_floor,
-        half=TEST,
-        severity="the share s of the floor",
-        source="Mirror3D 2021",
-        episode="field, place by view",
+    _test(
+        glossy_floor, "the share s of the floor", "Mirror3D 2021", episode="field, place by view"
     ),
 )

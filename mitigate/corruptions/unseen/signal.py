@@ -45,10 +45,7 @@ def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) 
     """
     _, height, width, _ = views.shape
     right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
-    level, out = np.zeros_like(right), np.empty_like(views)
-    for view, into in zip(views, out, strict=True):
-        displaced(view, level, right, into)
-    return out
+    return displaced(views, np.zeros_like(right), right)
 
 
 def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray:
@@ -101,29 +98,22 @@ def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) ->
     return out
 
 
-_record = partial(Record.of, "rgb", version="1")
+_validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
+_test = partial(Record.of, "rgb", version="1", half=TEST)
 RECORDS = (
-    _record(
+    _validation(
         rolling_shutter,
-        half=VALIDATION,
-        severity="rows moved by 0.05 s of the width",
-        source="Liang et al. 2008",
+        "rows moved by 0.05 s of the width",
+        "Liang et al. 2008",
         episode="frequency f",
         frame="phase p",
     ),
-    _record(
+    _validation(
         flicker_bands,
-        half=VALIDATION,
-        severity="bands of 1 +- 0.8 s of the light",
-        source="Sheinin et al. 2017",
+        "bands of 1 +- 0.8 s of the light",
+        "Sheinin et al. 2017",
         episode="frequency f",
         frame="phase p, by view",
     ),
-    _record(
-        impulse_noise,
-        half=TEST,
-        severity="0.3 s of the pixels black or white",
-        source="ImageNet-C",
-        frame="which pixels",
-    ),
+    _test(impulse_noise, "0.3 s of the pixels black or white", "ImageNet-C", frame="which pixels"),
 )
