@@ -6,7 +6,7 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import cycle
+from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
 
@@ -56,12 +56,6 @@ class Walk:
     agent: str
     corruption: Corruption
     measures: Mapping[str, Any]
-
-    @property
-    def legend(self) -> str:
-        """The text of the legend: name, result and geodesic distance to the goal."""
-        end = "success" if self.won else "fail"
-        return f"{self.name}: {end}, {self.metres_left:.1f} m from the goal"
 
 
 def draw_trajectories(
@@ -190,7 +184,9 @@ def write_pictures(
     place = {episode_id: index for index, episode_id in enumerate(known)}
     rows = sorted(rows, key=lambda row: place[row["episode_id"]])
     before, after = list(agents)[0], list(agents)[-1]
-    chosen = list(won_back(rows, before, after))[:PICTURES] or _first_corrupted(rows)
+    met = ((r["episode_id"], r["corruption"], r["severity"]) for r in rows)
+    first = ((one, Corruption(name, at)) for one, name, at in met if name != "clean")
+    chosen = [*islice(won_back(rows, before, after), PICTURES)] or [*islice(first, 1)]
     paths = []
     for episode_id, corruption in chosen:
         # an episode id may contain characters that are invalid in a file name
@@ -199,11 +195,6 @@ def write_pictures(
         episode = known[episode_id]
         paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
     return paths
-
-
-def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
-    met = [row for row in rows if row["corruption"] != "clean"]
-    return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in met[:1]]
 
 
 def run_agents(
@@ -261,7 +252,9 @@ def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence
         reference = np.stack([from_vlnce(point) for point in episode.reference_path])
         draw_path(axes, reference, REFERENCE, "reference path", "--")
     for walk in walks:
-        draw_path(axes, walk.path, walk.colour, walk.legend)
+        end = "success" if walk.won else "fail"
+        legend = f"{walk.name}: {end}, {walk.metres_left:.1f} m from the goal"
+        draw_path(axes, walk.path, walk.colour, legend)
     if episode.goals:
         goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
         axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")
