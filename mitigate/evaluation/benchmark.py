@@ -300,9 +300,7 @@ def _episodes(
     count = None if count is ... else count
     check_count(count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
-        raise ValueError(
-            f"listed must be a list of episodes or an episode file, got {listed!r:.80}."
-        )
+        raise ValueError(f"listed must list episodes or name an episode file, got {listed!r:.80}.")
     entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
     if others := [entry for entry in entries if not isinstance(entry, Episode)]:
         raise ValueError(

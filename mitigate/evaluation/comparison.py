@@ -239,9 +239,8 @@ class _Scores:
         value, random = (self.values(name, CLEAN, measure).mean() for name in (agent, RANDOM))
         if value <= random:
             raise ValueError(
-                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than "
-                f"random actions ({random:.2f}), so there is no performance to preserve. Train the "
-                "policy further, or check that it gets the observations that it was trained on."
+                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than random "
+                f"actions ({random:.2f}). Train it further, or check the observations that it gets."
             )
 
     def prs(self, names: Sequence[str]) -> list[Line]:

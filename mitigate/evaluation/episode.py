@@ -69,8 +69,7 @@ def _no_exit(name: str) -> Iterator[None]:
         place = own_place(error)
         raise ValueError(
             f"{name}: the agent or the world raised SystemExit({error.code!r})"
-            f"{f' in {place}' if place else ''} before the evaluation was finished. Raise another "
-            "error, or end the episode."
+            f"{f' in {place}' if place else ''}. Raise another error, or end the episode."
         ) from error
 
 
@@ -159,8 +158,7 @@ class _Rollout:
         if self.steps >= MOST_STEPS:
             raise ValueError(
                 f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its task end "
-                "it (gymnasium: max_episode_steps=), or set limit=, which ends long episodes and "
-                "reports how many it ended."
+                "it (gymnasium: max_episode_steps=), or set limit=."
             )
         self.observation = self.guarded.step(action)
         self.steps += 1

@@ -272,8 +272,7 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
     applicable = [one for one in conditions if prompted or "white_box" not in parts(one.name)]
     if len(applicable) < len(conditions):
         warnings.warn(
-            f"white_box is not applicable to {name}: the agent has no system prompt to inject "
-            "into. No rows are written for it, and it is not part of the PRS.",
+            f"white_box is not applicable to {name}, which has no system prompt: it gets no rows.",
             stacklevel=3,
         )
     return applicable
@@ -344,8 +343,7 @@ def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     if missing:
         raise FolderLostError(
             f"{out} holds {len(order) - missing} of the {counted(len(order), 'row')} that were "
-            "measured: another program removed or replaced the file during the evaluation. Run "
-            "the same command again: it measures what is missing."
+            "measured: another program removed or replaced the file. Run the same command again."
         )
     ours = [row for row in stored if rows.identity(row) in order]
     ordered = sorted(ours, key=lambda row: order[rows.identity(row)])

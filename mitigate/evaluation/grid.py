@@ -224,27 +224,19 @@ class Grid:
         All these columns must have results for these seeds.
         """
         seeds = tuple(seeds)
+        runs = {label: [self.runs[label][seed] for seed in seeds] for label in labels}
         cells = {
             (label, name, severity, metric): values
-            for label in labels
-            for (name, metric), values in _pooled(
-                [self.runs[label][seed] for seed in seeds], severity
-            ).items()
+            for label, chosen in runs.items()
+            for (name, metric), values in _pooled(chosen, severity).items()
         }
         return replace(self, cells=cells)
 
-    def paired(self, labels: Iterable[str], severity: float) -> Grid:
-        """Return a grid for paired comparisons of the columns ``labels``.
-
-        If the columns have common seeds, the grid contains only these seeds. With common seeds, all
-        columns met corruptions with the same random keys.
-        """
-        labels = tuple(labels)
-        common = self.common(labels, severity)
-        return self.over(labels, common, severity) if common else self
-
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that all columns ``labels`` have at ``severity``."""
+        """Return the seeds that all columns ``labels`` have at ``severity``.
+
+        With the same seed, columns met corruptions with the same random keys.
+        """
         return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
 
     @cached_property

@@ -278,10 +278,7 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
     if key == CODE:
         return f"the code of {now[CLASS]} was changed"
     if key == READ:
-        return (
-            f"the class attributes of {now[CLASS]}, or the global variables and functions that its "
-            "code names, were changed"
-        )
+        return f"the class attributes of {now[CLASS]}, or what its code reads, were changed"
     was, is_ = (short(texts[key], 200) if key in texts else "not set" for texts in (before, now))
     return f"{key} was {was} and is {is_}"
 
@@ -360,9 +357,9 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
     layers = tuple(type(layer) for layer in _layers(world))
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
-            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
-            "variables and functions that their code names, are different in a worker process, "
-            "which imports them again. Set them only where they are defined, or set workers=1."
+            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or what their "
+            "code reads, differ in a worker process. Set them only where they are defined, or set "
+            "workers=1."
         )
 
 

@@ -40,8 +40,7 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     """
     texts = []
     several_rules = len({section.grid.rule for section in parts}) > 1
-    for index, section in enumerate(parts):
-        names = pictures[index] if index < len(pictures) else ()
+    for section, names in zip(parts, pictures or [()] * len(parts), strict=True):
         images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
         if pictures and section.blocks and not names:
             images = NO_PICTURE

@@ -282,7 +282,7 @@ def _parse(line: str) -> Any:
 
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
-        return f"is not a JSON object of finite numbers, UTF-8, at most {LONGEST_LINE} characters"
+        return f"is not a JSON object in UTF-8 (finite numbers, at most {LONGEST_LINE} characters)"
     required = IDENTITY | {RETURN: (int, float)} if row.get("rule") == RETURN else REQUIRED
     lacking = [key for key in required if key not in row]
     if lacking:

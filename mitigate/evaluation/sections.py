@@ -187,9 +187,10 @@ class Section:
     def compare(self, column: str, reference: str) -> Difference:
         """Return the difference of ``column`` from ``reference``, which can be any two columns."""
         pair, severity = (column, reference), self.severity
-        if not self.grid.common(pair, severity):
+        common = self.grid.common(pair, severity)
+        if not common:
             return Difference(None, None, {})
-        both = self.grid.paired(pair, severity)
+        both = self.grid.over(pair, common, severity)
         first, second = (both.cell(name, "clean", severity, METRICS["SR"]) for name in pair)
         change = first - second
         mask = ~np.isnan(change)

@@ -58,40 +58,13 @@ class Walk:
     measures: Mapping[str, Any]
 
 
-def draw_trajectories(
-    agents: Mapping[str, Agent],
-    world: World,
-    episode: Episode,
-    corruption: Corruption,
-    out: Path | str,
-    seed: int = 0,
-    guards: Mapping[str, Guards] | None = None,
-) -> Path:
-    """Run an episode with each agent, and write a PNG of the trajectories.
-
-    The PNG also shows the start panorama, the floor plan and the reference path. The first agent
-    runs the episode with and without corruption; the other agents run it only with corruption. If
-    ``seed`` is the seed of an evaluation, the trajectories are those behind the rows of that
-    evaluation. If the world has a method ``draw(axes)``, this method draws the floor plan.
-
-    Args:
-        agents: agents by their names in the legend.
-        world: the world.
-        episode: the episode.
-        corruption: the corruption.
-        out: the PNG to write; parent folders are created.
-        seed: corruption seed.
-        guards: guards by the name of their agent.
-    """
-    walks = list(run_agents(agents, world, episode, corruption, seed, guards))
-    figure = draw_episode(walks, world, episode, corruption, seed)
-    return write_figure(out, figure, dpi=DPI, facecolor="white")
-
-
 def draw_episode(
     walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> Figure:
-    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories."""
+    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories.
+
+    If the world has a method ``draw(axes)``, this method draws the floor plan.
+    """
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -193,7 +166,9 @@ def write_pictures(
         safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
-        paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
+        walks = list(run_agents(agents, world, episode, corruption, seed, guards))
+        figure = draw_episode(walks, world, episode, corruption, seed)
+        paths.append(write_figure(out, figure, dpi=DPI, facecolor="white"))
     return paths
 
 

@@ -120,9 +120,8 @@ def report(
     sizes = [sum(cell[2] for line in table["cells"] for cell in line) for table in tables]
     if packed.left_out:
         left_out = (
-            f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
-            f"holds at most {most:,} episodes. The numbers are correct, but these cells cannot be "
-            "opened. Name fewer rows to see them."
+            f"{counted(len(packed.left_out), 'cell')} cannot be opened, because this file holds at "
+            f"most {most:,} episodes. The numbers are correct. Name fewer rows to see them."
         )
         notes = [*notes, left_out]
     data = {
@@ -145,8 +144,8 @@ def report(
 
 def _too_large(size: str, most: str) -> str:
     return (
-        f"The page would hold {size}, more than {most}, which a browser cannot show. Name fewer "
-        "rows, or write the numbers with `mitigate table`. No file was written."
+        f"The page would hold {size}, more than {most}, which a browser cannot show, so no file "
+        "was written. Name fewer rows, or use `mitigate table`."
     )
 
 

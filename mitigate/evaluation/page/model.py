@@ -204,16 +204,20 @@ def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
     The differences are paired over common episodes and common seeds. With a common seed, both
     columns met corruptions with the same random keys.
     """
-    pairs: dict[str, Any] = {}
-    for j, second in enumerate(section.columns[:BASELINES]):
-        for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
-            common = section.grid.common((first, second), section.severity)
-            pairs[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
-    return pairs
+    return {
+        f"{i}-{j}": _pair(section, first, second, names)
+        for j, second in enumerate(section.columns[:BASELINES])
+        for i, first in enumerate(section.columns[j + 1 :], start=j + 1)
+    }
 
 
-def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict[str, Any]:
-    both, at = section.grid.paired((first, second), section.severity), section.severity
+def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict | None:
+    """Return the differences, or None if the columns have no common seed."""
+    pair, at = (first, second), section.severity
+    common = section.grid.common(pair, at)
+    if not common:
+        return None
+    both = section.grid.over(pair, common, at)
     changes = {
         metric: [both.cell(first, n, at, key) - both.cell(second, n, at, key) for n in names]
         for metric, key in METRICS.items()
