@@ -67,8 +67,8 @@ class Known:
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
         if version is not None and not (isinstance(version, str) and version):
             raise ValueError(
-                f"version must be a non-empty string, got {version!r:.80}, such as "
-                '"2026-11 weights". Change it whenever the agent\'s behaviour changes.'
+                f"version must be a non-empty string, got {version!r:.80}. Choose one such as "
+                '"2026-11 weights", and change it whenever the agent\'s behaviour changes.'
             )
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
