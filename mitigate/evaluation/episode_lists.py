@@ -130,8 +130,8 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
     supported = tasks if supported is None else supported
     if other := [task for task in tasks if task not in supported]:
         warnings.warn(
-            f"{name} can {_in_words(supported)}, not {_in_words(other)}, as {len(other)} of "
-            f"{counted(len(chosen), 'episode')} require. Choose a list such as split={split}.",
+            f"{name} can {_in_words(supported)}, not {_in_words(other)}, but {len(other)} of "
+            f"{counted(len(chosen), 'episode')} need that. Choose a list such as split={split}.",
             stacklevel=2,
         )
 
