@@ -120,8 +120,8 @@ def report(
     sizes = [sum(cell[2] for line in table["cells"] for cell in line) for table in tables]
     if packed.left_out:
         left_out = (
-            f"{counted(len(packed.left_out), 'cell')} cannot be opened, because this file holds at "
-            f"most {most:,} episodes. The numbers are correct. Name fewer rows to see them."
+            f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
+            f"holds at most {most:,}. The numbers are correct. Name fewer rows to see them."
         )
         notes = [*notes, left_out]
     data = {
