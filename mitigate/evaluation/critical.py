@@ -315,7 +315,7 @@ class Scores:
             mean = np.where(np.isinf(parts[0]).all(axis=0), np.inf, first)
             return Score(_estimate(mean), count, "lower" if above[0] else "")
         bounds = {(True, False): "lower", (False, True): "upper", (True, True): "unknown"}
-        return Score(_estimate(first - others[0]), count, bounds.get(above, ""))
+        return Score(_estimate(first - others[0]), count, bounds.get((above[0], above[1]), ""))
 
 
 def _scored(

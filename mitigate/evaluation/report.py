@@ -135,7 +135,8 @@ def _drawn(grid: Grid) -> str:
 
 
 def _table(section: Section) -> str:
-    columns, lines = section.columns, []
+    columns = section.columns
+    lines: list[list[str]] = []
     changes = _changes(section) if len(columns) > 1 else []
     against = f"against {markdown_of(section.reference)}"
     for metric in METRICS:

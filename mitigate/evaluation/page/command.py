@@ -155,9 +155,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     if not 1 <= arguments["walks"] <= MOST_WALKS:
         parser.error(f"--walks must be from 1 to {MOST_WALKS}, got {arguments['walks']}.")
     if not paths:
-        paths = [find(ROWS)]
-        if not paths[0].is_dir():
+        shipped = find(ROWS)
+        if not shipped.is_dir():
             raise FileNotFoundError(f"There is no folder {ROWS}. Name row files or run folders.")
+        paths = [shipped]
     print(written(run(paths, options=options, **arguments)))
     return 0
 
