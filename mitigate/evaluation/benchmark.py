@@ -142,14 +142,19 @@ def benchmark(
     if is_policy(agent):
         agent = as_policy(agent, first)
         name, version = name or agent.name, version or agent.version
-    agent, name = _agent(agent, name, config, seed, labels(safeguard, restore, adapt))
+    usual = type(agent).__name__
+    if isinstance(agent, (str, Path)):
+        usual = evaluation.name_of(str(agent))
+        agent = evaluation.load(config.agent, str(agent), seed)
+    evaluation.check_walks(agent)
+    name = "+".join([name or usual, *labels(safeguard, restore, adapt)])
     check_texts(name=name, **texts)
     check_fits(agent, first.sensors, type(first).__name__)
-    split, chosen = _episodes(first, config, split, episodes, listed, world is not None)
+    own = world is not None and _is_own(first, config)
+    split, chosen = _episodes(first, config, split, episodes, listed, own)
     file = Path(out or OUT / f"{file_name(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors, adapt=adapt)
-    training = None if world is not None and _is_own(first, config) else config.env.training
-    guards.calibrate(agent, first, training_episodes(first, training))
+    guards.calibrate(agent, first, training_episodes(first, None if own else config.env.training))
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     measure = partial(evaluate, world=make_world, episodes=chosen, out=file, split=split, seed=seed)
     with known:
@@ -159,7 +164,12 @@ def benchmark(
             under = partial(measure, agent, name=name, known=known, workers=workers, guards=guards)
             rows = under(conditions=met) if losses is None else search(under, met, losses)
             if first.rule == RETURN:
-                random = _random_policy(first, seed)
+                if first.action_space is None:
+                    raise ValueError(
+                        f"{type(first).__name__} must have the attribute action_space "
+                        "(mitigate.core.spaces): a return is compared with that of random actions."
+                    )
+                random = RandomPolicy(first.action_space, seed)
                 return compare([*rows, *measure(random, conditions=[CLEAN], name=RANDOM)])
     if losses is not None:
         evaluation.write_critical(rows, losses, file.parent)
@@ -188,10 +198,9 @@ def _conditions(
     for option in without_config_folder(options)[1]:
         if not OPTION.match(option):
             raise ValueError(
-                f"{option} has no effect here: options= sets only the agent and its world "
-                "(agent=..., agent.size=..., env=..., env.views=1, --config-dir=...). All other "
-                'settings are arguments of benchmark, such as severity=0.3, suite="quick" or '
-                'restore="checkpoints/restorer".'
+                f"{option} has no effect here: options= sets only the agent and its world (agent=, "
+                "agent.size=, env=, env.views=, --config-dir=). Other settings are arguments, "
+                'such as benchmark(agent, severity=0.3, suite="quick").'
             )
     if isinstance(agent, (str, Path)):
         options = [*options, *agent_option(options, str(agent))]
@@ -205,31 +214,6 @@ def _conditions(
             "and a severity above 0."
         )
     return config, met
-
-
-def _agent(
-    agent: Any, name: str | None, config: EvaluateConfig, seed: int, guards: Sequence[str]
-) -> tuple[Any, str]:
-    """Return the agent, which is loaded if it is a path, and its heading, to which ``guards`` are
-    added.
-    """
-    usual = type(agent).__name__
-    if isinstance(agent, (str, Path)):
-        usual = evaluation.name_of(str(agent))
-        agent = evaluation.load(config.agent, str(agent), seed)
-    evaluation.check_walks(agent)
-    return agent, "+".join([name or usual, *guards])
-
-
-def _random_policy(world: World, seed: int) -> RandomPolicy:
-    """Return a policy with random actions; the retention of returns needs its return."""
-    if world.action_space is None:
-        raise ValueError(
-            f"{type(world).__name__} must have the attribute action_space (mitigate.core.spaces): "
-            "the retention of a return is measured against random actions, which are sampled from "
-            "this space."
-        )
-    return RandomPolicy(world.action_space, seed)
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
@@ -270,10 +254,9 @@ def checked_world(
     if not hasattr(world, "sensors"):  # the user may have passed any object by mistake
         kind = type(world).__name__
         raise ValueError(
-            f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). For a "
-            f"gymnasium environment give world=lambda: GymWorld({kind}(...), success=...) "
-            "(mitigate.worlds.gym); for a torchrl environment use EnvWorld "
-            "(mitigate.worlds.tensordict)."
+            f"A {kind} is not a world: it has no sensors (docs/bring-your-own.md). Give "
+            f"world=lambda: GymWorld({kind}(...), success=...) for a gymnasium environment "
+            "(mitigate.worlds.gym), or EnvWorld for a torchrl one (mitigate.worlds.tensordict)."
         )
     evaluation.check_sensors(met, world.sensors, type(world).__name__)
     return world, made_by
@@ -297,40 +280,35 @@ def _episodes(
     split: str | None,
     count: int | EllipsisType | None,
     listed: Sequence[Episode] | Path | str | None,
-    custom: bool,
+    own: bool,
 ) -> tuple[str, list[Episode]]:
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: There are no episodes, or the user's world (``custom``) has a different class
-            than the world in the config but no episode list.
+        ValueError: There are no episodes, or the world has a different class than the world in the
+            config (``own``) but no episode list.
     """
-    other_class = custom and _is_own(world, config)
-    split = split or (provenance.name_of(world) if other_class else config.split)
-    if listed is None and other_class:
+    split = split or (provenance.name_of(world) if own else config.split)
+    if listed is None and own:
         raise ValueError(
             f"The episodes of {config.env.name} cannot run in {provenance.name_of(world)}. Pass "
-            'episodes of your world: listed="mine.json", or a list of Episode '
-            "(mitigate.worlds.episodes, docs/bring-your-own.md). For a gymnasium or torchrl "
-            "environment, episodes are seeds: listed=seeded_episodes(range(20)) "
-            "(mitigate.worlds.seeded)."
+            'episodes of your world: listed="mine.json", or a list of Episode (docs/bring-your-own'
+            ".md). Episodes of gymnasium and torchrl are seeds: listed=seeded_episodes(range(20))."
         )
     if listed is None:
         return split, evaluation.episodes(config.env, split, EPISODES if count is ... else count)
-    check_count(None if count is ... else count)
+    count = None if count is ... else count
+    check_count(count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
-        raise ValueError(
-            f"listed must be a list of episodes or an episode file, got {listed!r:.80}."
-        )
+        raise ValueError(f"listed must list episodes or name an episode file, got {listed!r:.80}.")
     entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
-    for entry in entries:
-        if not isinstance(entry, Episode):
-            raise ValueError(
-                f"listed must contain only Episode objects, got {entry!r:.80}. For seeds, pass "
-                "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
-            )
+    if others := [entry for entry in entries if not isinstance(entry, Episode)]:
+        raise ValueError(
+            f"listed must contain only Episode objects, got {others[0]!r:.80}. For seeds, pass "
+            "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
+        )
     check_episodes("listed", entries)
-    return split, spread(entries, None if count is ... else count)
+    return split, spread(entries, count)
 
 
 def seconds_per_episode(agent: Any, world: World, episodes: Sequence[Episode]) -> float:

@@ -103,10 +103,10 @@ class Comparison:
 
     def line(self, title: str) -> Line:
         """Return the line with a title; raise KeyError for an unknown title."""
-        for line in self.lines:
-            if line.title == title:
-                return line
-        raise KeyError(f"{title!r} must be one of {', '.join(line.title for line in self.lines)}.")
+        known = {line.title: line for line in self.lines}
+        if title not in known:
+            raise KeyError(f"{title!r} must be one of {', '.join(known)}.")
+        return known[title]
 
     def __str__(self) -> str:
         first, *others = self.agents
@@ -150,28 +150,27 @@ def compare(rows: Iterable[Row]) -> Comparison:
     names = [name for name in dict.fromkeys(name for _, name in cells) if name != CLEAN]
     scores = _Scores(cells, episodes, agents)
     lines: list[Line] = []
-    if rows[0]["rule"] != RETURN:
-        if (RANDOM, CLEAN) in cells:
+    rule, has_random = rows[0]["rule"], (RANDOM, CLEAN) in cells
+    more = "" if rule == RETURN else f" Success: {markdown_of(rule)}."
+    if rule != RETURN:
+        if has_random:
             scores.check_skill("success", "succeeds in a share of")
         lines += scores.lines("success", "SR (%)", names, 100.0)
         lines += scores.prs(names)
     if all(RETURN in row for row in rows) and any(row[RETURN] for row in rows):
         lines += scores.lines(RETURN, "Return", names, 1.0)
-    if (RANDOM, CLEAN) in cells and rows[0]["rule"] == RETURN:
+    if has_random and rule == RETURN:
         lines += scores.retention(names)
-    severities = sorted({row["severity"] for row in rows if row["corruption"] != CLEAN})
-    rule = "" if rows[0]["rule"] == RETURN else f" Success: {markdown_of(rows[0]['rule'])}."
-    random = ""
-    if (RANDOM, CLEAN) in cells and rows[0]["rule"] == RETURN:
-        random = (
+        more = (
             f" Random actions return {mean(scores.values(RANDOM, CLEAN, RETURN)).text('.1f')}. "
             "Retention = (R - R_random) / (R_clean - R_random), with R_clean of the first column."
         )
+    severities = sorted({row["severity"] for row in rows if row["corruption"] != CLEAN})
     seeds = sorted({row["seed"] for row in rows})
     listed_seeds = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
     about = (
         f"{counted(len(episodes), 'episode')}, {listed_seeds}, severity "
-        f"{', '.join(f'{s:g}' for s in severities)}.{rule}{random} Brackets: {100 * LEVEL:.0f} % "
+        f"{', '.join(f'{s:g}' for s in severities)}.{more} Brackets: {100 * LEVEL:.0f} % "
         f"paired bootstrap over episodes, {RESAMPLES:,} resamples; where all or none succeed, "
         "Wilson's; [–]: no resample differs. Changes in bold exclude zero."
     )
@@ -229,9 +228,8 @@ class _Scores:
         """
         random = self.values(RANDOM, CLEAN, RETURN)
         self.check_skill(RETURN, "returns")
-        groups = (
-            {f"**Retention, mean of {len(names)} corruptions**": names} if len(names) > 1 else {}
-        )
+        groups = {f"**Retention, mean of {len(names)} corruptions**": names}
+        groups = groups if len(names) > 1 else {}
         groups |= {f"Retention: {title(name)}": [name] for name in names}
         return [self._ratio(heading, RETURN, group, random) for heading, group in groups.items()]
 
@@ -241,9 +239,8 @@ class _Scores:
         value, random = (self.values(name, CLEAN, measure).mean() for name in (agent, RANDOM))
         if value <= random:
             raise ValueError(
-                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than "
-                f"random actions ({random:.2f}), so there is no performance to preserve. Train the "
-                "policy further, or check that it gets the observations that it was trained on."
+                f"The policy {agent!r} {verb} {value:.2f} on clean episodes, no better than random "
+                f"actions ({random:.2f}). Train it further, or check the observations that it gets."
             )
 
     def prs(self, names: Sequence[str]) -> list[Line]:
@@ -252,10 +249,9 @@ class _Scores:
         """
         if not all(self.values(agent, CLEAN, "success").any() for agent in self.agents):
             return []
-        groups: dict[str, list[str]] = {}
+        groups: dict[str, list[str]] = defaultdict(list)
         for name in names:
-            kind = modality(name)
-            groups.setdefault(f"PRS-SR ({LABELS.get(kind, kind)})", []).append(name)
+            groups[f"PRS-SR ({LABELS.get(modality(name), modality(name))})"].append(name)
         return [self._ratio(heading, "success", group) for heading, group in groups.items()]
 
     def _ratio(
@@ -277,7 +273,7 @@ class _Scores:
             with np.errstate(divide="ignore", invalid="ignore"):
                 values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
         first, *others = self.agents
-        (value, samples) = values[first]
+        value, samples = values[first]
         with np.errstate(invalid="ignore"):
             changes = {
                 n: with_interval(values[n][0] - value, values[n][1] - samples) for n in others

@@ -103,13 +103,12 @@ def check_sensors(met: Iterable[Corruption], sensors: Iterable[str], world: str)
         if not all(usable_parts.intersection(record(p.name).modalities) for p in corruption.parts)
     ]
     if missing:
-        usable = [name for name in (RGB, DEPTH) if name in available]
         solution = (
-            f"Choose another suite, such as suite={usable[0]}."
-            if usable
-            else f"Only frames named {RGB} and {DEPTH} are corrupted: use these names for the "
-            "world's sensors (entries= of GymWorld)."
+            f"Only frames named {RGB} and {DEPTH} are corrupted: use these names for the world's "
+            "sensors (entries= of GymWorld)."
         )
+        if usable := [name for name in (RGB, DEPTH) if name in available]:
+            solution = f"Choose another suite, such as suite={usable[0]}."
         raise ValueError(
             f"The suite contains {', '.join(missing)}, but the world {world} has only the sensors "
             f"{', '.join(available)}. {solution}"

@@ -182,7 +182,8 @@ def changed(overrides: Sequence[str]) -> list[str]:
     """Return the options that change the agent or its input, as text for a column name."""
     stripped = [option.lstrip("+") for option in overrides]
     relevant = [option for option in stripped if option.startswith(("agent.", "env.size="))]
-    return [_plain(option.removeprefix("agent.")).strip("-") for option in relevant]
+    # dashes replace characters that a file name should not contain
+    return [re.sub(r"[^A-Za-z0-9.@-]+", "-", x.removeprefix("agent.")).strip("-") for x in relevant]
 
 
 def column_of(name: str, seed: int, folder: Path) -> str:
@@ -203,15 +204,5 @@ def default_folder(config: EvaluateConfig, name: str) -> str:
     """
     custom = not (CONF / "env" / f"{config.env.name}.yaml").is_file()
     split = f"{config.env.name}-{config.split}" if custom else config.split
-    return f"{config.runs}/evaluate/{name}-{split}-s{_severities(config)}"
-
-
-def _severities(config: EvaluateConfig) -> str:
-    """Return the severities as text for a folder name."""
     depth = "" if config.severity_depth is None else f"-d{config.severity_depth:g}"
-    return f"{config.severity:g}{depth}"
-
-
-def _plain(text: str) -> str:
-    """Replace characters that a file name should not contain by dashes."""
-    return re.sub(r"[^A-Za-z0-9.@-]+", "-", text)
+    return f"{config.runs}/evaluate/{name}-{split}-s{config.severity:g}{depth}"

@@ -13,11 +13,11 @@ from mitigate.core.build import maker
 from mitigate.core.locks import FolderLock
 from mitigate.core.observation import FORWARD, LEFT, RIGHT, STOP
 from mitigate.core.seeding import generator
-from mitigate.corruptions import CLEAN, SUITE_VERSION
+from mitigate.corruptions import CLEAN
 from mitigate.evaluation import provenance, rows
 from mitigate.evaluation.config import EvaluateConfig
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluator import EpisodeTask, Job, jobs_of, run_missing
+from mitigate.evaluation.evaluator import EpisodeTask, Job, jobs_of, label_of, run_missing
 from mitigate.worlds.world import World, expert_of
 
 # probability that a random action is STOP; episodes then have about 100 actions
@@ -79,15 +79,7 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
         notes = provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
         lock.expect(out / rows.ROWS, *notes)
         for name, agent in {"oracle": OracleAgent(world), "random": RandomAgent()}.items():
-            label = {
-                "agent": name,
-                "name": name,
-                "split": split,
-                "seed": 0,
-                "suite": SUITE_VERSION,
-                "rule": world.rule,
-            }
-            jobs = jobs_of(chosen, [CLEAN], label)
+            jobs = jobs_of(chosen, [CLEAN], label_of(name, name, split, 0, world))
             task = ControlTask(agent, make_world, world=world)
             results += run_missing(task, world, jobs, out / rows.ROWS, name)
     return results

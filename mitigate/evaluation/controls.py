@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import re
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 from mitigate.core import conf
@@ -29,12 +28,18 @@ OPTIONS = ("env", "split", "episodes", "out")
 @command("controls")
 def main() -> int:
     """Run from the command line; return the exit status (2 for invalid input)."""
-    if {"-h", "--help"} & {*sys.argv[1:]}:
+    options = sys.argv[1:]
+    if {"-h", "--help"} & {*options}:
         print(__doc__)
         return 0
-    options = sys.argv[1:]
     check_dashes(options)
-    _check(without_config_folder(options)[1])
+    for option in without_config_folder(options)[1]:
+        name = re.split(r"[.=]", option.lstrip("+~"))[0]
+        if not option.startswith("-") and name not in OPTIONS:
+            raise ValueError(
+                f"{option} has no effect: the oracle and the random agent run without corruption "
+                f"and with seed 0. Options are {', '.join(OPTIONS)}."
+            )
     config = read(conf.composed("evaluate", options))
     out = Path(config.out or OUT)
     from mitigate.evaluation.control_agents import run  # torch takes seconds to import
@@ -49,17 +54,6 @@ def main() -> int:
         )
     print(f"rows in {out}")
     return 0
-
-
-def _check(options: Sequence[str]) -> None:
-    """Raise ValueError for an option of ``mitigate evaluate`` that has no effect here."""
-    for option in options:
-        name = re.split(r"[.=]", option.lstrip("+~"))[0]
-        if not option.startswith("-") and name not in OPTIONS:
-            raise ValueError(
-                f"{option} has no effect: the oracle and the random agent run without corruption "
-                f"and with seed 0. Options are {', '.join(OPTIONS)}."
-            )
 
 
 if __name__ == "__main__":

@@ -11,6 +11,7 @@ here. The area is the mean retention over severities from 0 to 1. Definitions:
 from __future__ import annotations
 
 import math
+from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -172,10 +173,9 @@ def search(
     new = [*conditions]
     while new:
         rows += measure(conditions=new)
-        values: dict[str, dict[float, list[float]]] = {}
+        values: dict[str, dict[float, list[float]]] = defaultdict(lambda: defaultdict(list))
         for row in rows:
-            by_severity = values.setdefault(row["corruption"], {})
-            by_severity.setdefault(float(row["severity"]), []).append(row["success"])
+            values[row["corruption"]][float(row["severity"])].append(row["success"])
         clean = values.pop("clean")
         new = [
             Corruption(name, severity)
@@ -308,14 +308,14 @@ class Scores:
         common = ~np.isnan(np.stack(every)).any(axis=0)
         parts = [_scored(lists, common, self.grid.units[common], loss) for lists in curves]
         count = int(common.sum())
-        above = [bool(np.isinf(part[:, 0]).any()) for part in parts]
-        if len(parts) == 1:
-            every_above = np.isinf(parts[0]).all(axis=0)
-            mean = np.where(every_above, np.inf, _restricted(parts[0], loss).mean(axis=0))
+        above = tuple(bool(np.isinf(part[:, 0]).any()) for part in parts)
+        # critical severities above 1 count as 1; areas are not limited
+        first, *others = (np.minimum(x, 1 if loss else np.inf).mean(axis=0) for x in parts)
+        if not others:
+            mean = np.where(np.isinf(parts[0]).all(axis=0), np.inf, first)
             return Score(_estimate(mean), count, "lower" if above[0] else "")
-        first, second = (_restricted(part, loss).mean(axis=0) for part in parts)
         bounds = {(True, False): "lower", (False, True): "upper", (True, True): "unknown"}
-        return Score(_estimate(first - second), count, bounds.get((above[0], above[1]), ""))
+        return Score(_estimate(first - others[0]), count, bounds.get((above[0], above[1]), ""))
 
 
 def _scored(
@@ -335,11 +335,6 @@ def _scored(
             for curve, part in zip(curves, parts, strict=True)
         ]
     )
-
-
-def _restricted(values: np.ndarray, loss: float | None) -> np.ndarray:
-    """Return critical severities clipped to at most 1; return areas unchanged."""
-    return values if loss is None else np.minimum(values, 1)
 
 
 def _estimate(values: np.ndarray) -> Estimate:

@@ -27,6 +27,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.motion import with_motion
 from mitigate.worlds.world import Corrupted, World
 
+Run = tuple[Episode, Corruption, int]  # the episode, the corruption and the corruption seed
 MOST_STEPS = 100_000  # maximum steps of an episode (heuristic: 200 times VLN-CE's limit of 500)
 
 
@@ -46,19 +47,17 @@ def run_episode(
         ValueError: A step failed, an action is not an integer, or the agent or the world raised
             SystemExit. The message names the episode, the condition and the step.
     """
-    with _no_exit(_name(episode, corruption)):
-        rollout = _Rollout(world, episode, corruption, seed, guards)
-        with instructed(agent, episode, corruption, seed, guards):
-            try:
-                while not rollout.done:
-                    rollout.step(action_of(agent.act(rollout.observation), agent, rollout.space))
-            except ValueError as error:
-                raise rollout.failed(error) from error
+    run = episode, corruption, seed
+    with _no_exit(_name(run)):
+        rollout = _Rollout(world, run, guards)
+        with instructed(agent, *run, guards), rollout.errors_named():
+            while not rollout.done:
+                rollout.step(agent.act(rollout.observation), agent)
         return {**rollout.measures(), **as_agent(agent).episode_figures(None)}
 
 
-def _name(episode: Episode, corruption: Corruption) -> str:
-    return f"Episode {episode.episode_id}, {corruption.name}"
+def _name(run: Run) -> str:
+    return f"Episode {run[0].episode_id}, {run[1].name}"
 
 
 @contextmanager
@@ -70,8 +69,7 @@ def _no_exit(name: str) -> Iterator[None]:
         place = own_place(error)
         raise ValueError(
             f"{name}: the agent or the world raised SystemExit({error.code!r})"
-            f"{f' in {place}' if place else ''} before the evaluation was finished. Raise another "
-            "error, or end the episode."
+            f"{f' in {place}' if place else ''}. Raise another error, or end the episode."
         ) from error
 
 
@@ -101,25 +99,25 @@ def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
 def run_side_by_side(
     agent: Agent,
     worlds: Sequence[World],
-    jobs: Sequence[tuple[Episode, Corruption, int]],
+    runs: Sequence[Run],
     guards: Guards = NO_GUARDS,
 ) -> Iterator[dict[str, Any]]:
-    """Run each job (episode, corruption, seed), and yield the measures in order.
+    """Run the episodes, and yield their measures in order.
 
     The number of episodes that run at once equals the number of worlds. The measures equal
     the measures of :func:`run_episode`. ``guards`` must not contain guards that change the agent.
     """
-    waiting, free = deque(enumerate(jobs)), list(worlds)
+    waiting, free = deque(enumerate(runs)), list(worlds)
     running: dict[int, tuple[_Rollout, World, Any]] = {}
     measured: dict[int, dict[str, Any]] = {}
-    for number in range(len(jobs)):
+    for number in range(len(runs)):
         while number not in measured:
             while waiting and free:
-                started, job = waiting.popleft()
+                started, run = waiting.popleft()
                 world = free.pop()
-                with _no_exit(_name(*job[:2])):
-                    memory = agent.begin(guards.begin(start_of(agent, *job)))
-                    running[started] = _Rollout(world, *job, guards), world, memory
+                with _no_exit(_name(run)):
+                    memory = agent.begin(guards.begin(start_of(agent, *run)))
+                    running[started] = _Rollout(world, run, guards), world, memory
             ended = [key for key, (rollout, _, _) in running.items() if rollout.done]
             for key in ended:
                 rollout, world, memory = running.pop(key)
@@ -132,26 +130,17 @@ def run_side_by_side(
                 with _no_exit(" and ".join(rollout.name for rollout in rollouts)):
                     actions = agent.act_all([r.observation for r in rollouts], memories)
                 for rollout, action in zip(rollouts, actions, strict=True):
-                    with _no_exit(rollout.name):
-                        try:
-                            rollout.step(action_of(action, agent, rollout.space))
-                        except ValueError as error:
-                            raise rollout.failed(error) from error
+                    with _no_exit(rollout.name), rollout.errors_named():
+                        rollout.step(action, agent)
         yield measured.pop(number)
 
 
 class _Rollout:
     """A running episode; ``observation`` is the agent's current observation."""
 
-    def __init__(
-        self,
-        world: World,
-        episode: Episode,
-        corruption: Corruption,
-        seed: int,
-        guards: Guards,
-    ) -> None:
-        self.name = _name(episode, corruption)
+    def __init__(self, world: World, run: Run, guards: Guards) -> None:
+        episode, corruption, seed = run
+        self.name = _name(run)
         self.steps = 0
         self.corrupted = Corrupted(with_motion(world, corruption, seed), corruption, seed)
         space = self.corrupted.action_space
@@ -163,20 +152,25 @@ class _Rollout:
     def done(self) -> bool:
         return self.corrupted.done
 
-    def step(self, action: Any) -> None:
-        """Take a step. Raises ValueError after :data:`MOST_STEPS` steps."""
+    def step(self, answer: Any, agent: Agent) -> None:
+        """Take the step that ``agent`` chose. Raises ValueError after :data:`MOST_STEPS` steps."""
+        action = action_of(answer, agent, self.space)
         if self.steps >= MOST_STEPS:
             raise ValueError(
                 f"the world has not ended the episode after {MOST_STEPS:,} steps. Let its task end "
-                "it (gymnasium: max_episode_steps=), or set limit=, which ends long episodes and "
-                "reports how many it ended."
+                "it (gymnasium: max_episode_steps=), or set limit=."
             )
         self.observation = self.guarded.step(action)
         self.steps += 1
 
-    def failed(self, error: ValueError) -> ValueError:
-        """Return ``error`` with the episode, the condition and the step named in its message."""
-        return ValueError(f"{self.name}, step {self.steps + 1}: {error_message(error)}")
+    @contextmanager
+    def errors_named(self) -> Iterator[None]:
+        """Add the episode, the condition and the step to the message of a ValueError."""
+        try:
+            yield
+        except ValueError as error:
+            text = f"{self.name}, step {self.steps + 1}: {error_message(error)}"
+            raise ValueError(text) from error
 
     def measures(self) -> dict[str, Any]:
         """Return the measures as plain numbers, in the order of ``MEASURES``."""

@@ -68,13 +68,11 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
             return seeded_episodes([FIRST_TRAINING_SEED + number])[0]
         if training is None:
             raise ValueError(
-                "adapt=recentre measures clean features on training episodes, but the training "
-                f"episodes of {type(world).__name__} are unknown. Measure the features on your own "
-                "episodes: guard = Recentre(); guard.calibrate(agent, world, lambda number: "
-                "episodes[number]) (mitigate.guards.adaptation.recentre). Then pass adapt=guard."
+                f"adapt=recentre needs training episodes, but those of {type(world).__name__} are "
+                "unknown. Give it yours: guard = Recentre() (mitigate.guards.adaptation.recentre), "
+                "guard.calibrate(agent, world, lambda number: episodes[number]), adapt=guard."
             )
-        source = build.maker(training)()
-        return source.draw(generator(0, "calibration", number), (0, 1))
+        return build.maker(training)().draw(generator(0, "calibration", number), (0, 1))
 
     return draw
 
@@ -127,14 +125,13 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
     """
     from mitigate.agents.agent import as_agent
 
-    supported = as_agent(agent).tasks
     tasks = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
-    other = [] if supported is None else [task for task in tasks if task not in supported]
-    if supported is not None and other:
+    supported = as_agent(agent).tasks
+    supported = tasks if supported is None else supported
+    if other := [task for task in tasks if task not in supported]:
         warnings.warn(
             f"{name} can {_in_words(supported)}, not {_in_words(other)}, but {len(other)} of "
-            f"{counted(len(chosen), 'episode')} require that, so success there is chance. Choose a "
-            f"list with tasks of the agent, such as split={split}.",
+            f"{counted(len(chosen), 'episode')} need that. Choose a list such as split={split}.",
             stacklevel=2,
         )
 

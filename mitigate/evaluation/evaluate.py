@@ -45,11 +45,6 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     """
     config = options.read(cfg)
     options.check(config, overrides)
-    return evaluate_agent(config, overrides)
-
-
-def evaluate_agent(config: EvaluateConfig, overrides: Sequence[str] = ()) -> Path:
-    """Evaluate as :func:`run` does, but with typed options that were already checked."""
     env = config.env
     where = launcher.chosen(config.launcher)
     chosen = episodes(env, config.split, config.episodes)
@@ -153,9 +148,9 @@ def load(
         return agent
     if weights is None and not as_agent(agent).brings_weights:
         raise ValueError(
-            "checkpoint is not set, and no weights are shipped for this agent. Name a run's agent "
+            "checkpoint is not set, and this agent has no shipped weights. Name a run's agent "
             "folder (checkpoint=runs/.../agent) or a .safetensors file of its weights, or choose "
-            "an agent with shipped weights (agent=recurrent; docs/agents.md lists them)."
+            "an agent with shipped weights (docs/agents.md)."
         )
     return agent.eval()
 
@@ -179,12 +174,12 @@ def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | N
 
     all_rows = rows.gather(files)
     paths = report.write(all_rows, out)
-    others = 0 if selected is None else len(all_rows) - len(selected)
-    if selected is None or others <= 0:
+    if selected is None or len(selected) >= len(all_rows):
         print(plain_text(paths[0].read_text(encoding="utf-8")))
     else:
+        others = counted(len(all_rows) - len(selected), "other row")
         print(plain_text(report.markdown(sections(selected))))
-        print(f"{out} holds {counted(others, 'other row')}, too; {paths[0]} includes them.")
+        print(f"{out} holds {others}, too; {paths[0]} includes them.")
     print("\n".join(f"wrote {path}" for path in paths), flush=True)
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 import multiprocessing
 import time
 import warnings
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
@@ -37,7 +37,7 @@ from mitigate.corruptions import SUITE_VERSION, Corruption
 from mitigate.corruptions.language.text import UNMARKED, is_english, passed_through
 from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
-from mitigate.evaluation.episode import run_episode, run_side_by_side, start_of
+from mitigate.evaluation.episode import Run, run_episode, run_side_by_side, start_of
 from mitigate.evaluation.provenance import Known, check_classes
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode
@@ -66,7 +66,7 @@ class EpisodeTask:
     guards: Guards = NO_GUARDS
     world: World | None = None
     classes: str = ""
-    streams: dict[tuple[str, float], list[Job]] = field(default_factory=dict)
+    streams: dict[Corruption, list[Job]] = field(default_factory=dict)
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
     def __getstate__(self) -> dict[str, Any]:
@@ -84,7 +84,8 @@ class EpisodeTask:
         self.world = self.world or self.make_world()
         if self.classes and multiprocessing.parent_process() is not None:
             check_classes(self.agent, self.world, self.classes)
-        device = next((p.device for p in _parameters(self.agent)), torch.device("cpu"))
+        parameters = (p for net in networks(self.agent).values() for p in net.parameters())
+        device = next((p.device for p in parameters), torch.device("cpu"))
         try:
             with computing("fp32", device), in_eval_mode(self.agent):
                 yield
@@ -102,7 +103,7 @@ class EpisodeTask:
         repeated: Sequence[Job] = ()
         if self.guards.continual:
             self.guards.restart()
-            stream = self.streams[_condition(jobs[0])]
+            stream = self.streams[jobs[0][1]]
             unfinished = {rows.identity(label) for _, _, label in jobs}
             repeated = [job for job in stream if rows.identity(job[2]) not in unfinished]
             jobs = stream
@@ -113,9 +114,7 @@ class EpisodeTask:
                 if job not in repeated:
                     yield {**job[2], **measures}
 
-    def _measures(
-        self, world: Any, runs: Sequence[tuple[Episode, Corruption, int]]
-    ) -> Iterator[dict[str, Any]]:
+    def _measures(self, world: Any, runs: Sequence[Run]) -> Iterator[rows.Row]:
         """Yield the measures of each (episode, corruption, seed), in order.
 
         Episodes run one after the other if a corruption changes the agent's prompt or a guard
@@ -125,10 +124,8 @@ class EpisodeTask:
         prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in runs)
         if count > 1 and not prompted and not self.guards.adapts:
             worlds = [world, *(world.beside() for _ in range(count - 1))]
-            yield from run_side_by_side(self.agent, worlds, runs, self.guards)
-            return
-        for run in runs:
-            yield run_episode(self.agent, world, *run, self.guards)
+            return run_side_by_side(self.agent, worlds, runs, self.guards)
+        return (run_episode(self.agent, world, *run, self.guards) for run in runs)
 
     def name(self, job: Job) -> str:
         """Return a text that names the episode and its condition."""
@@ -140,10 +137,6 @@ def _together(agent: Any, world: Any) -> int:
     # an inherited ``beside()`` may return worlds of another class, so it is not used
     defined = "beside" in vars(type(world))
     return as_agent(agent).together if defined else 1
-
-
-def _parameters(agent: Any) -> Iterator[torch.nn.Parameter]:
-    return (parameter for net in networks(agent).values() for parameter in net.parameters())
 
 
 def evaluate(
@@ -189,7 +182,6 @@ def evaluate(
             read completely.
         WorkersDied: Worker processes died more than once; ``out`` holds the finished rows.
     """
-    out = Path(out)
     conditions = _applicable(agent, conditions, name)
     if isinstance(agent, torch.nn.Module):
         check_finite(agent, f"The weights of {name}")
@@ -198,15 +190,9 @@ def evaluate(
     guards.check_agent(agent)
     if known is None:
         known = Known(agent, first, guards.fingerprint(), version).check(out, name)
-    label = {
-        "agent": known.hash,
-        "name": name,
-        "split": split,
-        "seed": seed,
-        "suite": SUITE_VERSION,
-        "rule": first.rule,
-        **({"weights": weights_sha(agent)} if isinstance(agent, torch.nn.Module) else {}),
-    }
+    label = label_of(known.hash, name, split, seed, first)
+    if isinstance(agent, torch.nn.Module):
+        label["weights"] = weights_sha(agent)
     task = EpisodeTask(agent, world, guards, classes=known.classes)
     jobs = jobs_of(episodes, conditions, label)
     with known:
@@ -259,6 +245,12 @@ def run_missing(
     return _in_order(out, identities)
 
 
+def label_of(agent: str, name: str, split: str, seed: int, world: World) -> rows.Row:
+    """Return the entries that all rows of an agent share; ``agent`` is its hash."""
+    ids = {"agent": agent, "name": name, "split": split, "seed": seed}
+    return {**ids, "suite": SUITE_VERSION, "rule": world.rule}
+
+
 def jobs_of(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
 ) -> list[Job]:
@@ -266,32 +258,21 @@ def jobs_of(
 
     Each job contains the entries of its row, except the measures.
     """
-    return [
-        (
-            episode,
-            condition,
-            {
-                **label,
-                "corruption": condition.name,
-                "severity": condition.severity,
-                **rows.of_episode(episode),
-                **version(condition.name),
-            },
-        )
-        for episode in episodes
-        for condition in conditions
-    ]
+
+    def row(episode: Episode, condition: Corruption) -> rows.Row:
+        met = {"corruption": condition.name, "severity": condition.severity}
+        return {**label, **met, **rows.of_episode(episode), **version(condition.name)}
+
+    return [(episode, met, row(episode, met)) for episode in episodes for met in conditions]
 
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
     """Return the conditions that apply to the agent, and warn about other conditions."""
-    if as_agent(agent).system_prompt:
-        return conditions
-    applicable = [one for one in conditions if "white_box" not in parts(one.name)]
+    prompted = as_agent(agent).system_prompt
+    applicable = [one for one in conditions if prompted or "white_box" not in parts(one.name)]
     if len(applicable) < len(conditions):
         warnings.warn(
-            f"white_box is not applicable to {name}: the agent has no system prompt to inject "
-            "into. No rows are written for it, and it is not part of the PRS.",
+            f"white_box is not applicable to {name}, which has no system prompt: it gets no rows.",
             stacklevel=3,
         )
     return applicable
@@ -309,15 +290,11 @@ def _warn_of_languages(jobs: list[Job]) -> None:
         warnings.warn(passed_through(Counter(map(str, languages.values()))), stacklevel=3)
 
 
-def _condition(job: Job) -> tuple[str, float]:
-    return job[1].name, job[1].severity
-
-
-def _by_condition(jobs: list[Job]) -> dict[tuple[str, float], list[Job]]:
+def _by_condition(jobs: list[Job]) -> dict[Corruption, list[Job]]:
     """Return the jobs of each condition, in the order of ``jobs``."""
-    streams: dict[tuple[str, float], list[Job]] = {}
+    streams: dict[Corruption, list[Job]] = defaultdict(list)
     for job in jobs:
-        streams.setdefault(_condition(job), []).append(job)
+        streams[job[1]].append(job)
     return streams
 
 
@@ -342,9 +319,8 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
                 pending.append(item[1])
                 progress.advance()
             if pending and time.monotonic() - last_write >= _PAUSE:
-                done = pending
                 # reset before the write, so that ``finally`` does not repeat a failed write
-                pending = []
+                done, pending = pending, []
                 last_write = time.monotonic()
                 rows.append(out, done)
     finally:
@@ -361,21 +337,18 @@ def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     Raises:
         FolderLostError: Rows are missing.
     """
-    if not identities:
-        return []
     order = {identity: number for number, identity in enumerate(identities)}
     stored = rows.read(out) if output.is_regular(out) else []
     missing = len(order.keys() - {rows.identity(row) for row in stored})
     if missing:
         raise FolderLostError(
             f"{out} holds {len(order) - missing} of the {counted(len(order), 'row')} that were "
-            "measured: another program removed or replaced the file during the evaluation. Run "
-            "the same command again: it measures what is missing."
+            "measured: another program removed or replaced the file. Run the same command again."
         )
-    places = [place for place, row in enumerate(stored) if rows.identity(row) in order]
-    ordered = sorted((stored[place] for place in places), key=lambda row: order[rows.identity(row)])
-    if ordered != [stored[place] for place in places]:
-        for place, row in zip(places, ordered, strict=True):
-            stored[place] = row
-        rows.write(out, stored)
+    ours = [row for row in stored if rows.identity(row) in order]
+    ordered = sorted(ours, key=lambda row: order[rows.identity(row)])
+    if ordered != ours:
+        following = iter(ordered)
+        merged = [next(following) if rows.identity(row) in order else row for row in stored]
+        rows.write(out, merged)
     return rows.unique(ordered)

@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import chain
+from itertools import chain, count
 
 import numpy as np
 
@@ -18,7 +18,6 @@ from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.record import FAMILIES
 from mitigate.corruptions.registry import (
     AND,
-    HALVES,
     UNSEEN,
     family,
     fault_names,
@@ -95,22 +94,6 @@ def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]
     return tuple(n for n in every if n not in UNSEEN or UNSEEN[n].half in halves)
 
 
-def halves(blocks: dict[str, tuple[str, ...]]) -> dict[str, dict[str, tuple[str, ...]]]:
-    """Return the validation and test parts of each block of unseen corruptions, by heading.
-
-    ``blocks`` contains the measured corruptions. A block is left out if its validation part or its
-    test part was not measured.
-    """
-    by_block = {
-        block: {
-            f"{block}, {half}": tuple(n for n in names if n in UNSEEN and UNSEEN[n].half == half)
-            for half in HALVES
-        }
-        for block, names in blocks.items()
-    }
-    return {block: parts for block, parts in by_block.items() if all(parts.values())}
-
-
 def label_columns(
     measured: Iterable[tuple[str, str, int]],
 ) -> dict[str, tuple[str, tuple[str, ...]]]:
@@ -126,22 +109,13 @@ def label_columns(
         seeds[name][agent].add(seed)
     columns = {}
     for name, agents in seeds.items():
-        disjoint = sum(len(s) for s in agents.values()) == len(set().union(*agents.values()))
-        if disjoint:
+        if sum(map(len, agents.values())) == len(set().union(*agents.values())):
             columns[name] = (name, tuple(agents))
-        else:
-            digits = _unique_digits(agents)
-            columns |= {f"{name} ({agent[:digits]})": (name, (agent,)) for agent in agents}
+            continue
+        # enough leading digits to tell all hashes apart
+        digits = next(n for n in count(6) if len({agent[:n] for agent in agents}) == len(agents))
+        columns |= {f"{name} ({agent[:digits]})": (name, (agent,)) for agent in agents}
     return columns
-
-
-def _unique_digits(agents: Iterable[str]) -> int:
-    """Return the number of leading digits (at least 6) that tells all hashes ``agents`` apart."""
-    agents = set(agents)
-    digits = 6
-    while len({agent[:digits] for agent in agents}) < len(agents):
-        digits += 1
-    return digits
 
 
 # a PRS includes a corruption only if at least this fraction of the clean episodes was also measured
@@ -250,27 +224,19 @@ class Grid:
         All these columns must have results for these seeds.
         """
         seeds = tuple(seeds)
+        runs = {label: [self.runs[label][seed] for seed in seeds] for label in labels}
         cells = {
             (label, name, severity, metric): values
-            for label in labels
-            for (name, metric), values in _pooled(
-                [self.runs[label][seed] for seed in seeds], severity
-            ).items()
+            for label, chosen in runs.items()
+            for (name, metric), values in _pooled(chosen, severity).items()
         }
         return replace(self, cells=cells)
 
-    def paired(self, labels: Iterable[str], severity: float) -> Grid:
-        """Return a grid for paired comparisons of the columns ``labels``.
-
-        If the columns have common seeds, the grid contains only these seeds. With common seeds, all
-        columns met corruptions with the same random keys.
-        """
-        labels = tuple(labels)
-        common = self.common(labels, severity)
-        return self.over(labels, common, severity) if common else self
-
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that all columns ``labels`` have at ``severity``."""
+        """Return the seeds that all columns ``labels`` have at ``severity``.
+
+        With the same seed, columns met corruptions with the same random keys.
+        """
         return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
 
     @cached_property
@@ -309,9 +275,11 @@ class Grid:
         }
         return {block: names for block, names in blocks.items() if names}
 
-    def measured(self, label: str, severity: float, metric: str = "success") -> np.ndarray:
-        """Return a mask of the episodes in the clean cell of a column at ``severity``."""
-        return ~np.isnan(self.cell(label, "clean", severity, metric))
+    def measured(
+        self, label: str, corruption: str, severity: float, metric: str = "success"
+    ) -> np.ndarray:
+        """Return a mask of the episodes that a cell contains."""
+        return ~np.isnan(self.cell(label, corruption, severity, metric))
 
     def retention(
         self, labels: Sequence[str], names: Iterable[str], severity: float, metric: str
@@ -323,11 +291,12 @@ class Grid:
         every column has it under all these corruptions. If no corruption or no episode remains,
         return None.
         """
-        known = np.all([self.measured(label, severity, metric) for label in labels], axis=0)
-        complete = {
-            name: known & ~np.isnan([self.cell(x, name, severity, metric) for x in labels]).any(0)
-            for name in names
-        }
+
+        def complete_at(name: str) -> np.ndarray:
+            return np.all([self.measured(x, name, severity, metric) for x in labels], axis=0)
+
+        known = complete_at("clean")
+        complete = {name: known & complete_at(name) for name in names}
         covered = tuple(n for n, mask in complete.items() if mask.sum() >= COVERAGE * known.sum())
         common = np.all([known, *(complete[name] for name in covered)], axis=0)
         if not covered or not common.any():
@@ -346,14 +315,12 @@ class Grid:
         """Return the cells of the table at ``severity`` that have missing episodes."""
         blocks = self.blocks_at(severity)
         conditions = ["clean", *(name for names in blocks.values() for name in names)]
-        gaps = []
-        for label in self.columns_at(severity):
-            for name in conditions:
-                have = int((~np.isnan(self.cell(label, name, severity, "success"))).sum())
-                if have < len(self.episodes):
-                    at = 0.0 if name == "clean" else severity
-                    gaps.append(Gap(label, name, at, have, len(self.episodes)))
-        return gaps
+        return [
+            Gap(label, name, 0.0 if name == "clean" else severity, have, len(self.episodes))
+            for label in self.columns_at(severity)
+            for name in conditions
+            if (have := int(self.measured(label, name, severity).sum())) < len(self.episodes)
+        ]
 
 
 def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:

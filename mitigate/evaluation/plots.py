@@ -52,7 +52,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
         f"{plain(grid.rule)}; suite {plain(grid.suite)}",
         fontsize=10,
     )
-    return _save(figure, path)
+    return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
 def severity_curves(grid: Grid, path: Path | str) -> Path:
@@ -85,7 +85,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     drawn = {line.get_label(): line for axis in axes for line in axis.get_lines()}
     handles = [drawn[x] for x in map(plain, grid.columns) if x in drawn]
     figure.legend(handles=handles, loc="outside lower center", ncols=across, fontsize=10)
-    return _save(figure, path)
+    return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
 def text_colour(value: float) -> str:
@@ -128,9 +128,10 @@ def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
     for curve in curves(grid, name):
         index = columns.index(curve.column)
         colour = LINES[index % len(LINES)]
+        value, low, high = 100 * np.array([[x.value, x.low, x.high] for x in curve.points]).T
         axis.plot(
             curve.severities,
-            [100 * estimate.value for estimate in curve.points],
+            value,
             color=colour,
             label=plain(curve.column),
             linestyle=DASHES[index % len(DASHES)],
@@ -138,15 +139,9 @@ def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
             marker="o",
             markersize=MARKER + rim * (len(columns) - 1 - index),
         )
-        low = [100 * estimate.low for estimate in curve.points]
-        high = [100 * estimate.high for estimate in curve.points]
         axis.fill_between(curve.severities, low, high, color=colour, alpha=0.15, linewidth=0)
 
 
 def plain(name: str) -> str:
     """Escape a name, so that matplotlib draws it as plain text and shows it in the legend."""
     return name.replace("$", r"\$").replace("_", " _", name.startswith("_"))
-
-
-def _save(figure: Figure, path: Path | str) -> Path:
-    return write_figure(path, figure, dpi=DPI, facecolor="white")

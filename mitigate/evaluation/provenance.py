@@ -67,9 +67,8 @@ class Known:
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
         if version is not None and not (isinstance(version, str) and version):
             raise ValueError(
-                f"version must be a non-empty string, got {version!r:.80}. Choose a text for the "
-                'agent\'s version, such as version="2026-11 weights", and change it whenever the '
-                "agent's behaviour changes."
+                f"version must be a non-empty string, got {version!r:.80}. Choose one such as "
+                '"2026-11 weights", and change it whenever the agent\'s behaviour changes.'
             )
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
@@ -93,8 +92,7 @@ class Known:
             _read_by[place] = _read_by[place][0], _names_read(*place)[0]
         if not self.without_settings:
             return
-        agent = self.agent
-        key = id(agent)
+        agent, key = self.agent, id(self.agent)
         try:
             same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
         # the class allows no weak references, so this reference keeps the agent alive
@@ -122,17 +120,16 @@ class Known:
         if known or not any(row["name"] == name for row in rows):
             return self
         counts = "attributes" if self.without_settings else "settings()"
-        print(
+        text = (
             f"{name}: the rows of this name in {file} are of another agent, with another class, "
-            f"code, weights, {counts}, hooks or version: all episodes run again.",
-            flush=True,
+            f"code, weights, {counts}, hooks or version: all episodes run again."
         )
         if self.without_settings:
-            print(
-                f"All attributes of a {kind} count, including those that change over time, such as "
-                "a clock. Give it settings() if only some of them should count.",
-                flush=True,
+            text += (
+                f"\nAll attributes of a {kind} count, including those that change over time, such "
+                "as a clock. Give it settings() if only some of them should count."
             )
+        print(text, flush=True)
         return self
 
 
@@ -178,7 +175,8 @@ def keep(
     described = {**_described(world), **made_by}
     sums = {episode.episode_id: _sum(episode) for episode in episodes}
     entry = known.get(split, {})
-    kind = _rule_and_sensors(world)
+    sensors = {name: asdict(one) for name, one in sorted(world.sensors.items())}
+    kind = json_hash([world.rule, sensors])  # the success rule and the sensors are part of rows
     worlds, sums_before = entry.get("worlds", {}), entry.get("sums", {})
     if unreadable := described.pop(UNREADABLE, ""):
         owner = "the classes of this world"
@@ -260,9 +258,8 @@ def _layers(world: World) -> Iterator[Any]:
     """Yield the world, the environment inside it, and the environments that it wraps."""
     layer: Any = world
     for _ in range(MOST_LAYERS):
-        if layer is None:
-            return
-        yield layer
+        if layer is not None:
+            yield layer
         layer = _member(layer, "env")
 
 
@@ -277,21 +274,11 @@ def name_of(world: World) -> str:
     return type(inner).__name__
 
 
-def _rule_and_sensors(world: World) -> str:
-    """Return the hash of a world's success rule and sensors, which are also part of rows."""
-    return json_hash(
-        [world.rule, {name: asdict(one) for name, one in sorted(world.sensors.items())}]
-    )
-
-
 def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> str:
     if key == CODE:
         return f"the code of {now[CLASS]} was changed"
     if key == READ:
-        return (
-            f"the class attributes of {now[CLASS]}, or the global variables and functions that its "
-            "code names, were changed"
-        )
+        return f"the class attributes of {now[CLASS]}, or what its code reads, were changed"
     was, is_ = (short(texts[key], 200) if key in texts else "not set" for texts in (before, now))
     return f"{key} was {was} and is {is_}"
 
@@ -317,14 +304,10 @@ def _spec(world: World) -> str:
     Worlds of the same class may differ only in these values.
     """
     spec = _member(_member(world, "env"), "spec")
-    entries: Mapping[str, Any] = {}
-    with suppress(TypeError):  # ``vars`` raises TypeError for None and for objects with slots
-        entries = vars(spec)
-    if entries.get("id") is None:
+    if _member(spec, "id") is None:
         return ""
-    kwargs = entries.get("kwargs", {})
-    arguments = json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))
-    return f"{entries['id']} {arguments}"
+    kwargs = _member(spec, "kwargs") or {}
+    return f"{spec.id} {json.dumps(kwargs, sort_keys=True, default=lambda x: str(type(x)))}"
 
 
 def _member(owner: Any, name: str) -> Any:
@@ -374,10 +357,9 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
     layers = tuple(type(layer) for layer in _layers(world))
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
-            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or the global "
-            "variables and functions that their code names, are different in a worker process, "
-            "which imports them again. Set them where they are defined and do not change them "
-            "later, or set workers=1."
+            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or what their "
+            "code reads, differ in a worker process. Set them only where they are defined, or set "
+            "workers=1."
         )
 
 

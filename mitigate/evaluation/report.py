@@ -40,8 +40,7 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
     """
     texts = []
     several_rules = len({section.grid.rule for section in parts}) > 1
-    for index, section in enumerate(parts):
-        names = pictures[index] if index < len(pictures) else ()
+    for section, names in zip(parts, pictures or [()] * len(parts), strict=True):
         images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
         if pictures and section.blocks and not names:
             images = NO_PICTURE
@@ -136,35 +135,38 @@ def _drawn(grid: Grid) -> str:
 
 
 def _table(section: Section) -> str:
-    lines = []
+    columns = section.columns
+    lines: list[list[str]] = []
+    changes = _changes(section) if len(columns) > 1 else []
+    against = f"against {markdown_of(section.reference)}"
     for metric in METRICS:
-        cells = [_interval(section.clean.get((c, metric)), metric) for c in section.columns]
+        cells = [_interval(section.clean.get((c, metric)), metric) for c in columns]
         lines.append([f"Clean {metric}", *cells])
     lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
-    if len(section.columns) > 1:
-        cells = [_moved(section, change.clean) for change in _changes(section)]
-        lines.append([f"Clean SR against {markdown_of(section.reference)}", *cells])
+    if changes:
+        cells = [_moved(section, change.clean) for change in changes]
+        lines.append([f"Clean SR {against}", *cells])
     if section.corrupted:
-        lines += _mean_sr(section)
+        count = sum(map(section.whole, section.blocks))
+        cells = [_mean_sr(section, section.corrupted.get(column)) for column in columns]
+        lines.append([f"Mean SR of {count} corruptions", *cells])
+        if changes:
+            cells = [_mean_sr(section, change.corrupted, moved=True) for change in changes]
+            lines.append([f"Mean SR {against}", *cells])
     for block, names in section.blocks.items():
         for metric in METRICS:
-            cells = [_prs(section, (c, block, metric)) for c in section.columns]
+            cells = [_prs(section, (c, block, metric)) for c in columns]
             lines.append([f"**PRS-{metric} ({block})**", *cells])
         lines += _by_seed(section, block, "PRS-SR", _rounded_prs)
-        if len(section.columns) > 1:
-            for metric in METRICS:
-                changes = [change.retained.get((block, metric)) for change in _changes(section)]
-                cells = [_change(section, change, block) for change in changes]
-                lines.append([f"PRS-{metric} against {markdown_of(section.reference)}", *cells])
+        for metric in METRICS if changes else ():
+            cells = [_change(section, x.retained.get((block, metric)), block) for x in changes]
+            lines.append([f"PRS-{metric} {against}", *cells])
         for half in section.halves.get(block, {}):
-            lines.append(
-                [f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in section.columns)]
-            )
-        for name in names:
-            lines.append([label(name), *(_rate(section, c, name) for c in section.columns)])
+            lines.append([f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in columns)])
+        lines += [[label(name), *(_rate(section, c, name) for c in columns)] for name in names]
         if _prompt_not_applicable(section, block):
-            lines.append([label(PROMPT_ONLY), *["n/a"] * len(section.columns)])
-    return markdown_table(["Corruption", *map(markdown_of, section.columns)], lines)
+            lines.append([label(PROMPT_ONLY), *["n/a"] * len(columns)])
+    return markdown_table(["Corruption", *map(markdown_of, columns)], lines)
 
 
 def _changes(section: Section) -> list[Difference]:
@@ -172,25 +174,12 @@ def _changes(section: Section) -> list[Difference]:
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
-def _mean_sr(section: Section) -> list[list[str]]:
-    """Return a table line with each column's mean SR over all corruptions.
-
-    If there are several columns, a second line contains their differences from the reference.
-    """
-
-    def cell(value: Retained | None, text: Callable[[Estimate], str]) -> str:
-        marks = "" if value is None else _escaped(section.marks(value, *section.blocks))
-        return "–" if value is None else text(value.estimate) + marks
-
-    count = sum(map(section.whole, section.blocks))
-    means = [section.corrupted.get(column) for column in section.columns]
-    means_text = [cell(mean, lambda estimate: _interval(estimate, "SR")) for mean in means]
-    lines = [[f"Mean SR of {count} corruptions", *means_text]]
-    if len(section.columns) > 1:
-        changes = [change.corrupted for change in _changes(section)]
-        moved = [cell(change, lambda estimate: _moved(section, estimate)) for change in changes]
-        lines.append([f"Mean SR against {markdown_of(section.reference)}", *moved])
-    return lines
+def _mean_sr(section: Section, value: Retained | None, moved: bool = False) -> str:
+    """Return the text of a mean SR over all corruptions, or of a difference (``moved``)."""
+    if value is None:
+        return "–"
+    text = _moved(section, value.estimate) if moved else _interval(value.estimate, "SR")
+    return text + _escaped(section.marks(value, *section.blocks))
 
 
 def _by_seed(
@@ -217,13 +206,9 @@ def _notes(section: Section) -> str:
     retained = section.retained.items()
     if any(len(r.corruptions) < section.whole(part) for (_, part, _), r in retained):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
-    absent = [
-        n
-        for b, names in section.blocks.items()
-        for n in expected_corruptions(b, names)
-        if n not in names
-    ]
-    if absent:
+    blocks = section.blocks.items()
+    wanted = [name for block, names in blocks for name in expected_corruptions(block, names)]
+    if absent := [name for name in wanted if name not in section.corruptions]:
         notes.append(f"Not measured: {', '.join(map(label, absent))}.")
     if any(_prompt_not_applicable(section, block) for block in section.blocks):
         notes.append(
@@ -366,11 +351,10 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
 
 def _header(section: Section, compared: bool) -> str:
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
-    text = (
-        f"{section.grid.heading}, {at}, N = {len(section.grid.episodes)}, "
-        f"corruption suite {section.grid.suite}. SR in %. Intervals, and what "
-        "marks mean, are in table.md."
+    paper = " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
+    return (
+        f"{section.grid.heading}, {at}, N = {len(section.grid.episodes)}, corruption suite "
+        f"{section.grid.suite}. SR in %. Intervals, and what marks mean, are in table.md."
+        + paper
+        * compared
     )
-    if compared:
-        text += " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
-    return text

@@ -98,9 +98,8 @@ def scene_of(row: Row) -> str:
     scene = row.get(SCENE) or (match and (match[1] or match[2]))
     if not scene:
         raise ValueError(
-            f"The rows do not name the scene of episode {short(row['episode_id'])}, so the "
-            "bootstrap cannot resample scenes. Evaluate again (new rows name the scene), or "
-            "resample episodes."
+            f"The rows do not name the scene of episode {short(row['episode_id'])}. Evaluate again "
+            "(new rows name the scene), or resample episodes."
         )
     return str(scene)
 
@@ -132,9 +131,9 @@ def read(path: Path | str) -> list[Row]:
                         f"per line with {', '.join(REQUIRED)}. {advice}"
                     )
                 rows.append(row)
+    except FileNotFoundError:
+        raise
     except OSError as error:
-        if isinstance(error, FileNotFoundError):
-            raise
         raise ValueError(
             f"{path} is damaged or not a file of result rows ({error}). Fetch or evaluate it again."
         ) from error
@@ -176,9 +175,8 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
     before = len(read(path)) if path.exists() and not fewer else 0
     if len(rows) < before:
         raise ValueError(
-            f"{path} holds {counted(before, 'row')}, but only {len(rows)} would replace them. The "
-            "file was not changed. Find out why rows are missing, or move the file to another "
-            "folder and run the same command again."
+            f"{path} holds {counted(before, 'row')}, but only {len(rows)} would replace them. "
+            "It was not changed. Find out why rows are missing, or move the file and run again."
         )
     with atomic_text(path) as file:
         file.writelines(_line(row) for row in rows)
@@ -284,8 +282,7 @@ def _parse(line: str) -> Any:
 
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
-        limits = f"finite numbers, UTF-8 and at most {LONGEST_LINE} characters"
-        return f"is not a JSON object of {limits}"
+        return f"is not a JSON object in UTF-8 (finite numbers, at most {LONGEST_LINE} characters)"
     required = IDENTITY | {RETURN: (int, float)} if row.get("rule") == RETURN else REQUIRED
     lacking = [key for key in required if key not in row]
     if lacking:
@@ -297,8 +294,7 @@ def _problem(row: Any) -> str:
             actual = type(row[key]).__name__
             return f"has a wrong {key}: {short(row[key])} ({expected}, not {actual})"
     for key, value in row.items():
-        expected = allowed(key, value)
-        if expected:
+        if expected := allowed(key, value):
             return f"has a wrong {short(key)}: {short(value)} ({expected})"
     return ""
 
@@ -333,8 +329,7 @@ def _number(value: Any, low: float, high: float) -> bool:
 
 
 def _line(row: Row) -> str:
-    problem = _problem(row)
-    if problem:
+    if problem := _problem(row):
         raise ValueError(
             f"A result row {problem}: {row!r:.300}. It must have {', '.join(REQUIRED)}."
         )

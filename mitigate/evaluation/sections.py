@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from mitigate.core.names import unknown
-from mitigate.corruptions.registry import title
+from mitigate.corruptions.registry import HALVES, UNSEEN, title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import (
@@ -24,7 +24,6 @@ from mitigate.evaluation.grid import (
     by_kind,
     expected_corruptions,
     grids,
-    halves,
 )
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
@@ -98,8 +97,18 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """The validation and test parts of blocks that have their own PRS, by block and heading."""
-        return halves(self.blocks)
+        """The validation and test parts of blocks of unseen corruptions, by block and heading.
+
+        A block is left out if its validation part or its test part was not measured.
+        """
+        of_half = [(half, {n for n in UNSEEN if UNSEEN[n].half == half}) for half in HALVES]
+        by_block = {
+            block: {
+                f"{block}, {half}": tuple(n for n in names if n in own) for half, own in of_half
+            }
+            for block, names in self.blocks.items()
+        }
+        return {block: parts for block, parts in by_block.items() if all(parts.values())}
 
     @cached_property
     def parts(self) -> dict[str, tuple[str, ...]]:
@@ -123,7 +132,7 @@ class Section:
         values = {}
         for column in self.columns:
             for metric, key in METRICS.items():
-                mask = self.grid.measured(column, self.severity, key)
+                mask = self.grid.measured(column, "clean", self.severity, key)
                 if mask.any():
                     cell = self.grid.cell(column, "clean", self.severity, key)[mask]
                     values[column, metric] = bootstrap.share(cell, units=self.grid.units[mask])
@@ -178,9 +187,10 @@ class Section:
     def compare(self, column: str, reference: str) -> Difference:
         """Return the difference of ``column`` from ``reference``, which can be any two columns."""
         pair, severity = (column, reference), self.severity
-        if not self.grid.common(pair, severity):
+        common = self.grid.common(pair, severity)
+        if not common:
             return Difference(None, None, {})
-        both = self.grid.paired(pair, severity)
+        both = self.grid.over(pair, common, severity)
         first, second = (both.cell(name, "clean", severity, METRICS["SR"]) for name in pair)
         change = first - second
         mask = ~np.isnan(change)

@@ -50,20 +50,18 @@ def run(
             invalid or needs rows that are missing.
     """
     from mitigate.evaluation import critical_report, report, rows
-    from mitigate.evaluation.critical import check_losses, scores
+    from mitigate.evaluation.critical import scores
 
-    losses = None if critical is None else check_losses(critical)
     all_rows = rows.gather(paths)
-    available = sorted({row["seed"] for row in all_rows})
-    for seed in seeds or ():
-        if seed not in available:
-            raise ValueError(
-                f"seeds must be among {', '.join(map(str, available))}, got {seed}, which has "
-                "no rows."
-            )
+    available = {row["seed"] for row in all_rows}
+    if absent := sorted({*(seeds or ())} - available):
+        raise ValueError(
+            f"seeds must be among {', '.join(map(str, sorted(available)))}, got {absent[0]}, which "
+            "has no rows."
+        )
     selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
-    if losses is not None:
-        return critical_report.write(scores(selected, losses, against, drawn), out)
+    if critical is not None:
+        return critical_report.write(scores(selected, critical, against, drawn), out)
     return report.write(selected, out, against=against, drawn=drawn)
 
 

@@ -6,7 +6,7 @@ import re
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from itertools import cycle
+from itertools import cycle, islice
 from pathlib import Path
 from typing import Any
 
@@ -57,47 +57,14 @@ class Walk:
     corruption: Corruption
     measures: Mapping[str, Any]
 
-    @property
-    def legend(self) -> str:
-        """The text of the legend: name, result and geodesic distance to the goal."""
-        end = "success" if self.won else "fail"
-        return f"{self.name}: {end}, {self.metres_left:.1f} m from the goal"
-
-
-def draw_trajectories(
-    agents: Mapping[str, Agent],
-    world: World,
-    episode: Episode,
-    corruption: Corruption,
-    out: Path | str,
-    seed: int = 0,
-    guards: Mapping[str, Guards] | None = None,
-) -> Path:
-    """Run an episode with each agent, and write a PNG of the trajectories.
-
-    The PNG also shows the start panorama, the floor plan and the reference path. The first agent
-    runs the episode with and without corruption; the other agents run it only with corruption. If
-    ``seed`` is the seed of an evaluation, the trajectories are those behind the rows of that
-    evaluation. If the world has a method ``draw(axes)``, this method draws the floor plan.
-
-    Args:
-        agents: agents by their names in the legend.
-        world: the world.
-        episode: the episode.
-        corruption: the corruption.
-        out: the PNG to write; parent folders are created.
-        seed: corruption seed.
-        guards: guards by the name of their agent.
-    """
-    walks = list(run_agents(agents, world, episode, corruption, seed, guards))
-    figure = draw_episode(walks, world, episode, corruption, seed)
-    return write_figure(out, figure, dpi=DPI, facecolor="white")
-
 
 def draw_episode(
     walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> Figure:
-    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories."""
+    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories.
+
+    If the world has a method ``draw(axes)``, this method draws the floor plan.
+    """
     entry, sight = first_sight(world, episode, corruption, seed)
     figure = Figure(figsize=INCHES, layout="constrained")
     *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
@@ -190,20 +157,19 @@ def write_pictures(
     place = {episode_id: index for index, episode_id in enumerate(known)}
     rows = sorted(rows, key=lambda row: place[row["episode_id"]])
     before, after = list(agents)[0], list(agents)[-1]
-    chosen = list(won_back(rows, before, after))[:PICTURES] or _first_corrupted(rows)
+    met = ((r["episode_id"], r["corruption"], r["severity"]) for r in rows)
+    first = ((one, Corruption(name, at)) for one, name, at in met if name != "clean")
+    chosen = [*islice(won_back(rows, before, after), PICTURES)] or [*islice(first, 1)]
     paths = []
     for episode_id, corruption in chosen:
         # an episode id may contain characters that are invalid in a file name
         safe = re.sub(r"[^\w.-]+", "_", episode_id)[:60]
         out = Path(folder) / f"{safe}-{corruption.name}.png"
         episode = known[episode_id]
-        paths.append(draw_trajectories(agents, world, episode, corruption, out, seed, guards))
+        walks = list(run_agents(agents, world, episode, corruption, seed, guards))
+        figure = draw_episode(walks, world, episode, corruption, seed)
+        paths.append(write_figure(out, figure, dpi=DPI, facecolor="white"))
     return paths
-
-
-def _first_corrupted(rows: Sequence[Row]) -> list[tuple[str, Corruption]]:
-    met = [row for row in rows if row["corruption"] != "clean"]
-    return [(r["episode_id"], Corruption(r["corruption"], r["severity"])) for r in met[:1]]
 
 
 def run_agents(
@@ -261,7 +227,9 @@ def _draw_walks(axes: Axes, start: np.ndarray, episode: Episode, walks: Sequence
         reference = np.stack([from_vlnce(point) for point in episode.reference_path])
         draw_path(axes, reference, REFERENCE, "reference path", "--")
     for walk in walks:
-        draw_path(axes, walk.path, walk.colour, walk.legend)
+        end = "success" if walk.won else "fail"
+        legend = f"{walk.name}: {end}, {walk.metres_left:.1f} m from the goal"
+        draw_path(axes, walk.path, walk.colour, legend)
     if episode.goals:
         goals = np.stack([from_vlnce(goal.position) for goal in episode.goals])
         axes.plot(*goals.T, "*", color="#ffbf00", mec="black", ms=15, zorder=9, label="goal")

@@ -68,7 +68,7 @@ def test_evaluate_rejects_workers_whose_classes_are_others(tmp_path, monkeypatch
     agent = Straight(1)
     run(tmp_path / "equal", workers=2, agent=agent, conditions=[CLEAN])
     monkeypatch.setattr(Straight, "limit", 3, raising=False)
-    with pytest.raises(ValueError, match=r"class attributes of Straight .* give workers=1"):
+    with pytest.raises(ValueError, match=r"class attributes of Straight .* set workers=1"):
         run(tmp_path / "other", workers=2, agent=agent, conditions=[CLEAN])
 
 

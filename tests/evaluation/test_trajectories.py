@@ -9,8 +9,9 @@ from mitigate.core.observation import DEPTH, POSE, RGB, Observation
 from mitigate.corruptions import Corruption
 from mitigate.evaluation import trajectories
 from mitigate.evaluation.trajectories import (
-    draw_trajectories,
+    draw_episode,
     first_sight,
+    run_agents,
     won_back,
     write_pictures,
 )
@@ -45,7 +46,7 @@ def test_won_back_ignores_clean_rows_and_single_agents():
 
 
 @pytest.mark.parametrize("name", ["low_light", "missing_data"])
-def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch, name):
+def test_draw_episode_draws_clean_and_corrupted_runs(tmp_path, monkeypatch, name):
     drawn = []
     monkeypatch.setattr(
         trajectories, "draw_path", lambda axes, path, *rest: drawn.append((path, rest))
@@ -53,9 +54,9 @@ def test_draw_trajectories_draws_clean_and_corrupted_runs(tmp_path, monkeypatch,
     agents = {"base": Straight(1), "hardened": Straight(3)}
     corruption = Corruption(name, 0.6)
     world = ApartmentsWorld(64)
-    out = draw_trajectories(
-        agents, world, load_episodes("val_seen")[0], corruption, tmp_path / "a" / "b.png"
-    )
+    episode, out = load_episodes("val_seen")[0], tmp_path / "b.png"
+    walks = list(run_agents(agents, world, episode, corruption, 0))
+    draw_episode(walks, world, episode, corruption, 0).savefig(out)
     assert cv2.imread(str(out)).std() > 10
     labels = [rest[1].split(":")[0] for _, rest in drawn]
     displayed = trajectories.label(name)

@@ -195,17 +195,6 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     The status is 2 for invalid input and 1 for a wrong entry.
     """
-    options = vars(_parser().parse_args(argv))
-    what = options.pop("what")
-    if what == "check":
-        wrong = check(**options)
-        print("\n".join(wrong), end="\n" * bool(wrong))
-        return int(bool(wrong))
-    print(written(show(**options) if what == "show" else add(**options)))
-    return 0
-
-
-def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="mitigate leaderboard",
         description=__doc__,
@@ -227,4 +216,11 @@ def _parser() -> argparse.ArgumentParser:
     entry.add_argument("--sensors", nargs="+", default=(), help="one text per sensor of the agent")
     entry.add_argument("--folder", default=FOLDER, help=f"where to write (default {FOLDER})")
     entry.add_argument("--overwrite", action="store_true", help="replace an entry of that name")
-    return parser
+    options = vars(parser.parse_args(argv))
+    what = options.pop("what")
+    if what == "check":
+        wrong = check(**options)
+        print("\n".join(wrong), end="\n" * bool(wrong))
+        return int(bool(wrong))
+    print(written(show(**options) if what == "show" else add(**options)))
+    return 0

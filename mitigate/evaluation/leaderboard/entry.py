@@ -174,9 +174,7 @@ def load(path: Path | str) -> LeaderboardEntry:
     path = Path(path)
     if not output.is_regular(path):
         raise FileNotFoundError(f"There is no entry {path}. {_REWRITE}")
-    if path.stat().st_size > LARGEST:
-        raise ValueError(f"{path} has more than {LARGEST} bytes, too many for an entry. {_REWRITE}")
-    return _validated(_ADAPTER, json.dumps(read_json(path, _REWRITE)), f"{path}: ")
+    return _validated(_ADAPTER, json.dumps(read_json(path, _REWRITE, LARGEST)), f"{path}: ")
 
 
 def check_texts(**texts: Any) -> None:

@@ -130,8 +130,7 @@ def _check_whole(name: str, rows: Sequence[Row], part: Section) -> None:
             raise ValueError(
                 f"Seed {seed} of {name} is not finished ({sum(have.values()):,} of "
                 f"{episodes * len(conditions):,} rows): it lacks some under "
-                f"{', '.join(lacking[:3])}{more}. Run the command of the evaluation again to "
-                "continue."
+                f"{', '.join(lacking[:3])}{more}. Run the evaluation again to continue."
             )
 
 

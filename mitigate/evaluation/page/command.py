@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.core.errors import command
+from mitigate.core.files import find
 from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
@@ -52,7 +53,6 @@ def run(
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document
-    from mitigate.evaluation.page.document import report
 
     document.check_out(out)  # checked first, because the rollouts take minutes
     if options and not walk:
@@ -64,7 +64,7 @@ def run(
     with Progress("rows", len(files), unit="file") as progress:
         all_rows = rows.gather(_each(files, progress))
     drawn = list(_walks(all_rows, walk, walks, seed, options)) if walk else []
-    return document.write(report(all_rows, title=title, walks=drawn), out)
+    return document.write(document.report(all_rows, title=title, walks=drawn), out)
 
 
 def _each(files: Sequence[Path], progress: Progress) -> Iterator[Path]:
@@ -148,26 +148,21 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--seed", type=int, default=0, help="corruption seed of the walks' rows")
     arguments = vars(parser.parse_intermixed_args(argv))
     words, configs = arguments.pop("rows"), arguments.pop("config_dir")
-    paths = [word for word in words if "=" not in word or Path(word).exists()]
+    paths: list[Path | str] = [word for word in words if "=" not in word or Path(word).exists()]
     options = [word for word in words if word not in paths]
     if configs is not None and arguments["walk"]:
         options = [f"--config-dir={configs}", *options]
     if not 1 <= arguments["walks"] <= MOST_WALKS:
         parser.error(f"--walks must be from 1 to {MOST_WALKS}, got {arguments['walks']}.")
-    page = run(paths or [_shipped()], options=options, **arguments)
-    print(written(page))
+    if not paths:
+        shipped = find(ROWS)
+        if not shipped.is_dir():
+            raise FileNotFoundError(f"There is no folder {ROWS}. Name row files or run folders.")
+        paths = [shipped]
+    print(written(run(paths, options=options, **arguments)))
     return 0
 
 
 def written(page: Path) -> str:
     """Return a text that states the path and the size of a page."""
     return f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)"
-
-
-def _shipped() -> Path:
-    from mitigate.core.files import find
-
-    folder = find(ROWS)
-    if not folder.is_dir():
-        raise FileNotFoundError(f"There is no folder {ROWS}. Name row files or run folders.")
-    return folder

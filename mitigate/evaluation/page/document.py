@@ -39,7 +39,10 @@ SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "
 
 
 def _page(data: dict[str, Any], packed: str) -> str:
-    """Return the HTML page; its scripts read ``data`` and the ``packed`` episodes."""
+    """Return the HTML page; its scripts read ``data`` and the ``packed`` episodes.
+
+    Each ``%NAME%`` in ``page.html`` is replaced by its value.
+    """
     style = (ASSETS / "style.css").read_text(encoding="utf-8")
     scripts = [(ASSETS / f"{name}.js").read_text(encoding="utf-8") for name in SCRIPTS]
     script = '(() => {\n"use strict";\n' + "\n".join(scripts) + "})();\n"
@@ -52,7 +55,9 @@ def _page(data: dict[str, Any], packed: str) -> str:
         "PACKED": packed,
         "SCRIPT": script,
     }
-    return _filled((ASSETS / "page.html").read_text(encoding="utf-8"), values)
+    # an inserted value is not searched for further names
+    pieces = (ASSETS / "page.html").read_text(encoding="utf-8").split("%")
+    return "".join(values.get(piece, piece) for piece in pieces)
 
 
 def check_out(out: Path | str) -> Path:
@@ -74,15 +79,6 @@ def write(text: str, out: Path | str) -> Path:
     with atomic_text(path) as file:
         file.write(text)
     return path
-
-
-def _filled(frame: str, values: dict[str, str]) -> str:
-    """Return ``frame`` with each ``%NAME%`` replaced by its value.
-
-    The inserted values are not searched for further names.
-    """
-    pieces = frame.split("%")
-    return "".join(values.get(piece, piece) for piece in pieces)
 
 
 def _embedded(data: Any) -> str:
@@ -121,23 +117,22 @@ def report(
     if count > MOST_NUMBERS:
         raise ValueError(_too_large(f"{count:,} numbers", f"{MOST_NUMBERS:,}"))
     tables = [{**section_data(part), "grid": packed.add(part)} for part in parts]
-    largest = max(range(len(tables)), key=lambda n: _size(tables[n]))
-    notes = list(notes)
+    sizes = [sum(cell[2] for line in table["cells"] for cell in line) for table in tables]
     if packed.left_out:
-        notes.append(
+        left_out = (
             f"The episodes of {counted(len(packed.left_out), 'cell')} are not in this file, which "
-            f"holds at most {most:,} episodes. The numbers are correct, but these cells cannot be "
-            "opened. Name fewer rows to see them."
+            f"holds at most {most:,}. The numbers are correct. Name fewer rows to see them."
         )
+        notes = [*notes, left_out]
     data = {
         "title": title,
-        "about": f"{len(rows):,} rows: {_listed({row['name'] for row in rows})}.",
+        "about": f"{len(rows):,} rows: {_listed(sorted({row['name'] for row in rows}))}.",
         "sections": tables,
         "curves": curve_figures(parts),
         "grids": packed.grids,
         "walks": list(walks),
-        "notes": notes,
-        "first": largest,
+        "notes": list(notes),
+        "first": sizes.index(max(sizes)),
         "end": f"Made by mitigate {version('mitigate')}, corruption suite {SUITE_VERSION}. "
         "This file is self-contained and needs no network.",
     }
@@ -149,16 +144,11 @@ def report(
 
 def _too_large(size: str, most: str) -> str:
     return (
-        f"The page would hold {size}, more than {most}, which a browser cannot show. Name fewer "
-        "rows, or write the numbers with `mitigate table`. No file was written."
+        f"The page would hold {size}, more than {most}, which a browser cannot show, so no file "
+        "was written. Name fewer rows, or use `mitigate table`."
     )
 
 
-def _size(table: dict[str, Any]) -> int:
-    return sum(cell[2] for line in table["cells"] for cell in line)
-
-
-def _listed(names: set[str], most: int = 8) -> str:
-    ordered = sorted(names)
-    more = f" and {len(ordered) - most} more agents" if len(ordered) > most else ""
-    return ", ".join(ordered[:most]) + more
+def _listed(names: Sequence[str], most: int = 8) -> str:
+    more = f" and {len(names) - most} more agents" if len(names) > most else ""
+    return ", ".join(names[:most]) + more

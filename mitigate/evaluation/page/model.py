@@ -105,9 +105,8 @@ def shortened(x: float) -> float:
 
 def _title(section: Section) -> str:
     at = f"severity {section.severity:g}" if section.blocks else "clean"
-    parts = (section.grid.heading, section.kind, at)
-    title = ", ".join(part for part in parts if part)
-    return f"{title}, suite {section.grid.suite}"
+    parts = (section.grid.heading, section.kind, at, f"suite {section.grid.suite}")
+    return ", ".join(filter(None, parts))
 
 
 def _facts(section: Section) -> list[list[str]]:
@@ -139,32 +138,37 @@ def _prs_places(section: Section) -> list[tuple[str, str]]:
 
     A part is a block of corruptions, or its validation or test part.
     """
-    parted = {block: [block, *section.halves.get(block, {})] for block in section.blocks}
-    return [(part, metric) for parts in parted.values() for part in parts for metric in METRICS]
+    parts = [part for block in section.blocks for part in (block, *section.halves.get(block, ()))]
+    return [(part, metric) for part in parts for metric in METRICS]
 
 
 def _measures(section: Section) -> list[dict[str, str]]:
     measures = [{"title": "Clean SR", "unit": "%"}, {"title": "Clean SPL", "unit": ""}]
     if section.corrupted:
-        measures.append({"title": f"Mean SR, {_whole(section)} corruptions", "unit": "%"})
-    for part, metric in _prs_places(section):
-        measures.append({"title": f"PRS-{metric} ({part})", "unit": ""})
-    return measures
-
-
-def _whole(section: Section) -> int:
-    return sum(map(section.whole, section.blocks))
+        count = sum(map(section.whole, section.blocks))
+        measures.append({"title": f"Mean SR, {count} corruptions", "unit": "%"})
+    places = _prs_places(section)
+    return measures + [{"title": f"PRS-{metric} ({part})", "unit": ""} for part, metric in places]
 
 
 def _values(section: Section, column: str) -> list[Numbers]:
-    values = [numbers(section.clean.get((column, metric))) for metric in METRICS]
+    clean = [numbers(section.clean.get((column, metric))) for metric in METRICS]
     fewer = "*" * section.partial(column, CLEAN)
-    values = [value and [*value, fewer] for value in values]
-    if section.corrupted:
-        values.append(_marked(section, section.corrupted.get(column), *section.blocks))
-    for part, metric in _prs_places(section):
-        values.append(_marked(section, section.retained.get((column, part, metric)), part))
-    return values
+    retained = {place: section.retained.get((column, *place)) for place in _prs_places(section)}
+    corrupted = section.corrupted.get(column)
+    return _in_order(section, [v and [*v, fewer] for v in clean], corrupted, retained)
+
+
+def _in_order(
+    section: Section,
+    clean: list[Numbers],
+    corrupted: Retained | None,
+    retained: Mapping[tuple[str, str], Retained | None],
+) -> list[Numbers]:
+    """Return the numbers in the order of :func:`_measures`."""
+    mean_sr = [_marked(section, corrupted, *section.blocks)] if section.corrupted else []
+    places = _prs_places(section)
+    return clean + mean_sr + [_marked(section, retained.get(p), p[0]) for p in places]
 
 
 def _marked(section: Section, retained: Retained | None, *blocks: str) -> Numbers:
@@ -200,28 +204,28 @@ def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
     The differences are paired over common episodes and common seeds. With a common seed, both
     columns met corruptions with the same random keys.
     """
-    pairs: dict[str, Any] = {}
-    for j, second in enumerate(section.columns[:BASELINES]):
-        for i, first in enumerate(section.columns[j + 1 :], start=j + 1):
-            common = section.grid.common((first, second), section.severity)
-            pairs[f"{i}-{j}"] = _pair(section, first, second, names) if common else None
-    return pairs
+    return {
+        f"{i}-{j}": _pair(section, first, second, names)
+        for j, second in enumerate(section.columns[:BASELINES])
+        for i, first in enumerate(section.columns[j + 1 :], start=j + 1)
+    }
 
 
-def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict[str, Any]:
-    both, at = section.grid.paired((first, second), section.severity), section.severity
+def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict | None:
+    """Return the differences, or None if the columns have no common seed."""
+    pair, at = (first, second), section.severity
+    common = section.grid.common(pair, at)
+    if not common:
+        return None
+    both = section.grid.over(pair, common, at)
     changes = {
         metric: [both.cell(first, n, at, key) - both.cell(second, n, at, key) for n in names]
         for metric, key in METRICS.items()
     }
     cells = {m: [*map(numbers, bootstrap.means(change))] for m, change in changes.items()}
     compared = section.compare(first, second)
-    measures = [cells["SR"][0], cells["SPL"][0]]
-    if section.corrupted:
-        measures.append(_marked(section, compared.corrupted, *section.blocks))
-    for part, metric in _prs_places(section):
-        measures.append(_marked(section, compared.retained.get((part, metric)), part))
-    return {"measures": measures, "SR": cells["SR"], "SPL": cells["SPL"]}
+    clean = [cells[metric][0] for metric in METRICS]
+    return {"measures": _in_order(section, clean, compared.corrupted, compared.retained), **cells}
 
 
 def _notes(section: Section, values: list[list[Numbers]], pairs: Mapping[str, Any]) -> list[str]:
@@ -270,8 +274,11 @@ def curve_figures(parts: Sequence[Section]) -> list[dict[str, Any]]:
 
 def _line(curve: Curve) -> dict[str, Any]:
     points = zip(curve.severities, map(numbers, curve.points), strict=True)
-    points_data = [[severity, *(values or [])] for severity, values in points]
-    return {"column": curve.column, "count": curve.count, "points": points_data}
+    return {
+        "column": curve.column,
+        "count": curve.count,
+        "points": [[severity, *(values or [])] for severity, values in points],
+    }
 
 
 # maximum number of episodes in one page, summed over all cells (heuristic); they take 4 MB

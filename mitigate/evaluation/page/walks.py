@@ -34,12 +34,13 @@ KINDS = {  # maps (success of the first agent, success of the last agent) to the
     (True, True): "won by both",
     (True, False): "lost by the last",
 }
-ALONE = {True: "won", False: "lost"}  # names of the outcomes if there is only one agent
 
 
 def outcome(won: Sequence[bool]) -> str:
     """Return the name of the outcome; ``won`` holds the success of each agent in order."""
-    return KINDS[won[0], won[-1]] if len(won) > 1 else ALONE[won[0]]
+    if len(won) == 1:
+        return "won" if won[0] else "lost"
+    return KINDS[won[0], won[-1]]
 
 
 def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[str, Corruption]]:
@@ -156,18 +157,17 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
         if others and agent_hash not in others:
             raise ValueError(
                 f"The rows of {name} belong to the agent {', '.join(others)}, but the given "
-                f"weights belong to the agent {agent_hash}. Name the weights that gave the rows, "
-                "and the options of `mitigate evaluate` for the agent and the world (agent=..., "
-                "env.views=1)."
+                f"weights belong to the agent {agent_hash}. Name the weights and the options "
+                "(agent=..., env.views=1) that gave the rows."
             )
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
 
 
 def _walk(walk: Walk, episode: Episode, index: Mapping[tuple, Row]) -> dict[str, Any]:
     met = walk.corruption
-    row = index.get((walk.agent, episode.episode_id, met.name, met.severity))
-    shared = [key for key in AGREED if row is not None and key in row and key in walk.measures]
-    same = [abs(walk.measures[key] - row[key]) < CLOSE for key in shared] if row else []
+    row = index.get((walk.agent, episode.episode_id, met.name, met.severity), {})
+    shared = [key for key in AGREED if key in row and key in walk.measures]
+    same = [abs(walk.measures[key] - row[key]) < CLOSE for key in shared]
     left = float(walk.metres_left)
     return {
         "agent": walk.agent,
