@@ -56,9 +56,9 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     return ""
 
 
-def is_too_long(heard: str, rewrite: str) -> bool:
-    """Return whether a rewrite is so long that it is not checked."""
-    return len(rewrite) > max(LENGTH, TIMES * len(heard))
+def longest(heard: str) -> int:
+    """Return the maximum number of characters of a rewrite; a longer one is not checked."""
+    return max(LENGTH, TIMES * len(heard))
 
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
@@ -68,7 +68,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     """
     if rewrite is None:
         return "no answer in time"
-    if is_too_long(heard, rewrite) or len(words(rewrite)) > len(words(heard)) + LONGER:
+    if len(rewrite) > longest(heard) or len(words(rewrite)) > len(words(heard)) + LONGER:
         return "longer than what it replaces"
     plain = heard.replace("[MASK]", "the")
     if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:

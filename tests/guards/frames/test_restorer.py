@@ -16,7 +16,7 @@ from mitigate.core.observation import DEPTH, RGB, Observation
 from mitigate.corruptions import CLEAN, Corruption, DepthSensor, Key, corrupt_observation
 from mitigate.guards.frames import choices, ring
 from mitigate.guards.frames.restorer import Restorer, load_restorer
-from mitigate.guards.guard import Guarded
+from mitigate.guards.guard import Guarded, Guards
 from mitigate.guards.opening import open_restorer
 from mitigate.training.reports import restorer as report
 from mitigate.worlds.world import Corrupted
@@ -211,7 +211,7 @@ def test_world_is_restored_when_its_frames_are_read(untrained, panorama):
 
     still = Still()
     met = Corrupted(still, Corruption("foreign_object", 0.6), 0)
-    observed = Guarded(met, untrained).reset(Episode())
+    observed = Guarded(met, Guards([untrained])).reset(Episode())
     assert still.reads == 0 and observed["pose"] is panorama["pose"]
     assert not np.array_equal(observed[RGB], met.last[RGB]) and still.reads == 1
     assert np.array_equal(observed.clean[RGB], panorama[RGB])

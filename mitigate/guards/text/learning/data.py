@@ -30,7 +30,6 @@ from mitigate.guards.text.learning import spoken
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.worlds.episodes import read_episodes
 
-ROLES = ("system", "user", "assistant")
 KINDS = {  # fraction of pairs of each kind (heuristic, chosen on the validation families)
     "identity": 0.16,
     "style": 0.18,
@@ -246,28 +245,17 @@ def read_chats(path: str | Path) -> Iterator[Pair]:
 def _pair(line: str, where: str) -> Pair:
     try:
         chat = json.loads(line)
-    except (ValueError, RecursionError) as error:
-        raise _malformed(where, f"is not JSON ({error})") from error
-    messages = chat.get("messages") if isinstance(chat, dict) else None
-    if not isinstance(messages, list):
-        raise _malformed(where, "has no list 'messages'")
-    for index, message in enumerate(messages):
-        if not isinstance(message, dict) or message.get("role") not in ROLES:
-            raise _malformed(where, f"message {index} has no role of {', '.join(ROLES)}")
-        if not isinstance(message.get("content"), str):
-            raise _malformed(where, f"message {index} has no text 'content'")
-    roles = [message["role"] for message in messages]
-    if [role for role in roles if role != "system"] != ["user", "assistant"]:
-        raise _malformed(where, f"holds the roles {roles}, not one user and then one assistant")
-    source, target = (m["content"] for m in messages if m["role"] != "system")
-    if not source.strip():
-        raise _malformed(where, "has an empty user text")
-    return Pair(source, target, str(chat.get("kind", "chat")))
-
-
-def _malformed(where: str, problem: str) -> ValueError:
-    return ValueError(
-        f"{where} {problem}. A chat line is one JSON object like "
+        said = [(m["role"], m["content"]) for m in chat["messages"] if m["role"] != "system"]
+        problem = f"holds the roles {[role for role, _ in said]}, not one user and one assistant"
+        if [role for role, _ in said] == ["user", "assistant"]:
+            source, target = (content for _, content in said)
+            if isinstance(source, str) and isinstance(target, str) and source.strip():
+                return Pair(source, target, str(chat.get("kind", "chat")))
+            problem = "has an empty user text, or a content that is not text"
+    except (ValueError, TypeError, KeyError, RecursionError) as error:
+        problem = f"is no chat ({type(error).__name__}: {error})"
+    raise ValueError(
+        f"{where} {problem:.300}. A chat line is one JSON object like "
         '{"messages": [{"role": "user", "content": "PLEASE turn left."}, {"role": "assistant", '
         '"content": "Turn left."}]}. Fix or delete that line.'
     )
