@@ -21,7 +21,7 @@ from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.policies.policy import Policy, last_convolution
 from mitigate.core.contracts import missing_members
 from mitigate.core.precision import computing
-from mitigate.guards.adaptation.adaptation import Adaptation, channel_means
+from mitigate.guards.adaptation.adaptation import Adaptation
 from mitigate.guards.adaptation.choices import EPISODE
 from mitigate.worlds.episodes import Episode
 
@@ -182,5 +182,6 @@ def _axis(features: Tensor) -> int:
 
 
 def _means(output: Any) -> Tensor:
+    """Return the mean of each channel, computed over all other axes."""
     features = output[0] if isinstance(output, (tuple, list)) else output
-    return channel_means(features.detach(), _axis(features))
+    return features.detach().float().movedim(_axis(features), 0).flatten(1).mean(1)

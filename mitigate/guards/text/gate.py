@@ -14,9 +14,10 @@ from collections import Counter
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.guards.text.learning.route_words import ROOMS, THINGS
+from mitigate.guards.text.learning.route_words import WORDS
 
-KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
+_PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
+KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
 LONG = 3000  # longer texts are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
