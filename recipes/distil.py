@@ -4,10 +4,10 @@
 
     L = w_il L_imitation + w_kl T^2 KL(pi_T || pi_S) + w_feat sum of MSE(f_S, f_T)
 
-Under corruption, the candidate actions of the student may differ from those of the teacher. For
-example, missing depth changes the places to which the student can go. Therefore both networks score
-the candidates of the student. ``DistilViews`` works on random poses. The student's encoders learn
-to output, for corrupted views, the teacher's features of the clean views.
+Under corruption, the candidate actions of the student may differ from the teacher's
+candidates. For example, missing depth changes the places to which the student can go. Therefore
+both networks score the candidates of the student. ``DistilViews`` works on random poses. The
+student's encoders learn to output, for corrupted views, the teacher's features of the clean views.
 """
 
 from __future__ import annotations

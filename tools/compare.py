@@ -70,7 +70,7 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return the digests of a commit or of the working tree by name; those of a commit are
+    """Return the digests of a commit or of the working tree by name; the digests of a commit are
     stored.
     """
     digests: dict[str, str] = {}

@@ -2,8 +2,8 @@
 # # Harden an image encoder in your own training loop
 #
 # This tutorial puts zero-initialised adapters into a frozen encoder. It trains the adapters so that
-# the features of a corrupted frame equal those of the clean frame. No label, action or environment
-# is needed. The tutorial takes about 20 seconds on a CPU.
+# the features of a corrupted frame equal the features of the clean frame. No label, action or
+# environment is needed. The tutorial takes about 20 seconds on a CPU.
 
 # %%
 import torch

@@ -179,8 +179,8 @@ class Gate(nn.Module):
         self.read = nn.Linear(2 * middle, 1)
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
-        """Return logits [n]; ``over`` lists all axes of ``y`` except those of frames and
-        channels.
+        """Return logits [n]; ``over`` lists all axes of ``y`` except the axes of
+        frames and channels.
         """
         mean, power = (y.mean(over), (y * y).mean(over)) if over else (y, y * y)
         return self.read(torch.cat([mean, (power + 1e-6).sqrt()], 1))[:, 0]
@@ -350,7 +350,7 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # shape [2, h, w]; each view sees all of its own cells
+        unseen = (grid.abs() > 1).any(-1)  # shape [2, h, w]; each view sees all its cells
         scores = torch.stack([each[:, -1] for each in maps], 1)
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)

@@ -34,8 +34,8 @@ KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # hooks of this module are known: its adapters are modules, so state_dict() holds them
 _OWN_HOOKS = "mitigate.agents.adapters"
-# attributes that are left out: those of torch modules, of adapters (handle of the hook, last
-# output), and of adapters.py
+# attributes that are left out: the attributes of torch modules, of adapters (handle of the hook,
+# last output), and of adapters.py
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -78,9 +78,9 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For a shipped agent, this includes the attributes that differ from those of a new agent with the
-    same settings. For an agent whose ``settings()`` is missing or inherited, this includes all its
-    attributes.
+    For a shipped agent, this includes the attributes that have other values than in a new agent
+    with the same settings. For an agent whose ``settings()`` is missing or inherited, this
+    includes all its attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}

@@ -250,8 +250,8 @@ def reject_other_models(run: Path) -> None:
 def check_same(agent: Any, config: Path, again: str) -> None:
     """Compare the settings of ``agent`` with those in ``config``.
 
-    If the agent has no ``settings()``, those of its plain attributes that have the name of a
-    setting are compared. In this case, a difference causes only a warning, because an attribute of
+    If the agent has no ``settings()``, its plain attributes that have the name of a setting are
+    compared. In this case, a difference causes only a warning, because an attribute of
     the same name may mean something else.
 
     Raises:

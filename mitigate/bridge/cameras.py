@@ -336,7 +336,7 @@ class Frame:
         return first.sensor.to_metres(frames) if first.normalised else frames
 
     def write(self, frame: np.ndarray) -> None:
-        """Write a frame to memory; its format is that of :meth:`read`."""
+        """Write a frame, in the format that :meth:`read` returns, to memory."""
         first = self.cameras[0]
         if first.kind == DEPTH and first.normalised:
             frame = first.sensor.from_metres(frame)

@@ -179,7 +179,7 @@ def describe_randomness(runs: Sequence[Sequence[Row]]) -> str:
 
     The paragraph states the SR of each run, the fraction of episodes whose outcome differs between
     runs, and the SR difference between the first two runs with its confidence interval. Only
-    episodes that occur in all runs are used. The success rule is that of the first row.
+    episodes that occur in all runs are used. The success rule of the first row applies.
     """
     rule = runs[0][0]["rule"]
     successes = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]

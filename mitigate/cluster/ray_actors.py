@@ -1,7 +1,7 @@
 """Run workers as actors of a Ray cluster.
 
 The task, which contains the agent's weights, is in Ray's object store, so each node receives it
-only once. Each result is returned as soon as it is available. When an actor or its node dies, a new
+only once. Each result is returned when it becomes available. When an actor or its node dies, a new
 actor takes over the unfinished jobs.
 """
 

@@ -106,7 +106,7 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
 
     Names and shapes must match exactly. Float tensors may have a different precision; integers,
     booleans and complex numbers must keep their type. If the weights contain no adapters (like
-    those of a base agent), the adapters of ``module`` keep their values.
+    the weights of a base agent), the adapters of ``module`` keep their values.
 
     Raises:
         FileNotFoundError: There is no safetensors file at ``path``.
@@ -320,7 +320,7 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
-    """Exclude public tensors of ``module`` from its state dicts as long as they are unchanged.
+    """Exclude public tensors of ``module`` from its state dicts while they are unchanged.
 
     When such a state dict is loaded, the excluded tensors get their public values. Loading a state
     dict that was made with a different public file raises ValueError.

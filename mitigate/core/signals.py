@@ -1,8 +1,8 @@
 """Handle the signals that end a command: SIGINT (Ctrl-C) and SIGTERM (sent by ``timeout``, SLURM
 and containers).
 
-When a signal ends a command, the command prints how to resume. Its exit status is the one that
-shells expect: 130 or 143.
+When a signal ends a command, the command prints how to resume. Its exit status is 130 or
+143, as shells expect.
 """
 
 from __future__ import annotations

@@ -166,7 +166,7 @@ def _sample(views, opacity, streams, row_streams, photons, read, row, decode, of
 def low_light_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Darken views (uint8 [V, H, W, 3]) like ``low_light`` and add sensor noise.
 
-    The mask that darkens the frame is that of ``low_light``. Up to severity 0.6, the mean
+    The frame is darkened with the same mask as in ``low_light``. Up to severity 0.6, the mean
     brightness is within 1 % of the brightness under ``low_light``. At higher severities, noise is
     clipped at 0, which brightens the frame, so that severity 1 is not darker than severity 0.8.
     """

@@ -108,7 +108,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if of_dataset:
             raise ValueError(
                 f"{', '.join(of_dataset)} applies only to a LeRobot dataset, but {source} "
-                "is none: it has no meta/info.json. Remove the option."
+                "has no meta/info.json. Remove the option."
             )
         summary = folders.run(source, out, settings)
     except (OSError, ValueError) as error:

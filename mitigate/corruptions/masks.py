@@ -17,7 +17,7 @@ from numba import njit
 from mitigate.core import observation
 from mitigate.corruptions.keying import cached, field, top_share, uniform
 
-# the mean brightness is between that of RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
+# the mean brightness is between the values of RobustNav (factor 0.57-0.31) and 3DCC (0.24-0.12)
 DARK_BASE, DARK_RAMP = 0.60, 0.37
 SPATTER_CORRELATION = 0.018  # correlation length as a fraction of min(H, W)
 SPATTER_COVER = 0.45  # covered fraction at severity 1; ImageNet-C covers 0.04 to 0.57

@@ -122,8 +122,10 @@ class Schedule:
         return dict(zip(self.names, self._weights, strict=True))
 
     def only(self, modality_: str) -> Schedule:
-        """Return a copy of the schedule with only the corruptions of one modality; raise ValueError
-        if there are none.
+        """Return a copy of the schedule with only the corruptions of one modality.
+
+        Raises:
+            ValueError: The schedule has no corruption of the modality.
         """
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:

@@ -175,7 +175,7 @@ class FrameStream:
 
     def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:
         """Return the newest stored pair (step number, frame) whose step is at most ``number``; if
-        there is none, return the oldest pair.
+        no such pair is stored, return the oldest pair.
         """
         past = self._past[entry]
         return next((instant for instant in reversed(past) if instant[0] <= number), past[0])

@@ -108,13 +108,13 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
         return name
     if name in INSTRUCTION:
         raise ValueError(
-            f"The corruption must be one that changes frames ({', '.join(allowed)}), got {name!r}, "
+            f"The corruption must change frames ({', '.join(allowed)}), got {name!r}, "
             "which changes instructions. Corrupt instructions with mitigate corrupt_episodes, or "
             "with corrupt_instruction in Python."
         )
     if name in registry.FAULTS:
         raise ValueError(
-            f"The corruption must be one that changes single frames ({', '.join(allowed)}), got "
+            f"The corruption must change single frames ({', '.join(allowed)}), got "
             f"the {registry.family(name)} fault {name!r}. A fault can be used as a condition of "
             f"an evaluation (conditions=[{name}]) or in a Corruption object; training schedules "
             "do not sample faults."
@@ -206,7 +206,7 @@ def _check_pair(name: str) -> None:
     names = registry.parts(name)
     if "clean" in names:
         raise ValueError(
-            f"A pair must consist of two corruptions, and 'clean' is none, got {name!r}. Name the "
+            f"A pair must consist of two corruptions other than 'clean', got {name!r}. Name the "
             "other corruption alone, or a pair such as low_light+missing_data."
         )
     for part in names:

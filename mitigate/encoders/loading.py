@@ -50,8 +50,8 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
         kwargs: arguments of the callable.
 
     Raises:
-        FileNotFoundError, ValueError: The model cannot be loaded; the message says what is possible
-            instead.
+        FileNotFoundError, ValueError: The model cannot be loaded; the message names the
+            alternatives.
     """
     path = find(model)
     if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS):
@@ -263,8 +263,8 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors in a mapping; if there are none, return those of nested mappings with
-    dotted names.
+    """Return the tensors in a mapping; if it contains no tensors, return the tensors of nested
+    mappings with dotted names.
     """
     if not isinstance(state, Mapping):
         return {}

@@ -396,7 +396,7 @@ class Encoder(nn.Module):
         return folders.write(self, folder)
 
     def load(self, folder: str | Path) -> None:
-        """Load weights that :meth:`save` wrote; the errors are those of ``folder.fill``."""
+        """Load weights that :meth:`save` wrote; raises the same errors as ``folder.fill``."""
         folders.fill(self, folder)
 
 

@@ -171,8 +171,8 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite, of which the first is
-    "clean".
+    """Return the config of an evaluation and the conditions of the suite; the first condition
+    is "clean".
 
     If ``agent`` is a path of weights, the config selects the kind of agent that they belong to.
     """
@@ -362,7 +362,7 @@ def _print_estimate(
     each = seconds_per_episode(agent, world, episodes)
     grid = f"{counted(len(episodes), 'episode')} x {counted(len(conditions), 'condition')}"
     print(
-        f"benchmark: {grid} = {counted(total, 'walk')} of about "
+        f"benchmark: {grid} = {counted(total, 'episode')} of about "
         f"{each:.2g} s on {processes} process{'es' * (processes > 1)}: about "
         f"{duration(each * total / processes)}",
         flush=True,

@@ -94,7 +94,7 @@ class Comparison:
     Attributes:
         lines: the lines of the table.
         agents: names of the agents.
-        about: text that says how the agents were evaluated.
+        about: text that describes how the agents were evaluated.
     """
 
     lines: tuple[Line, ...]

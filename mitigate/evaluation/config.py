@@ -41,7 +41,7 @@ class EvaluationConfig:
 
 @dataclass
 class WeightsConfig:
-    """Paths of the shipped weights for the chosen kind of agent, or None if there are none."""
+    """Paths of the shipped weights for the chosen kind of agent; None means no weights."""
 
     base: str | None = None
     teacher: str | None = None

@@ -70,7 +70,7 @@ def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.n
     Between measured severities, the fit is interpolated linearly.
 
     Args:
-        severities: K severities in ascending order, the first of which is 0 (clean).
+        severities: K severities in ascending order; the first severity is 0 (clean).
         rates: success rates [..., K].
         loss: fraction of the clean success rate, between 0 and 1.
 

@@ -106,8 +106,8 @@ def run_side_by_side(
 ) -> Iterator[dict[str, Any]]:
     """Run each job (episode, corruption, seed), and yield the measures in order.
 
-    The number of episodes that run at once equals the number of worlds. The measures are the same
-    as those of :func:`run_episode`. ``guards`` must not contain guards that change the agent.
+    The number of episodes that run at once equals the number of worlds. The measures equal
+    the measures of :func:`run_episode`. ``guards`` must not contain guards that change the agent.
     """
     waiting, free = deque(enumerate(jobs)), list(worlds)
     running: dict[int, tuple[_Rollout, World, Any]] = {}

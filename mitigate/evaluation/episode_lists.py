@@ -68,10 +68,10 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
             return seeded_episodes([FIRST_TRAINING_SEED + number])[0]
         if training is None:
             raise ValueError(
-                f"adapt=recentre measures clean features on training episodes, but those of "
-                f"{type(world).__name__} are unknown. Measure the features on your own episodes: "
-                "guard = Recentre(); guard.calibrate(agent, world, lambda number: episodes[number])"
-                " (mitigate.guards.adaptation.recentre). Then pass adapt=guard."
+                "adapt=recentre measures clean features on training episodes, but the training "
+                f"episodes of {type(world).__name__} are unknown. Measure the features on your own "
+                "episodes: guard = Recentre(); guard.calibrate(agent, world, lambda number: "
+                "episodes[number]) (mitigate.guards.adaptation.recentre). Then pass adapt=guard."
             )
         source = build.maker(training)()
         return source.draw(generator(0, "calibration", number), (0, 1))

@@ -1,10 +1,10 @@
 """Evaluate agents in closed loop, all on the same episodes with the same random keys.
 
-The result of an episode does not depend on other episodes. Each row is written as soon as it is
-computed, and an interrupted evaluation resumes where it stopped. All conditions of an episode run
-in one process, which caches renderings and features. Identical frames give identical features, so
-the cache does not change results. An agent with ``together`` > 1 (``agents/agent.py``) runs several
-episodes at once.
+The result of an episode does not depend on other episodes. Each row is written immediately
+after it was computed, and an interrupted evaluation resumes where it stopped. All conditions of an
+episode run in one process, which caches renderings and features. Identical frames give identical
+features, so the cache does not change results. An agent with ``together`` > 1 (``agents/agent.py``)
+runs several episodes at once.
 """
 
 from __future__ import annotations
@@ -56,9 +56,9 @@ class EpisodeTask:
     """A task for ``mitigate/core/workers.py`` that runs jobs and yields their result rows.
 
     Each process calls ``make_world``. The label of each job has the key "seed". ``classes`` is the
-    hash ``Known.classes``, which worker processes compare with a hash of their own classes. If a
-    guard is continual, ``streams`` holds all jobs of each condition in order. For such a guard,
-    finished episodes also run again, and their new results are discarded.
+    hash ``Known.classes``, which each worker process compares with the hash of the classes that
+    it loads. If a guard is continual, ``streams`` holds all jobs of each condition in order. For
+    such a guard, finished episodes also run again, and their new results are discarded.
     """
 
     agent: Any
@@ -238,7 +238,7 @@ def run_missing(
             [start_of(task.agent, episode, met, label["seed"]) for episode, met, label in todo]
         )
     if not todo:
-        print(f"{title}: {counted(len(jobs), 'walk')}, all already done, in {out}", flush=True)
+        print(f"{title}: {counted(len(jobs), 'episode')}, all already done, in {out}", flush=True)
         return _in_order(out, identities)
     at_once = _together(task.agent, world)
     if task.guards.continual:

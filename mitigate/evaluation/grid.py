@@ -30,7 +30,7 @@ from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
 from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
 
-BLOCKS = {  # the blocks contain this project's corruptions; those of other packages are in no block
+BLOCKS = {  # the blocks contain only this project's corruptions, not corruptions of other packages
     "RGB": names("rgb"),
     "Depth": names("depth"),
     "Instruction": names("instruction"),

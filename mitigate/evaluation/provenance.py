@@ -367,7 +367,7 @@ def first_world(
 
 
 def check_classes(agent: Any, world: World, expected: str) -> None:
-    """Raise ValueError if the classes of a worker process differ from those of its parent process.
+    """Raise ValueError if the classes differ between a worker process and its parent process.
 
     ``expected`` is ``Known.classes`` of the parent.
     """

@@ -265,7 +265,7 @@ def _holds_rows(path: Path) -> bool:
         with open_text(path) as file:
             line = file.readline(LONGEST_LINE + 1)
     except (UnicodeDecodeError, OSError):
-        return True  # the file is damaged; read() will raise an error that says so
+        return True  # the file is damaged; read() will raise an error that explains it
     first = _parse(line)
     if first is None and line.strip() and len(line) <= LONGEST_LINE:
         return True

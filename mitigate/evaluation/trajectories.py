@@ -216,8 +216,8 @@ def run_agents(
 ) -> Iterator[Walk]:
     """Run ``episode`` with each agent, and yield the trajectories.
 
-    The first trajectory is that of the first agent without corruption. The other trajectories are
-    those of all agents under ``corruption``. Random keys and measures are the same as in an
+    The first trajectory shows the first agent without corruption. The other trajectories show
+    all agents under ``corruption``. Random keys and measures are the same as in an
     evaluation with ``seed``. ``guards`` maps the names of agents to their guards.
     """
     first = next(iter(agents))

@@ -71,7 +71,7 @@ def _load(agent: Any) -> Any:
         return load(agent)
     except FileNotFoundError as error:
         raise FileNotFoundError(
-            f"{error} For an agent of your own, write agents=[module:callable], such as "
+            f"{error} For your own agent, write agents=[module:callable], such as "
             "agents=[my_policy:load]."
         ) from error
 

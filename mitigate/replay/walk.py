@@ -65,8 +65,8 @@ def walk(
 ) -> Answers:
     """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
-    After each step, the agent is told how the driver moved (``Agent.taken``). If the motion is
-    unknown, the agent is told its own decision on clean frames instead. So runs under different
+    After each step, the agent receives the driver's motion (``Agent.taken``). If the motion is
+    unknown, the agent receives its own decision on clean frames instead. So runs under different
     corruptions differ only in frames and instructions.
 
     Args:

@@ -167,7 +167,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 def add_programs(folder: Path) -> Path:
     """Write ``program.pt2`` of the hardened ``folder`` again.
 
-    The outputs of the program on the probe inputs are compared with those of the agent.
+    The outputs of the program on the probe inputs are compared with the outputs of the agent.
 
     Returns:
         The path of the file.

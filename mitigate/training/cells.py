@@ -35,7 +35,7 @@ OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
 CELLS = ("agent", "checkpoint", "name", "seed", "out")
 # options that a table column must not set, because the table sets them
 PLACES = ("seed", "folder", "out", "workers", "evaluation")
-# further options that a column without training must not set
+# options that a column without training must not set, in addition to PLACES
 MEASURED = ("split", "episodes", "conditions", "severity")
 
 
@@ -145,8 +145,8 @@ class Cell:
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
         """Return all options of the cell's evaluation ``name``.
 
-        ``options`` extend or override the options of the table. The number of episodes is limited
-        to that of the table.
+        ``options`` extend or override the options of the table. The number of episodes is at most
+        the number in the table.
         """
         return [
             f"name={self.column}",

@@ -1,8 +1,8 @@
 """Define the interface of objectives, which consist of a loss and a source of batches.
 
 A stage of a recipe (YAML) names an objective and lists arguments. Some arguments belong to the
-constructor of the objective, and others to that of its source. :class:`ObjectiveSpec` passes each
-argument to the constructor that declares it.
+constructor of the objective, and others to the constructor of its source. :class:`ObjectiveSpec`
+passes each argument to the constructor that declares it.
 """
 
 from __future__ import annotations
@@ -306,7 +306,7 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and those of its source.
+    """Return the arguments of the objective ``kind`` and the arguments of its source.
 
     An argument that both constructors declare is in both results. Raises ValueError for an argument
     that neither of them declares.

@@ -64,7 +64,7 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Compute the cells and write the report into ``out``. The errors are those of
+    """Compute the cells and write the report into ``out``. Raises the same errors as
     :func:`make_table`.
     """
     failed = make(table_cells, config) or [

@@ -1,4 +1,4 @@
-"""Read and write episode files in the VLN-CE format, such as those of R2R-CE, RxR-CE and the
+"""Read and write episode files in the VLN-CE format, such as the files of R2R-CE, RxR-CE and the
 apartments.
 
 A file contains ``{"episodes": [...], ...}`` as plain or gzipped JSON. Positions are in metres in
@@ -196,7 +196,7 @@ class Episode:
     Attributes:
         episode_id: Id as a string. :func:`write_episodes` writes it with the JSON type that it had
             in the file.
-        trajectory_id: Id of the reference path; its type is handled like that of ``episode_id``.
+        trajectory_id: Id of the reference path; its type is handled as for ``episode_id``.
         scene_id: Name of the scene.
         start_position: VLN-CE position [3] in metres.
         start_rotation: Quaternion [x, y, z, w].

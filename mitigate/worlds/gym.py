@@ -14,8 +14,8 @@ from mitigate.worlds.seeded import WHOLE, Arrays, SeededWorld
 class GymWorld(SeededWorld):
     """World that wraps a gymnasium environment.
 
-    The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. The observation of
-    ``env`` is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or a ``Dict`` that contains such a
+    The arguments are the same as for :class:`~mitigate.worlds.seeded.SeededWorld`. The observation
+    of ``env`` is an RGB frame (uint8 [H, W, 3] or [V, H, W, 3]) or a ``Dict`` that contains such a
     frame. ``success`` is the name of an entry of ``info``, or a function.
     """
 

@@ -1,9 +1,9 @@
 """A world (``worlds/world.py``) that runs VLN-CE episodes in any scene of habitat-sim.
 
 habitat-sim 0.3 is not on the package index. ``docs/habitat.md`` explains how to get habitat-sim and
-scenes. habitat-lab is not needed. The cameras, actions and measures are those of VLN-CE. For the
-same path, the measures equal the values of habitat-lab, except nDTW. This module computes nDTW from
-the reference path of an episode, whereas VLN-CE uses the denser locations in ``*_gt.json``.
+scenes. habitat-lab is not needed. The cameras, actions and measures are the same as in VLN-CE. For
+the same path, the measures equal the values of habitat-lab, except nDTW. This module computes nDTW
+from the reference path of an episode, whereas VLN-CE uses the denser locations in ``*_gt.json``.
 """
 
 from __future__ import annotations

@@ -62,8 +62,8 @@ class Rule:
 
     @property
     def path_metres(self) -> float:
-        """Threshold of nDTW in metres: the distance of the rule, or that of VLN-CE if the rule uses
-        view points.
+        """Threshold of nDTW in metres: the distance of the rule, or the distance of VLN-CE if the
+        rule uses view points.
 
         A rule with view points needs another threshold, because view points do not lie on the
         reference path.

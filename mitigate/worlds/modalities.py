@@ -15,10 +15,10 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
     Args:
         names: Names of the corruptions.
         available: Modalities that the observation contains.
-        lack: Part of the error message that says what is missing; ``{0}`` is replaced by the
+        lack: Part of the error message that describes what is missing; ``{0}`` is replaced by the
             modality.
-        fix: Part of the error message that says how to add the modality; ``{0}`` is replaced by the
-            modality.
+        fix: Part of the error message that explains how to add the modality; ``{0}`` is replaced by
+            the modality.
 
     Raises:
         ValueError: A modality is missing.

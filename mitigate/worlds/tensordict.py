@@ -154,8 +154,8 @@ class WorldEnv(EnvBase):
 class EnvWorld(SeededWorld):
     """World that wraps a torchrl environment that is not batched and provides frames.
 
-    The arguments are those of :class:`~mitigate.worlds.seeded.SeededWorld`. ``success`` names an
-    entry of the tensordict, or is a function.
+    The arguments are the same as for :class:`~mitigate.worlds.seeded.SeededWorld`. ``success``
+    names an entry of the tensordict, or is a function.
     """
 
     def _spaces(self, env: EnvBase) -> tuple[ActionSpace, Arrays]:
@@ -232,7 +232,7 @@ def _dotted(key: str | tuple[str, ...]) -> str:
 
 
 def _list_episodes(episodes: Any) -> list[Episode]:
-    """Return the episodes of a file or an iterable. Raise ValueError if there are none."""
+    """Return the episodes of a file or an iterable. Raise ValueError if it is empty."""
     is_file = isinstance(episodes, (Path, str))
     listed = list(read_episodes(episodes)) if is_file else list(episodes)
     if not listed:

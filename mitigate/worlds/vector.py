@@ -95,7 +95,7 @@ class CorruptVectorObservation(VectorWrapper):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start the next episode in all environments, or in those of the reset mask."""
+        """Start the next episode in all environments, or in the environments of the reset mask."""
         observations, info = self.env.reset(seed=seed, options=options)
         if seed is not None:
             self._resets.zero_()

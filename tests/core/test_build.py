@@ -74,8 +74,8 @@ class Gained(torch.nn.Module):
     ("overrides", "gain"), [([], -1.0), (["agent=mine"], -1.0), (["agent.gain=2.0"], 2.0)]
 )
 def test_settings_of_weights_apply_unless_overridden(overrides, gain, tmp_path):
-    """``agent=mine`` selects a config with the right class, but its values are not those of the
-    loaded agent."""
+    """``agent=mine`` selects a config with the right class, but its values are not the values of
+    the loaded agent."""
     target = f"{__name__}.Gained"
     checkpoint.save_weights(Gained(-1.0), tmp_path)
     settings = {"agent": {"_target_": target, "gain": -1.0, "width": 2}}

@@ -1,4 +1,4 @@
-"""Tests of which files in a folder count as frames: links to files and folders are followed."""
+"""Test which files in a folder count as frames: links to files and folders are followed."""
 
 import os
 import shutil

@@ -1,4 +1,4 @@
-"""Tests that corruptions of torch tensors equal those of numpy arrays."""
+"""Tests that corruptions of torch tensors equal the corruptions of numpy arrays."""
 
 from __future__ import annotations
 

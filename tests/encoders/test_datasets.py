@@ -52,7 +52,7 @@ def test_a_single_episode_is_split_into_blocks(folder):
 def test_several_cameras_need_a_choice(folder):
     with pytest.raises(ValueError, match=rf"env.camera must name one.*{FRONT}, {WRIST}, {DEPTH}"):
         DatasetFrames(str(folder))
-    with pytest.raises(ValueError, match="one of the rgb cameras.*: 0 fit"):
+    with pytest.raises(ValueError, match="one of the rgb cameras.*because 0 cameras match"):
         DatasetFrames(str(folder), DEPTH)
 
 

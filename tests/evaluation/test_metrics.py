@@ -1,5 +1,5 @@
-"""Tests that the metrics equal those of VLN-CE, and that PRS equals the numbers in the paper's
-table."""
+"""Tests that the metrics equal the metrics of VLN-CE, and that PRS equals the numbers in the
+paper's table."""
 
 from __future__ import annotations
 

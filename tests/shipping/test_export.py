@@ -51,7 +51,7 @@ ADAPTERS = {
 
 
 def finished_run(folder: Path, agent: TopologicalAgent, settings: dict, **others) -> Path:
-    """Write a run folder like the one that `make train` writes."""
+    """Write a run folder as `make train` does."""
     checkpoint.save_weights(agent, folder / "agent")
     node = {"_target_": loading.TARGET, **settings}
     cfg = {

@@ -60,8 +60,8 @@ def load(path: Path) -> object:
 
 
 def episode_file(path: Path, **changes: object) -> Path:
-    """Write two valid episodes and a third one with ``changes``; a key with the value ``...`` is
-    removed."""
+    """Write two valid episodes and a third episode with ``changes``; a key with the value ``...``
+    is removed."""
     third = {key: value for key, value in (R2R | changes).items() if value is not ...}
     return write_json(path / "bad.json.gz", {"episodes": [R2R, RXR, third]})
 

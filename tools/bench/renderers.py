@@ -25,7 +25,7 @@ from mitigate.worlds.apartments.renderer import Renderer
 
 ROUNDS = 4
 OURS = "apartments"
-# an environment with many rooms, like apartments, and one with four empty rooms
+# an environment with many rooms, like apartments, and an environment with four empty rooms
 SCENES = ("Maze", "FourRooms")
 _POSES = 40  # number of random poses of MiniWorld's agent
 

@@ -1,6 +1,6 @@
 """Measure the milliseconds of a call in the steady state, and of calls with new parameters.
 
-Other programs only make a call slower, so the time in the steady state is that of the fastest of
+Other programs only make a call slower, so the time in the steady state is the minimum over
 many equal calls. Calls with new random parameters are not equal, so their median is used.
 """
 

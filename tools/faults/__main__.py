@@ -81,17 +81,18 @@ def main(arguments: Sequence[str] | None = None) -> int:
     # some faults send SIGINT, and child processes would inherit an ignored SIGINT
     signal.signal(signal.SIGINT, signal.default_int_handler)
     file = options.out / f"faults-seed{options.seed}.json"
+    stored = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
+    outcomes = {}
     with ThreadPoolExecutor(max(1, options.jobs)) as pool:
         results = pool.map(lambda name: inject_faults(name, options), options.recipes)
-        outcomes = dict(zip(options.recipes, results, strict=True))
+        for name, new in zip(options.recipes, results, strict=True):
+            outcomes[name] = new
+            # if the undisturbed run fails, UNBROKEN is the only outcome: no fault is injected
+            before = {} if report.UNBROKEN in new else stored.get(name, {})
+            stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
+            write_bytes(file, json.dumps(stored, indent=1).encode())
     tried, survived = report.count(outcomes)
     print(f"tried {tried}, survived {survived}", flush=True)
-    stored = json.loads(file.read_text(encoding="utf-8")) if file.is_file() else {}
-    # UNBROKEN is the only outcome if the undisturbed run fails, because then no fault is injected
-    for name, new in outcomes.items():
-        before = {} if report.UNBROKEN in new else stored.get(name, {})
-        stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
-    write_bytes(file, json.dumps(stored, indent=1).encode())
     if options.write:
         report.write(PAGE, stored, FAMILIES, options.seed)
         print(f"wrote docs/lab/{PAGE.name}")

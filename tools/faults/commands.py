@@ -144,8 +144,8 @@ def dead_port() -> Iterator[int]:
 
 
 def die_first_address(commands: Commands) -> str:
-    """Evaluate with an endpoint whose host name has two addresses: first one that never answers,
-    then the real one.
+    """Evaluate with an endpoint whose host name has two addresses: the first never answers, and
+    the second is the real address.
     """
     rows = []
     with answering() as (port, requests), dead_port() as dead:
@@ -202,7 +202,7 @@ def interrupt_and_repeat(
     if problem:
         return problem
     command = commands.start(*words)
-    command.wait_for(lambda: False, commands.rng.uniform(0, seconds))
+    command.wait_for(lambda: False, commands.rng.uniform(0, 0.7 * seconds))  # it may be faster
     if not command.runs():
         return "not run: the export ended before the fault"
     command.process.send_signal(number)

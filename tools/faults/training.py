@@ -1,5 +1,5 @@
-"""Inject faults into the training run of a recipe, and compare its weights with those of an
-undisturbed run.
+"""Inject faults into the training run of a recipe, and compare its weights with the weights of
+an undisturbed run.
 
 The same training run is disturbed by all faults in turn, and resumes after each. A training run may
 end before a fault is injected. Then its weights are compared, and the run is deleted and started
@@ -132,7 +132,7 @@ class Training:
         return problem
 
     def weights(self) -> str:
-        """Return the sha256 of all trained weights, or "" if there are none."""
+        """Return the sha256 of all trained weights, or "" if no weights exist."""
         files = sorted((self.folder / "agent").rglob("*.safetensors"))
         if not files:
             return ""

@@ -202,7 +202,7 @@ def copied(policy: Policy) -> Policy:
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution of a network, or of its first layer if there is none.
+    """Return the name of the last convolution, or of the first layer if there is no convolution.
 
     Raises:
         ValueError: The network has neither a convolution nor a linear layer.

@@ -338,8 +338,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
             if base.get("sha256") != self._base():
                 raise ValueError(
                     f"The adapter {folder} was trained on the model {str(base.get('model')):.200} "
-                    f"with another sha256 than that of {self.model}. Set agent.model to the model "
-                    "of the adapter."
+                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to the "
+                    "model of the adapter."
                 )
         tensors, expected = load_tensors(file), self._adapter()
         wrong = sorted(

@@ -1,7 +1,7 @@
 """Define the answers that a vision-language agent may give, and read them from text.
 
 An answer such as "forward 75 cm" repeats one low-level action, as in NaVid (Zhang et al., RSS
-2024). The step sizes are those of VLN-CE: 25 cm and 15 degrees.
+2024). The step sizes are the same as in VLN-CE: 25 cm and 15 degrees.
 """
 
 from __future__ import annotations

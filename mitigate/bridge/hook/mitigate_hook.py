@@ -292,7 +292,7 @@ def _uninterrupted(failure):
     An interrupt also ends the process, because the agent might catch it and act on incomplete data.
 
     Args:
-        failure: Text for the message that says what did not happen.
+        failure: Text of the message, which describes the failure.
     """
 
     def decorate(method):
@@ -629,7 +629,7 @@ def _session_of(owner):
 
 
 def _call_clean(original, *args, **kwargs):
-    """Call a method whose frames are not for acting but for goal pictures or videos."""
+    """Call a method whose frames are used for goal pictures or videos, not for acting."""
     return original(*args, **kwargs)
 
 

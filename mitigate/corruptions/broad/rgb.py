@@ -36,7 +36,7 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add a random sum of sine waves b_n sin(pi n x) to the levels x, by a look-up table per colour
+    """Add a random sum of sine waves b_n sin(pi n x) to the levels x, by a lookup table per colour
     or for all colours (PRIME).
     """
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)

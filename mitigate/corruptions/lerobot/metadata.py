@@ -28,7 +28,7 @@ TASKS = "meta/tasks.parquet"
 EPISODES = "meta/episodes"
 VIDEO = "video"
 IMAGE = "image"
-# dtypes of lerobot: those of numpy, and those in src/lerobot/datasets/feature_utils.py
+# dtypes of lerobot: numpy dtypes, and the dtypes in src/lerobot/datasets/feature_utils.py
 NUMBERS = (
     *("float16", "float32", "float64", "bool"),
     *(f"{sign}int{bits}" for sign in ("", "u") for bits in (8, 16, 32, 64)),

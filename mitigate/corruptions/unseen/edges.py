@@ -22,7 +22,7 @@ FATTENING = 0.08  # reach as a fraction of the shorter side, at severity 1
 # half the side of the square from which a flying pixel mixes depth, as a fraction of the shorter
 # side
 FOOTPRINT = 0.03
-# baseline in metres at severity 1; the baseline of a Kinect is 0.075, that of a ZED 0.12
+# baseline in metres at severity 1; the baseline of a Kinect is 0.075, the baseline of a ZED 0.12
 BASELINE = 0.50
 
 _U = np.uint64

@@ -34,8 +34,8 @@ SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image's s
 GLOSS_CORRELATION = 0.08  # correlation length as a fraction of the shorter side
 # a pixel is floor if it is farther below the camera than this fraction of the camera's height
 FLOOR = 0.92
-# ratio of the depth of the mirrored ceiling to that of the floor, if the ceiling is twice as high
-# as the camera
+# ratio of the depth of the mirrored ceiling to the depth of the floor, if the ceiling is twice as
+# high as the camera
 UPSIDE_DOWN = 3.0
 
 _U = np.uint64

@@ -33,7 +33,7 @@ CLOSE = 1e-5  # tolerance, because figures in entries are rounded to six digits
 
 
 def rows_of(entry: LeaderboardEntry) -> list[Row]:
-    """Return all rows in the file that ``entry`` names, including those of other agents.
+    """Return all rows in the file that ``entry`` names, including rows of other agents.
 
     Raises:
         FileNotFoundError: the file is not available.

@@ -2,7 +2,7 @@
 
 A BatchNorm layer normalises its input with the mean and variance of the training data. Under
 corruption, the input has a different mean and variance (Schneider et al. 2020). Before each call of
-a layer, this guard moves its two statistics towards those of the current input.
+a layer, this guard moves its two statistics towards the statistics of the current input.
 """
 
 from __future__ import annotations

@@ -27,7 +27,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card contains the hash of the weights as they are read from the folder. Therefore, with
+    The card contains the hash of the weights that are read from the folder. Therefore, with
     ``half``, the weights of ``restorer`` are also rounded to float16.
     """
     with folders.write_folder(folder, "restorer") as draft:

@@ -195,9 +195,9 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames always are within the range. Depth frames must have valid pixels, of which at
-        most a fraction :data:`BEYOND` may be beyond ``far``. If a larger fraction is beyond
-        ``far``, a warning is shown.
+        RGB frames always are within the range. Depth frames must have valid pixels, and at most
+        a fraction :data:`BEYOND` of the valid pixels may be beyond ``far``. If a larger fraction is
+        beyond ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB

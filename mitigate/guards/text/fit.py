@@ -6,7 +6,8 @@ sentence or clause belongs to an attack, and the other whether it is in an unusu
 ``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. The
 training texts of the networks are honest texts to which attacks were added. The regression scores
 of a training text come from regressions that were trained without the text's fold. Otherwise, the
-scores would be more accurate than those of new texts, and the networks would rely on them too much.
+scores would be more accurate than the scores of new texts, and the networks would rely on them too
+much.
 """
 
 from __future__ import annotations
@@ -164,7 +165,7 @@ def common_words(lines: Sequence[Line]) -> list[str]:
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
     """Yield (text, is_block, line, weight) for each line, sentence and clause.
 
-    ``is_block`` says whether the text stands between delimiters.
+    ``is_block`` says whether the text is between delimiters.
     """
     for line in lines:
         for text in line.text.split("{route}"):

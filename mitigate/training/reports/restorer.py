@@ -182,8 +182,8 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views of one time step in their corrupted, restored and clean versions. The time
-    step is the one whose drawn views show the least of near walls (:func:`_far`).
+    """Draw three views of one time step in their corrupted, restored and clean versions. The
+    time step is chosen so that its drawn views show the least of near walls (:func:`_far`).
 
     Returns:
         A uint8 RGB picture with one row per corruption, or None if no corruption applies to the

@@ -43,8 +43,8 @@ def goal_field(scene_id: str, goals: tuple[tuple[float, float, float], ...]) -> 
 
 
 class Simulator:
-    """Simulator of one agent in one apartment. The actions and the step limit are those of VLN-CE
-    (``core/observation.py``).
+    """Simulator of one agent in one apartment. The actions and the step limit are the same as in
+    VLN-CE (``core/observation.py``).
     """
 
     def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:

@@ -83,7 +83,7 @@ class ApartmentsWorld(World):
         self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
-        # a renderer cannot be pickled, so an unpickled world uses the renderer of its own process
+        # a renderer cannot be pickled, so an unpickled world uses the renderer of its process
         return {"size": self.size, "layouts": self.layouts, "views": self.views, "rule": self._rule}
 
     def __setstate__(self, state: dict[str, Any]) -> None:

@@ -86,7 +86,7 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
     header.
 
     A ROS 1 message starts with a counter and a time, both little endian. A ROS 2 message (CDR)
-    starts with four bytes, of which the second is the byte order; the time follows.
+    starts with four bytes; the second byte gives the byte order. The time follows.
     """
     if len(raw) < 12:
         return 0.0

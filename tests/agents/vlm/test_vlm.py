@@ -273,7 +273,7 @@ def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model
     assert json.loads((tmp_path / "adapter_config.json").read_text("utf-8"))[
         "base_model_name_or_path"
     ] == str(model)
-    with pytest.raises(ValueError, match="with another sha256"):
+    with pytest.raises(ValueError, match="whose sha256 differs from the sha256 of"):
         build(folder_of("llava_onevision")).load(tmp_path)
     (tmp_path / "base.json").unlink()
     folders.seal(tmp_path, "agent")

@@ -246,7 +246,7 @@ def test_benchmark_prints_an_estimate_and_resumes(tmp_path, monkeypatch, capsys)
     options["options"] = ["env.size=16"]
     entry = mitigate.benchmark(Straight(), **options)
     printed = capsys.readouterr().out
-    assert "2 episodes x 2 conditions = 4 walks" in printed and "1 process: about" in printed
+    assert "2 episodes x 2 conditions = 4 episodes" in printed and "1 process: about" in printed
     assert entry.name == "Straight" and entry.SR.keys() == {"clean", "flare"}
     assert entry.sensors[0] == "rgb: 12 views of 16 x 16 x 3 uint8, 90 degrees wide"
     rows = Path(entry.rows["file"])
@@ -401,7 +401,7 @@ class OneCamera(Straight):
         (Straight(), {"episodes": "2"}, "or null for the whole list, got '2'"),
         (Straight(), {"episodes": 2.0}, "or null for the whole list, got 2.0"),
         (Straight(), {"options": "env.views=1"}, "options must be a list of strings"),
-        (OneCamera(), {}, "OneCamera takes 1. Set env.views=1"),
+        (OneCamera(), {}, "OneCamera needs 1. Set env.views=1"),
         (
             Straight(),
             {"world": ApartmentsWorld(16)},

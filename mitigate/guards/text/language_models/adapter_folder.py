@@ -57,8 +57,8 @@ def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
         raise FileNotFoundError(
-            f"There is no adapter at {folder}: {', '.join(missing)} missing. Train one with `make "
-            "train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
+            f"There is no adapter at {folder}: {', '.join(missing)} missing. Train an adapter with "
+            "`make train RECIPE=safeguard_lora`, or name checkpoints/safeguard."
         )
     card, config = (_entries(Path(folder) / name, kinds) for name, kinds in ENTRIES.items())
     named = all(isinstance(target, str) for target in config["target_modules"])

@@ -23,7 +23,7 @@ def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
 
 
 def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
-    """Return the token ids of the prompt, and those of the completion including an end token."""
+    """Return the token ids of the prompt and of the completion, which includes an end token."""
     answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
     return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
 
