@@ -146,7 +146,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     try:
         status = _run(name, options)
         sys.stdout.flush()
-    except BrokenPipeError:  # the program that reads the output, such as head, has ended
+    except BrokenPipeError:  # the program that reads the output (for example ``head``) has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = 128 + signal.SIGPIPE
     sys.exit(status)

@@ -59,8 +59,9 @@ class Imitate(OnEpisodes):
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
-    """Return the imitation loss, which is the weighted cross-entropy with the expert minus the
-    expert's entropy.
+    """Return the imitation loss.
+
+    It is the weighted cross-entropy with the expert, less the entropy of the expert.
 
     Auxiliary losses are added, multiplied by their ``weights`` (default 1).
 

@@ -32,8 +32,8 @@ CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 BETTER = 0.85
 # maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
 SPENT = 0.15
-# First step number of each purpose. No purpose uses the time steps of another one, or those on
-# which the network was trained.
+# First step number of each purpose. Purposes use different time steps.
+# No purpose uses the time steps on which the network was trained.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 

@@ -20,8 +20,7 @@ from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH, RGB
 
 SIZE = 64  # side in pixels of the views that the shipped agents were trained on
-# depth is clipped at this distance (metres); farther surfaces do not matter, because moves have at
-# most 3 m
+# metres at which depth is clipped; farther surfaces do not matter: a move has at most 3 m
 DEPTH_RANGE = 5.0
 GRID = 4  # number of rows and columns of the last feature map for views of 64 pixels
 # free space: number of direction bins over 90 degrees, number of distance bins, metres per bin

@@ -228,7 +228,7 @@ class Scores:
 
     @property
     def measures(self) -> tuple[float | None, ...]:
-        """The losses, followed by None, which represents the area."""
+        """The losses to search for, followed by None, which stands for the area under the curve."""
         return (*self.losses, None)
 
     @property

@@ -93,8 +93,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
                     write_frames(draft, steps, instruction)
                 else:
                     draft = write_bag(draft, steps, config.form)
-                    # the instruction is written before the bag, so that a complete bag always has
-                    # one
+                    # the instruction is written first, so that every complete bag has one
                     write_bytes(path.with_suffix(".txt"), instruction.encode())
                 draft.rename(path)
             root.expected.append(path)

@@ -81,8 +81,8 @@ class Objective(nn.Module):
         """Return the batch of ``step``, where the first step is 0.
 
         The batch must be a pure function of the seed, the step and the weights. The trainer moves
-        its tensors to the training device. If the batch has an entry ``episode_ids`` (list of str),
-        the error message for a loss that is not finite contains these ids.
+        the tensors of the batch to the training device. If the batch has an entry ``episode_ids``
+        (list of str), the error message for a loss that is not finite contains these ids.
 
         State that grows over steps, such as a buffer, must be rebuilt from the seed and the
         weights, or saved as extra state. If the state is not restored, a resumed run gives
@@ -337,7 +337,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the parameter of ``kind`` that receives its source.
+    """Return the name of the parameter of ``kind`` that takes the data source.
 
     Returns "" if there is no such parameter or if ``arguments`` already sets it.
     """

@@ -395,7 +395,7 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
     """Return whether a value, or at least one of its elements, is true. None counts as false.
 
     Raises:
-        ValueError: An element is neither a truth value nor 0 or 1.
+        ValueError: An element is something other than a boolean, 0 or 1.
     """
     try:
         parts = np.asarray(value).ravel().tolist()

@@ -456,7 +456,7 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
-    # fill does not compare the hash of the agent, because adapters for training would change it
+    # ``fill`` does not compare the hash of the agent, because training adapters would change it
     assert loading.fill(own_value, copied) is own_value
 
 

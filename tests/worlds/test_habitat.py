@@ -1,4 +1,4 @@
-"""Tests of corrupting Habitat observations in which all cameras form one panorama."""
+"""Tests of the corruption of Habitat observations whose cameras together form one panorama."""
 
 import numpy as np
 import pytest

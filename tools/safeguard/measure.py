@@ -90,7 +90,7 @@ def bank(name: str, half: str, authors: Sequence[str] = AUTHORS) -> list[dict[st
     lines = []
     for author in authors:
         file = FRESH / author / f"{name}.jsonl"
-        if not file.is_file():  # only one author wrote texts in other scripts
+        if not file.is_file():  # only one author wrote texts in other writing systems
             continue
         with open(file, encoding="utf-8") as opened:
             lines += [json.loads(line) | {"author": author} for line in opened if line.strip()]

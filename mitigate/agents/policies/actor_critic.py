@@ -67,7 +67,7 @@ class Joint(Distribution):
 class ActorCritic(nn.Module):
     """A policy with a critic.
 
-    The critic of an actor-critic of stable-baselines3 starts as a copy of the policy's own critic.
+    For a policy of stable-baselines3, the new critic starts as a copy of the critic in the policy.
     Other policies get a new critic, a small network that reads the output of one of the policy's
     modules. Training the critic does not train modules of the policy, so that wrong values cannot
     change the actions directly.

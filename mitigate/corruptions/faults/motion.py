@@ -65,7 +65,7 @@ def motion_gain(severity: float, key: Key) -> Movement:
 
 
 def dropped_action(severity: float, key: Key) -> Movement:
-    """Return a movement that may drop the command of this step."""
+    """Return the function that moves the robot, and that may ignore the command of this step."""
     return Movement(dropped=_happens(severity, key, "dropped_action"))
 
 

@@ -173,7 +173,7 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 
 
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
-    """Return the remaining kernel of ``blur.gaussian`` along one axis, float64 [n].
+    """Return the kernel that ``blur.gaussian`` still has to apply along one axis, float64 [n].
 
     The kernel is applied after the smoothing at the levels below ``first``. Its taps are 2^first
     pixels apart, and their sum is 1.

@@ -30,7 +30,7 @@ LISTS = ("rgb.txt", "depth.txt")
 ASSOCIATIONS = "associations.txt"
 TRAJECTORY = "groundtruth.txt"
 TUM_UNIT = 1 / 5000  # metres per integer step of depth (TUM RGB-D benchmark, file formats)
-# field of view of the default calibration of TUM RGB-D: 640 pixels width, focal length 525 pixels
+# field of view of the default calibration of TUM RGB-D: width 640, focal length 525 pixels
 TUM_HFOV = math.degrees(2 * math.atan(320 / 525))
 
 

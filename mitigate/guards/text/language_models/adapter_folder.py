@@ -36,7 +36,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safe
 def write_adapter(
     folder: str | Path, network: Any, tensors: dict[str, Tensor], card: dict[str, Any]
 ) -> None:
-    """Write the adapter of a PEFT ``network``, with its weights ``tensors`` and a ``card``.
+    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``.
 
     All files are replaced together, and a manifest lists them.
     """
