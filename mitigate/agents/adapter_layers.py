@@ -159,8 +159,7 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
     """
     if not gates or gates[0].training:
         return corrected
-    gate = gates[0]
-    assert isinstance(gate, FrameGate)
+    gate: Any = gates[0]
     logits = gate.judged.logits.view(-1, *[1] * (x.dim() - 1))
     return torch.where(logits > 0, corrected, x)
 
@@ -238,7 +237,7 @@ class TokenAdapter(Adapter):
 
 def optional_settings(gate: bool, middle: int | None) -> dict[str, bool | int]:
     """Return the optional settings that are set; only these are stored."""
-    return {**({"gate": True} if gate else {}), **({"middle": middle} if middle else {})}
+    return {name: value for name, value in (("gate", gate), ("middle", middle)) if value}
 
 
 class ConvAdapter(Adapter):

@@ -42,7 +42,7 @@ _STATISTICS = "_statistics_before_adapters"
 
 def insert_adapters(
     model: nn.Module,
-    target_modules: Iterable[str],
+    target_modules: Iterable[str] = (),
     *,
     reduction: int = 8,
     kernel: int = 3,
@@ -105,15 +105,13 @@ def insert_adapters(
     for name, module in model.named_modules():
         if name in gated:
             adapters[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
-        elif name in ringed:
+        elif name in ringed and views > 1:
             channels = channels_of(name, module)
-            if views == 1:  # no neighbours
-                adapters[name] = ConvAdapter(channels, ring_reduction, kernel, gate, middle)
-            else:
-                adapters[name] = RingAdapter(channels, ring_reduction, kernel, views, hfov)
-        elif name in plain and sites is None:
+            adapters[name] = RingAdapter(channels, ring_reduction, kernel, views, hfov)
+        elif name in ringed or (name in plain and sites is None):
+            narrower = ring_reduction if name in ringed else reduction
             channels = channels_of(name, module)
-            adapters[name] = ConvAdapter(channels, reduction, kernel, gate, middle)
+            adapters[name] = ConvAdapter(channels, narrower, kernel, gate, middle)
         elif name in plain and sites is not None:
             site = sites.get(name, "the encoder does not call it")
             if isinstance(site, str):
@@ -134,7 +132,7 @@ def remove_adapters(model: nn.Module) -> None:
 
     The backbone stays frozen; ``model.requires_grad_(True)`` makes it trainable again.
     """
-    for name, adapter in _attached(model).items():
+    for name, adapter in adapted(model).items():
         if adapter.hook is not None:
             adapter.hook.remove()
             adapter.hook = None
@@ -196,14 +194,14 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
 
 def write_adapters(model: nn.Module, draft: Path) -> None:
     """Write the files of :func:`save_adapters` into ``draft``, without a manifest."""
-    adapters = _attached(model)
+    adapters = adapted(model)
     if not adapters:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
-    if moved_statistics(model):
+    before = vars(model).get(_STATISTICS, {})
+    if any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items()):
         warnings.warn(
-            "The backbone's running statistics (BatchNorm) have changed since the adapters were "
-            "inserted, so these adapters fit only this backbone: save it, too. To keep the "
-            "statistics unchanged, train with the backbone in eval mode, model.eval().",
+            "The backbone's running statistics (BatchNorm) have changed, and the adapters fit only "
+            "this backbone: save it, too, or train with it in eval mode, model.eval().",
             stacklevel=3,
         )
     modules = nn.ModuleDict({_key(name): adapter for name, adapter in adapters.items()})
@@ -246,8 +244,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. First load the weights that "
-            "the adapters were trained on. To run in another dtype, convert the model afterwards."
+            f"{escaped(str(expected))}, but this one has {sha}. Load its weights and dtype first."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -304,18 +301,13 @@ def _key(name: str) -> str:
     return name.replace(".", "/")
 
 
-def adapted(model: nn.Module) -> list[str]:
-    """Return the names of the modules of ``model`` that have an adapter."""
-    return [*_attached(model)]
-
-
 def adapters_of(model: nn.Module) -> list[Adapter]:
     """Return the adapters and gates of ``model``, in the order of the model."""
-    return [*_attached(model).values()]
+    return [*adapted(model).values()]
 
 
-def _attached(model: nn.Module) -> dict[str, Adapter]:
-    """Return a dict from module names to their adapters."""
+def adapted(model: nn.Module) -> dict[str, Adapter]:
+    """Return the adapters and gates of ``model`` by the names of their modules."""
     return {
         name: child
         for name, module in model.named_modules()
@@ -335,46 +327,31 @@ def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
     them.
     """
     gates = _gates_of(adapters)
-    kinds = (name for name, adapter in adapters.items() if isinstance(adapter, FrameGate))
-    idle = [name for name in kinds if name not in gates.values()]
-    if idle:
+    judges = {name for name, adapter in adapters.items() if isinstance(adapter, FrameGate)}
+    if idle := sorted(judges - {*gates.values()}):
         raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps follows it "
-            "in the same encoder, and a gate cannot control adapters for tokens. Leave it out of "
-            "gates, or choose other target modules."
+            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps is in the "
+            "same encoder. Leave it out of gates, or choose other target modules."
         )
     # an existing attribute with this name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]
     if conflicts:
         raise ValueError(
-            f"{', '.join(conflicts)} already has an attribute {NAME!r}, the name under which an "
-            "adapter is added. Choose other target modules."
+            f"{', '.join(conflicts)} already has an attribute {NAME!r}. Choose other modules."
         )
     model.requires_grad_(False)
-    like = next(model.parameters(), torch.zeros(()))
+    usual = next(model.parameters(), torch.zeros(()))
     for name, adapter in adapters.items():
-        _attach(model.get_submodule(name), adapter, like)
+        module = model.get_submodule(name)
+        like = next(module.parameters(), usual)
+        module.add_module(NAME, adapter.to(like.device, like.dtype))
+        if isinstance(adapter, FrameGate):
+            adapter.hook = module.register_forward_pre_hook(_judge_input)
+        elif type(module).forward is not nn.Sequential.forward:  # nn.Sequential calls its new child
+            adapter.hook = module.register_forward_hook(_adapt)
     for name, gate in gates.items():
         adapters[name].gates = [adapters[gate]]
     setattr(model, _STATISTICS, _statistics(model))
-
-
-def moved_statistics(model: nn.Module) -> bool:
-    """Return whether the running statistics changed after the adapters were inserted."""
-    before = vars(model).get(_STATISTICS, {})
-    return any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items())
-
-
-def _attach(module: nn.Module, adapter: Adapter, usual: Tensor) -> None:
-    """Add ``adapter`` to ``module``; if the module has no weights, use the device and dtype of
-    ``usual``.
-    """
-    like = next(module.parameters(), usual)
-    module.add_module(NAME, adapter.to(like.device, like.dtype))
-    if isinstance(adapter, FrameGate):
-        adapter.hook = module.register_forward_pre_hook(_judge_input)
-    elif type(module).forward is not nn.Sequential.forward:  # nn.Sequential calls its new child
-        adapter.hook = module.register_forward_hook(_adapt)
 
 
 def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
@@ -389,8 +366,7 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
 
 def _judge_input(module: nn.Module, inputs: Any) -> None:
     """Apply the gate of ``module`` to its input (forward pre-hook)."""
-    gate = module.get_submodule(NAME)
-    assert isinstance(gate, FrameGate)
+    gate: Any = module.get_submodule(NAME)
     gate.look(inputs[0])
 
 
@@ -417,7 +393,6 @@ def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
 
 def _statistics(model: nn.Module) -> dict[str, Tensor]:
     """Return copies of the running means and variances of the model's normalisation layers."""
-    buffers = {
-        n: b for n, b in model.named_buffers() if n.rpartition(".")[2].startswith("running_")
-    }
-    return {name: torch.clone(buffer).float().cpu() for name, buffer in buffers.items()}
+    buffers = dict(model.named_buffers())
+    running = [name for name in buffers if name.rpartition(".")[2].startswith("running_")]
+    return {name: buffers[name].clone().float().cpu() for name in running}

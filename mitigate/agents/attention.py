@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from torch import Tensor, nn
 
-from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
+from mitigate.agents.text import MAX_WORDS, NEAR, PAD, THINGS, Vocabulary
 
 
 class Attention(nn.Module):
@@ -83,11 +83,16 @@ class TextReader(nn.Module):
     """
 
     concept_words: Tensor
+    seen: nn.Linear  # layers of :meth:`concept_features`, which a subclass creates
+    close: nn.Linear
+    kinds: nn.Linear
 
     def __init__(
         self, vocabulary: Vocabulary, width: int, heads: int, layers: int, dropout: float
     ) -> None:
         super().__init__()
+        if width % heads:
+            raise ValueError(f"width ({width}) must be a multiple of heads ({heads}).")
         self.words = nn.Embedding(len(vocabulary), width, padding_idx=PAD)
         nn.init.normal_(self.words.weight, std=0.5)
         self.places = nn.Embedding(MAX_WORDS, width)
@@ -95,6 +100,12 @@ class TextReader(nn.Module):
         self.register_buffer("concept_words", vocabulary.concept_words(), persistent=False)
         self.text = nn.ModuleList([Layer(width, heads, False, dropout) for _ in range(layers)])
         self.text_norm = nn.LayerNorm(width)
+
+    def concept_features(self, concepts: Tensor) -> list[Tensor]:
+        """Return features [..., width] of things, near things and other concepts [..., C]."""
+        meaning = self.concept_words @ self.words.weight  # [concepts, width]
+        parts = ((self.seen, THINGS), (self.close, NEAR), (self.kinds, slice(NEAR.stop, None)))
+        return [layer(concepts[..., part] @ meaning[part]) for layer, part in parts]
 
     def read(self, tokens: Tensor) -> tuple[Tensor, ...]:
         """Return text features [E, L, width] and mask [E, L] of token ids [E, L]."""

@@ -41,11 +41,11 @@ def build_agent(
     # checked first, because a huge width would fill the memory, and a pattern may match endlessly
     if loading.is_ours(node["_target_"]):
         config = plain(node)
-        known = schema.schema_of(config["_target_"]).settings
+        known = schema.schema_of(config["_target_"])
         config = {name: value for name, value in config.items() if name in known}
         # the agent's class rejects unknown settings
         again = "Give it such a value, or leave it out."
-        schema.check(config, "The options", node["_target_"], again)
+        schema.check(config, known, "The options", again)
     seeding.seed_everything(seed, "agent")
     agent = build(node)
     if weights is not None and not hasattr(agent, "state_dict"):  # the config may name any class

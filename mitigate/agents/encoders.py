@@ -10,6 +10,7 @@ view, because an agent with one camera steers by the horizontal position of an o
 from __future__ import annotations
 
 from itertools import pairwise
+from typing import Any
 
 import torch
 import torch.nn.functional as F
@@ -69,22 +70,17 @@ class Encoder(nn.Module):
         widths: channels of the stem and of each stage.
         resize: mode of ``F.interpolate`` with which frames are resized. stride: ``size`` must be a
         multiple of this number of pixels.
-        usual: an example value of ``size`` for error messages.
     """
 
     channels: int
     widths: tuple[int, ...]
     resize: str
     stride = 16
-    usual = SIZE
 
     def __init__(self, size: int) -> None:
         super().__init__()
         if size < self.stride or size % self.stride:
-            raise ValueError(
-                f"size must be a multiple of {self.stride} pixels, such as {self.usual}, got "
-                f"{size}."
-            )
+            raise ValueError(f"size must be a multiple of {self.stride} pixels, got {size}.")
         self.size = size
         self.stem, self.stages = self.backbone()
 
@@ -126,11 +122,12 @@ class RGBEncoder(Encoder):
 
     channels, resize = 3, "area"
     widths: tuple[int, ...] = (32, 48, 96, 160)
+    kernel = (GRID, GRID)  # size of the convolution that gathers the last map
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)
         last = self.widths[-1]
-        self.gather = nn.Conv2d(last, 2 * last, GRID, groups=last)
+        self.gather = nn.Conv2d(last, 2 * last, self.kernel, groups=last)
         self.embed = nn.Linear(2 * last, width)
         self.concepts = nn.Linear(width, len(CONCEPTS))
 
@@ -152,16 +149,20 @@ class DepthEncoder(Encoder):
     """
 
     channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+    joined = GRID  # number of columns that are embedded together
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)
         last = self.widths[-1]
         self.rows = nn.Conv2d(last, last, (GRID, 1))
-        self.embed = nn.Linear(GRID * last, width)
+        self.embed = nn.Linear(self.joined * last, width)
 
-    def forward(self, depth: Tensor) -> Tensor:
-        x = self.maps(depth_channels(self.sized(depth)))
-        return F.gelu(self.embed(F.relu(self.rows(x)).flatten(1)))
+    def columns(self, depth: Tensor) -> Tensor:
+        """Return the last map without its rows, ``[n, widths[-1], 1, 4]``."""
+        return F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
+
+    def forward(self, depth: Tensor) -> Any:
+        return F.gelu(self.embed(self.columns(depth).flatten(1)))
 
 
 def presence_loss(logits: Tensor, truth: Tensor) -> Tensor:
@@ -209,53 +210,37 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
     return out
 
 
-class CameraRGB(Encoder):
+class CameraRGB(RGBEncoder):
     """Encode RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits of four columns.
 
     Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
     """
 
-    channels, widths, resize = 3, (32, 48, 96, 160), "area"
-
-    def __init__(self, width: int, size: int = SIZE) -> None:
-        super().__init__(size)
-        last = self.widths[-1]
-        self.gather = nn.Conv2d(last, 2 * last, (GRID, 1), groups=last)
-        self.embed = nn.Linear(2 * last, width)
-        self.concepts = nn.Linear(width, len(CONCEPTS))
+    kernel = (GRID, 1)
 
     def forward(self, rgb: Tensor) -> tuple[Tensor, Tensor]:
-        x = F.gelu(self.gather(self.maps(self.sized(rgb) / 127.5 - 1)))
+        x = F.gelu(self.gather(self.maps(self.normalised(rgb))))
         features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
         return features, self.concepts(features)
 
 
-class CameraDepth(Encoder):
+class CameraDepth(DepthEncoder):
     """Encode depth (metres ``[n, H, W, 1]``) as features of four columns and free-space logits.
 
     Features have the shape ``[n, 4, width]``. The logits ``[n, 30, 12]`` predict free space for
     each angle (from 45 degrees left to 45 degrees right) and distance (0.25 to 3 m).
     """
 
-    channels, widths, resize = 2, (24, 32, 64, 96), "nearest-exact"
+    joined = 1
 
     def __init__(self, width: int, size: int = SIZE) -> None:
-        super().__init__(size)
-        last = self.widths[-1]
-        self.rows = nn.Conv2d(last, last, (GRID, 1))
-        self.embed = nn.Linear(last, width)
+        super().__init__(width, size)
         hidden = nn.Linear(GRID * width, 160)
         self.free = nn.Sequential(hidden, nn.GELU(), nn.Linear(160, DIRECTIONS * DISTANCES))
 
     def forward(self, depth: Tensor) -> tuple[Tensor, Tensor]:
-        x = F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
-        features = F.gelu(self.embed(x.squeeze(2).transpose(1, 2)))
+        features = F.gelu(self.embed(self.columns(depth).squeeze(2).transpose(1, 2)))
         return features, self.free(features.flatten(1)).unflatten(1, (DIRECTIONS, DISTANCES))
-
-
-def free_metres(logits: Tensor) -> Tensor:
-    """Return the expected free distance ``[n, 30]`` in metres for logits ``[n, 30, 12]``."""
-    return STEP * logits.sigmoid().cumprod(-1).sum(-1)
 
 
 def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
@@ -265,7 +250,8 @@ def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tens
     these are probabilities of concepts; for depth, these are free distances in metres.
     """
     features, logits = encoder(frames)
-    predicted = free_metres(logits) if sensor == DEPTH else logits.sigmoid().flatten(-2)
+    chances = logits.sigmoid()
+    predicted = STEP * chances.cumprod(-1).sum(-1) if sensor == DEPTH else chances.flatten(-2)
     return torch.cat([features.flatten(-2), predicted], -1), logits
 
 

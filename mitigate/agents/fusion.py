@@ -19,37 +19,31 @@ HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 
 
-def reliability(
-    views: Tensor, rate: float = RATE, cap: float = CAP, valid: Tensor | None = None
-) -> Tensor:
+def reliability(views: Tensor, rate: float = RATE, cap: float = CAP) -> Tensor:
     """Return weights of views that decrease as a view's feature magnitude deviates from the mean.
 
     In the formulas, m_v = |f_v| is the Euclidean norm of a view's features, and M is the mean of
-    m_v over the valid views:
+    m_v over the views:
 
-        d_v = | m_v - M | / M,     w_v = exp(-min(rate * d_v, cap)) / sum over valid views.
+        d_v = | m_v - M | / M,     w_v = exp(-min(rate * d_v, cap)) / sum over the views.
 
     Args:
         views: features ``[..., V, F]``.
         rate: k, >= 0.
         cap: the largest exponent, >= 0.
-        valid: bool ``[..., V]``, False for views to ignore; None uses all views.
 
     Returns:
-        Weights ``[..., V]`` that sum to 1. All weights are equal if every view is blank (M = 0) or
-        no view is valid.
+        Weights ``[..., V]`` that sum to 1. All weights are equal if every view is blank (M = 0).
 
     Raises:
         ValueError: ``rate`` or ``cap`` is negative.
     """
     if rate < 0 or cap < 0:
         raise ValueError(f"rate and cap of the reliability must be >= 0, got {rate} and {cap}.")
-    counts = torch.ones_like(views[..., 0]) if valid is None else valid.to(views.dtype)
-    counts = torch.where(counts.sum(-1, keepdim=True) > 0, counts, torch.ones_like(counts))
     size = views.norm(dim=-1)
-    mean = (size * counts).sum(-1, keepdim=True) / counts.sum(-1, keepdim=True)
+    mean = size.sum(-1, keepdim=True) / size.shape[-1]
     deviation = (size - mean).abs() / mean.clamp(min=_TINY)
-    weights = torch.exp(-(rate * deviation).clamp(max=cap)) * counts
+    weights = torch.exp(-(rate * deviation).clamp(max=cap))
     return weights / weights.sum(-1, keepdim=True)
 
 
@@ -102,9 +96,7 @@ def weigher(
     """
     if learned and rate is not None:
         raise ValueError(
-            f"rate must be null for a learned reliability, got {rate}. Only the rule that weights "
-            "views by the magnitude of their features uses a rate; a learned reliability has only "
-            "a cap."
+            f"rate must be null for a learned reliability, which has only a cap, got {rate}."
         )
     if learned:
         return LearnedReliability(width, cap)

@@ -74,7 +74,6 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
             different settings. The error message names the file.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
-    _check_path(folder, "an agent's weights", "checkpoints/base")
     place = find(folder)
     if (place / CARD).is_file():
         return load_hardened(place, agent=agent)
@@ -87,10 +86,10 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
             f"{config} is missing, so the settings of the agent in {folder} are unknown."
         )
     folders.check(config.parent)
+    lora = place / PEFT_WEIGHTS
+    weights = lora if lora.is_file() else checkpoint.weights_file(place)
     with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
-        if agent is None:
-            _check_size(config, _weights_of(place))
-        filled = _agent_to_fill(agent, config, _RUN)
+        filled = _agent_to_fill(agent, config, weights, _RUN)
         checkpoint.load_agent(filled, place)
     if config.is_file():
         give_settings(filled, config, _RUN)
@@ -116,47 +115,32 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
         TypeError: ``folder`` is not a path, or ``agent`` has no weights.
     """
-    _check_path(folder, "a hardened checkpoint", "checkpoints/hardened/ts_distill")
     folder = Path(folder)
     card = check_hardened(folder)
+    weights = _weights_of(folder, card, base)
     with torch.random.fork_rng(devices=[]):
-        if agent is None:
-            only = card["adapters_only"]
-            weights = (
-                _find_base(folder, card["base"], base) if only else folder / checkpoint.WEIGHTS
-            )
-            _check_size(folder / CONFIG, weights)
-        filled = _agent_to_fill(agent, folder / CONFIG, _AGAIN)
+        filled = _agent_to_fill(agent, folder / CONFIG, weights, _AGAIN)
         if agent is None and card["vocabulary"] != vocabulary_sha(filled):
             commit = f" (commit {short(card['commit'])})" if card["commit"] else ""
             raise ValueError(
-                f"{folder} was exported with a different vocabulary than its {CONFIG} gives the "
-                "agent, "
-                f"so instructions would be misread. Use the version that exported it{commit}."
+                f"{folder} was exported with a different vocabulary than its {CONFIG} gives, so "
+                f"instructions would be misread. Use the version that exported it{commit}."
             )
-        _fill(filled, folder, card, base)
+        _fill(filled, folder, card, weights)
     sha = checkpoint.weights_sha(filled)
     if sha != card["agent"]:
         raise ValueError(
             f"The weights in {folder} make an agent with the hash {sha}, but {CARD} names "
-            f"{short(card['agent'])}. {_AGAIN} An agent of your class must have the dtype that it "
-            "was exported in, usually float32: convert it afterwards."
+            f"{short(card['agent'])}. {_AGAIN} Convert an agent to another dtype afterwards."
         )
     give_settings(filled, folder / CONFIG, _AGAIN)
     return filled.eval()
 
 
-def _check_path(folder: object, what: str, example: str) -> None:
-    if not isinstance(folder, (str, os.PathLike)):
-        raise TypeError(
-            f"folder must be the path of {what}, got {folder!r:.60}. Name one, such as {example}."
-        )
-
-
-def _agent_to_fill(agent: Any, config: Path, again: str) -> Any:
+def _agent_to_fill(agent: Any, config: Path, weights: Path, again: str) -> Any:
     """Return ``agent`` if its settings match ``config``; if it is None, build a new agent."""
     if agent is None:
-        return build_from(config)
+        return build_from(config, weights)
     # the user may pass an object of any type
     if isinstance(agent, type) or not hasattr(agent, "eval"):
         raise TypeError(
@@ -168,43 +152,30 @@ def _agent_to_fill(agent: Any, config: Path, again: str) -> Any:
     return agent
 
 
-def build_from(config: Path) -> Any:
+def build_from(config: Path, weights: Path | None = None) -> Any:
     """Return a shipped kind of agent with the settings in ``config`` and random weights.
 
-    The YAML file is read as plain data.
+    The YAML file is read as plain data. If the agent has more weights than the file ``weights`` has
+    bytes, no memory is allocated for it.
 
     Raises:
-        ValueError: The file is damaged or names a different kind of agent.
+        ValueError: The file is damaged, names a different kind of agent, or describes a large agent
+            that does not fit ``weights``.
     """
     kind = kind_of(config)
-    arguments = agent_settings(config, kind)
+    make = partial(schema.class_of(kind), **agent_settings(config, kind))
     try:
-        return schema.class_of(kind)(**arguments)
-    except (TypeError, RuntimeError) as error:
+        if weights is not None:
+            with torch.device("meta"), warnings.catch_warnings():
+                # the warning that a backbone's weights cannot be copied here
+                warnings.simplefilter("ignore")
+                count = sum(parameter.numel() for parameter in make().parameters())
+            size = weights.stat().st_size
+            if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
+                raise ValueError(f"they require {count} weights, but {weights} has {size} bytes")
+        return make()
+    except (TypeError, ValueError, RuntimeError) as error:
         raise ValueError(f"The agent's settings in {config} do not fit ({error}).") from error
-
-
-def _check_size(config: Path, weights: Path) -> None:
-    """Raise ValueError if a large agent in ``config`` has more weights than ``weights`` has bytes.
-
-    The agent is built without allocating memory for its weights.
-    """
-    kind = kind_of(config)
-    arguments = agent_settings(config, kind)
-    try:
-        with torch.device("meta"), warnings.catch_warnings():
-            # the warning that a backbone's weights cannot be copied here
-            warnings.simplefilter("ignore")
-            agent = schema.class_of(kind)(**arguments)
-    except (TypeError, RuntimeError):  # build_from explains it
-        return
-    count = sum(parameter.numel() for parameter in agent.parameters())
-    size = weights.stat().st_size
-    if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
-        raise ValueError(
-            f"The agent's settings in {config} do not fit: they require {count} weights, but "
-            f"{weights} has only {size} bytes. Do not use this folder."
-        )
 
 
 def config_of(weights: Path) -> Path:
@@ -221,11 +192,6 @@ def config_of(weights: Path) -> Path:
             f"{weights} belongs to a hardened folder. Name the folder, {weights.parent}."
         )
     return checkpoint.weights_file(weights).with_name(CONFIG)
-
-
-def _weights_of(place: Path) -> Path:
-    lora = place / PEFT_WEIGHTS
-    return lora if lora.is_file() else checkpoint.weights_file(place)
 
 
 def reject_other_models(run: Path) -> None:
@@ -259,8 +225,7 @@ def check_same(agent: Any, config: Path, again: str) -> None:
             ``again``).
     """
     stored = _settings_in(config, again)
-    stated = stated_settings(agent)
-    actual = stated
+    actual = stated = stated_settings(agent)
     if actual is None:
         attributes = {k: read(agent, k) for k, v in stored.items() if isinstance(v, _PLAIN)}
         actual = {name: value for name, value in attributes.items() if isinstance(value, _PLAIN)}
@@ -321,8 +286,10 @@ def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
 
     Raises the errors of :func:`build_from`.
     """
-    known = schema.schema_of(target).settings
-    return schema.check(settings.read_agent(config, target, known), config, target)
+    known = schema.schema_of(target)
+    values = settings.read_agent(config, target, known)
+    schema.check(values, known, config)
+    return values
 
 
 # hardened folders --------------------------------------------------------------------------------
@@ -349,22 +316,22 @@ def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> A
     :func:`load_hardened`. ValueError is also raised if the agent has different adapters or weights.
     """
     folder = Path(folder)
-    _fill(agent, folder, check_hardened(folder), base)
+    card = check_hardened(folder)
+    _fill(agent, folder, card, _weights_of(folder, card, base))
     return agent
 
 
-def _fill(agent: Any, folder: Path, card: dict[str, Any], base: str | Path | None) -> None:
+def _fill(agent: Any, folder: Path, card: dict[str, Any], weights: Path) -> None:
     if not card["adapters_only"]:
-        checkpoint.load_weights(agent, folder)
+        checkpoint.load_weights(agent, weights)
         return
-    adapted = adapters.adapted(agent)
+    adapted = [*adapters.adapted(agent)]
     adapters.remove_adapters(agent)
-    checkpoint.load_weights(agent, _find_base(folder, card["base"], base))
+    checkpoint.load_weights(agent, weights)
     if adapters.load_adapters(agent, folder) != adapted:
         raise ValueError(
-            f"{folder} holds adapters for different modules than agent.adapters names. Build "
-            "the agent "
-            f"with its {CONFIG}."
+            f"{folder} holds adapters for different modules than agent.adapters names. Build the "
+            f"agent with its {CONFIG}."
         )
 
 
@@ -381,9 +348,8 @@ def check_hardened(folder: Path) -> dict[str, Any]:
     card = read_card(folder)
     manifest = folders.read_manifest(folder, _AGAIN)
     assert manifest is not None
-    weights = (
-        (adapters.WEIGHTS, adapters.SETTINGS) if card["adapters_only"] else (checkpoint.WEIGHTS,)
-    )
+    weights = [adapters.WEIGHTS, adapters.SETTINGS]
+    weights = weights if card["adapters_only"] else [checkpoint.WEIGHTS]
     needed = FILES if card.get("program", True) else (CONFIG, README)
     for name in (*weights, *needed):
         if name not in manifest.files:
@@ -393,9 +359,8 @@ def check_hardened(folder: Path) -> dict[str, Any]:
     unlisted = [n for n in KNOWN if n not in manifest.files and os.path.lexists(folder / n)]
     if unlisted:
         raise ValueError(
-            f"{folder / unlisted[0]} is not listed in {manifest.source}, so its content cannot be "
-            "checked. Do not use this folder: fetch it again, or delete that file if you put it "
-            "there."
+            f"{folder / unlisted[0]} is not listed in {manifest.source}, so it cannot be checked. "
+            "Fetch the folder again, or delete that file if you put it there."
         )
     folders.check(folder, optional=(PROGRAM,), again=_AGAIN)
     return card
@@ -406,9 +371,8 @@ def read_card(folder: Path) -> dict[str, Any]:
     file = folder / CARD
     if not file.is_file():
         raise FileNotFoundError(
-            f"{folder} is not a hardened checkpoint: {CARD} is missing. Name a folder such as "
-            "checkpoints/hardened/..., written by `make export RUN=runs/... NAME=...`. "
-            "mitigate.load also reads weights without a card, with the same agent=..."
+            f"{folder} is not a hardened checkpoint: {CARD} is missing. Name a folder that `make "
+            "export` wrote; mitigate.load also reads weights without a card."
         )
     card = read_object(file, _AGAIN)
     manifest = folders.read_manifest(folder, _AGAIN)
@@ -448,8 +412,11 @@ def vocabulary_sha(agent: Any) -> str | None:
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]
 
 
-def _find_base(folder: Path, reference: dict[str, str], base: str | Path | None) -> Path:
-    """Return the file of the base weights to which the adapters in ``folder`` belong."""
+def _weights_of(folder: Path, card: dict[str, Any], base: str | Path | None) -> Path:
+    """Return the file of the weights in ``folder``, or of the base weights of its adapters."""
+    if not card["adapters_only"]:
+        return folder / checkpoint.WEIGHTS
+    reference = card["base"]
     parents = [parent / reference["weights"] for parent in folder.resolve().parents]
     local, *shipped = places(reference["weights"])
     candidates = [local, *parents, *shipped] if base is None else [Path(base)]

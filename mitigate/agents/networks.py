@@ -72,8 +72,7 @@ def in_eval_mode(agent: Any) -> Iterator[None]:
     Each network's ``eval()`` is called, because a class may override it.
     """
     roots = [net for net in networks(agent).values() if _has_mode(net)]
-    modules = [module for net in roots for module in net.modules() if _has_mode(module)]
-    modes = {module: module.training for module in modules}
+    modes = {m: m.training for net in roots for m in net.modules() if _has_mode(m)}
     for net in roots:
         net.eval()
     try:

@@ -52,9 +52,8 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
         if name in (RGB, DEPTH) and views != expected:
             raise ValueError(
                 f"The number of views in {name} is {views} in the world {world}, but "
-                f"{type(agent).__name__} needs {expected}. Set env.views={expected}, as conf/agent "
-                'does for this kind of agent (mitigate.benchmark: options=["env.views='
-                f'{expected}"]), or choose another agent.'
+                f"{type(agent).__name__} needs {expected}. Set env.views={expected} "
+                f'(mitigate.benchmark: options=["env.views={expected}"]).'
             )
 
 
@@ -96,15 +95,11 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
     channels, first = CHANNELS[name], () if views == 1 else (views,)
     size = array.shape[-2] if array.ndim > 1 else 0
     if not size or array.shape != (*first, size, size, channels):
+        expected = f"{views} square views, one per 30 degrees: [{views}, H, H, {channels}]"
+        if views == 1:
+            expected = f"one square forward view (env.views=1): [H, H, {channels}]"
         raise ValueError(
-            f"{name} has the shape {list(array.shape)}, but the agent needs "
-            + (
-                f"one square forward view: [H, H, {channels}], H > 0. Set env.views=1 for a world "
-                "of this project."
-                if views == 1
-                else f"{views} square views: [{views}, H, H, {channels}], H > 0, view k at 30 k "
-                "degrees to the right."
-            )
+            f"{name} has the shape {list(array.shape)}, but the agent needs {expected}, H > 0."
         )
     if name == DEPTH:
         _check_unit(array, views)
@@ -138,8 +133,7 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
         raise TypeError(f"instruction must be a string, got a {type(text).__name__}.")
     if set(vocabulary.encode(text)) == {UNKNOWN}:
         warnings.warn(
-            f"The agent knows no word of the instruction {text[:60]!r}, so it acts without an "
-            "instruction. It was trained on English routes.",
+            f"The agent knows no word of the instruction {text[:60]!r}: it knows English routes.",
             stacklevel=3,
         )
     return text
@@ -169,7 +163,7 @@ def _check_unit(depth: np.ndarray, views: int) -> None:
         )
     if valid.max() <= NEAREST and views > 1:  # a single camera may face a wall
         warnings.warn(
-            f"The largest depth is {valid.max():g} m. If it is normalised to 0..1 (as Habitat's is "
-            "by default), multiply it by the sensor's range first.",
+            f"The largest depth is {valid.max():g} m. If it is normalised, as Habitat's is by "
+            "default, multiply it by the sensor's range first.",
             stacklevel=3,
         )

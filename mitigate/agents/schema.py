@@ -113,21 +113,6 @@ ENCODERS = {  # settings that all shipped agents have
 }
 
 
-class Schema(NamedTuple):
-    """The allowed settings of a kind of agent, stored in ``settings_schema`` of its class.
-
-    Attributes:
-        settings: the allowed values by name; nested mappings describe the arguments of a part.
-        part: the setting that holds the arguments of the part with attention heads, or "" if there
-            is no such part.
-        usual: default width and default number of heads of that part.
-    """
-
-    settings: dict[str, Any]
-    part: str = ""
-    usual: tuple[int, int] = (1, 1)
-
-
 KINDS = (  # the only classes that the config in a folder may name
     "mitigate.agents.topological.TopologicalAgent",
     "mitigate.agents.recurrent.RecurrentAgent",
@@ -142,8 +127,8 @@ def class_of(target: str) -> Any:
     return getattr(import_module(module), name)  # the name comes from KINDS
 
 
-def schema_of(target: str) -> Schema:
-    """Return the settings schema of one of ``KINDS``."""
+def schema_of(target: str) -> dict[str, Any]:
+    """Return the allowed settings of one of ``KINDS`` by name; nested mappings describe parts."""
     return class_of(target).settings_schema
 
 
@@ -151,40 +136,25 @@ _AGAIN = "Fetch the folder again, or train again."
 
 
 def check(
-    values: dict[str, Any], file: Path | str, target: str, again: str = _AGAIN
-) -> dict[str, Any]:
-    """Return ``values``, the settings of an agent, after checking them.
+    values: dict[str, Any],
+    schema: dict[str, Any],
+    file: Path | str,
+    again: str = _AGAIN,
+    where: str = "agent",
+) -> None:
+    """Check settings that come with weights.
 
     Args:
         values: the settings.
+        schema: the allowed values (:func:`schema_of`).
         file: source of the settings, for messages.
-        target: the kind of agent, one of ``KINDS``.
         again: advice that ends the error message.
+        where: dotted name of the settings, for messages.
 
     Raises:
         ValueError: A setting is unknown or has an invalid value; the message names the file and the
             setting.
     """
-    kind = schema_of(target)
-    _check(values, kind.settings, file, "agent", again)
-    part = values.get(kind.part) or {}
-    width, heads = (part.get(n, d) for n, d in zip(("width", "heads"), kind.usual, strict=True))
-    if width % heads:
-        raise ValueError(
-            f"{file}: agent.{kind.part}.width ({width}) must be a multiple of agent."
-            f"{kind.part}.heads ({heads}). {again}"
-        )
-    adapters = values.get("adapters") or {}
-    if adapters and "target_modules" not in adapters:
-        raise ValueError(
-            f"{file}: agent.adapters lacks target_modules (give [] if only ring is used). {again}"
-        )
-    return values
-
-
-def _check(
-    values: dict[str, Any], schema: dict[str, Any], file: Path | str, where: str, again: str
-) -> None:
     for name, value in values.items():
         key = f"{where}.{name}"
         if name not in schema:
@@ -196,7 +166,7 @@ def _check(
                     f"{file}: {key} is {value!r:.80}, but must be {kind.words}. {again}"
                 )
         elif isinstance(value, dict):
-            _check(value, kind, file, key, again)
+            check(value, kind, file, again, key)
         elif value is not None:
             raise ValueError(
                 f"{file}: {key} is {value!r:.80}, but must be null or a mapping of "

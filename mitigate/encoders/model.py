@@ -223,8 +223,7 @@ class Encoder(nn.Module):
         if means not in (1, channels):
             raise ValueError(
                 f"agent.transform.mean and std have {means} values, but {sensor} has {channels} "
-                "channels. To use depth without normalisation, set agent.transform.mean=[0] and "
-                "agent.transform.std=[1]."
+                "channels. Without normalisation, set agent.transform.mean=[0] and std=[1]."
             )
         self.model = loading.load_model(model, kwargs)
         if weights is not None:
@@ -247,12 +246,10 @@ class Encoder(nn.Module):
 
     def choose_trained(self) -> None:
         """Make the adapters trainable, or all weights if ``tune`` is "all"; freeze all others."""
-        self.model.requires_grad_(False)
-        trained = inserted.adapter_parameters(self.model)
-        if self.tune == "all":
-            trained = [p for p in self.model.parameters() if p.is_floating_point()]
-        for parameter in trained:
-            parameter.requires_grad_(True)
+        trained = {*inserted.adapter_parameters(self.model)}
+        for parameter in self.model.parameters():
+            chosen = self.tune == "all" or parameter in trained
+            parameter.requires_grad_(chosen and parameter.is_floating_point())
 
     def train(self, mode: bool = True) -> Encoder:
         """Keep the encoder in eval mode, without dropout and with fixed BatchNorm statistics."""
@@ -272,11 +269,8 @@ class Encoder(nn.Module):
             return self._item(self.model(inputs))
         outputs: list[Any] = []
         module = modules[self.output]
-        handle = module.register_forward_hook(lambda *call: outputs.append(call[2]))
-        try:
+        with module.register_forward_hook(lambda *call: outputs.append(call[2])):
             self.model(inputs)
-        finally:
-            handle.remove()
         if not outputs:
             raise ValueError(
                 f"agent.output must name a module that the encoder calls, got {self.output}. "
@@ -297,32 +291,18 @@ class Encoder(nn.Module):
         self,
         targets: str | Sequence[str] = AUTO,
         sites: int = SITES,
-        reduction: int = 8,
-        kernel: int = 3,
-        middle: int | None = None,
-        gate: bool = False,
+        **options: Any,
     ) -> None:
         """Freeze the encoder and insert adapters, which do not change its output before
         training.
         """
-        names = inserted.insert_adapters(
-            self.model,
-            self.targets(targets, sites),
-            reduction=reduction,
-            kernel=kernel,
-            run=self._probe,
-            gate=gate,
-            middle=middle,
-        )
+        if targets == AUTO:
+            chosen = choose(find_sites(self.model, self._probe), self.model, sites)
+            targets = [re.escape(name) for name in chosen]
+        targets = [targets] if isinstance(targets, str) else targets
+        names = inserted.insert_adapters(self.model, targets, run=self._probe, **options)
         share = inserted.trainable_share(self.model)
         say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
-
-    def targets(self, targets: str | Sequence[str], count: int) -> list[str]:
-        """Return regular expressions for the modules that get adapters."""
-        if targets != AUTO:
-            return [targets] if isinstance(targets, str) else list(targets)
-        chosen = choose(find_sites(self.model, self._probe), self.model, count)
-        return [re.escape(name) for name in chosen]
 
     def _probe(self, count: int) -> Any:
         """Return the output for random frames; for constant frames, some normalisations would give
@@ -338,19 +318,16 @@ class Encoder(nn.Module):
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
-        if self.output is not None:
-            chosen = items.get(self.output)
-        else:
-            chosen = next(iter(items.values()), None) if items else first(output)
+        first_item = next(iter(items.values()), output)
+        chosen = first_item if self.output is None else items.get(self.output)
         if isinstance(chosen, Tensor):
             return chosen
         names = [str(name) for name, value in items.items() if isinstance(value, Tensor)]
         modules = [name for name, _ in self.model.named_modules() if name]
-        items_text = f" with {', '.join(names)}" if names else ""
         raise ValueError(
-            f"agent.output must name an item of the encoder's output or a module, got "
-            f"{self.output}. The encoder returns a {type(output).__name__}{items_text}; modules "
-            f"are, for example, {', '.join(modules[-8:])}."
+            "agent.output must name an item of the encoder's output or a module, got "
+            f"{self.output}. The encoder returns a {type(output).__name__}, items "
+            f"{', '.join(names) or 'none'}; modules are, for example, {', '.join(modules[-8:])}."
         )
 
     @torch.no_grad()
@@ -365,10 +342,8 @@ class Encoder(nn.Module):
         except Exception as error:  # the user's code may raise any error
             raise ValueError(
                 f"The encoder {self.given['model']} failed for {self.sensor} frames [2, "
-                f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set "
-                "agent.transform.size to the size of its input, and agent.sensor to rgb or depth. "
-                "A program that was traced or exported for one frame rejects two: export it with a "
-                "dynamic number of frames."
+                f"{channels}, {size}, {size}] ({loading.describe(error, -1)}). Set agent.sensor "
+                "and agent.transform.size, and export programs with a dynamic number of frames."
             ) from error
         if isinstance(output, Tensor) and self.output is not None:
             # a tensor has no items, so a number such as 3 must be the name of a module
@@ -413,6 +388,6 @@ def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) ->
     random = [n for n, v in state.items() if n in other and not v.equal(other[n])]
     raise ValueError(
         f"agent.model={model} initialises {len(random)} of its weights at random "
-        f"({', '.join(random[:3])}), so adapters could not be used with it later. Use "
-        "trained weights, or save its state_dict() once, and set agent.weights to the file."
+        f"({', '.join(random[:3])}). Save its state_dict() once, or use trained weights, and set "
+        "agent.weights to the file."
     )

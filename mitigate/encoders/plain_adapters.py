@@ -13,13 +13,12 @@ no code from the folder.
 import hashlib
 import json
 import os
-import re
 
 import numpy as np
 import torch
 import torch.nn.functional as F
 
-WEIGHTS, SETTINGS, SUM = "adapters.safetensors", "adapters.json", ".sha256"
+WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
 LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; usual sizes are 1e5 to 1e7)
@@ -67,18 +66,14 @@ def attach(model, folder, check=True):
     missing = sorted(set(shapes) - set(modules))
     if missing:
         raise ValueError(
-            "The model has no module called {}, so the adapters in {} were trained for another "
-            "model. Modules of this model are, for example, {}.".format(
-                ", ".join(missing[:4]), folder, ", ".join(list(modules)[1:9])
-            )
+            f"The adapters in {folder} are for another model: this one has no module called "
+            f"{', '.join(missing[:4])}, but, for example, {', '.join(list(modules)[1:9])}."
         )
     if check and backbone_sha(model) != settings["backbone_sha256"]:
         raise ValueError(
-            "The adapters in {} were trained with weights of sha256 {}, but the weights of this "
-            "model have {}. Load weights with the first hash. If the model has them in another "
-            "precision, call attach(model, folder, check=False).".format(
-                folder, settings["backbone_sha256"], backbone_sha(model)
-            )
+            f"The adapters in {folder} were trained with weights of sha256 "
+            f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load "
+            "weights with the first hash. For another precision, call attach(..., check=False)."
         )
     adapters = {name: _Adapter(folder, name, shape, tensors) for name, shape in shapes.items()}
     for name, adapter in adapters.items():
@@ -153,13 +148,8 @@ def _shapes(shape):
 
 
 def _sums(folder):
-    """Return the allowed sha256 values of the weights, from the manifest or (in older folders) a
-    separate file.
-    """
+    """Return the allowed sha256 values of the weights, from the manifest."""
     manifest = os.path.join(folder, MANIFEST)
-    if not os.path.isfile(manifest):
-        with open(os.path.join(folder, WEIGHTS + SUM), encoding="utf-8") as file:
-            return re.findall(r"^([0-9a-f]{64})  ", file.read(LONGEST), re.MULTILINE)
     with open(manifest, encoding="utf-8") as file:
         text = file.read(LONGEST)
     try:

@@ -19,6 +19,7 @@ from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import Frames, corrupted
 from mitigate.evaluation.bootstrap import LEVEL, Estimate
 
+BATCH = 32  # number of frames that are encoded at once
 RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
 FEWEST = 10  # minimum numbers of positive and of negative frames for a label to be used (heuristic)
 # candidates for the ridge, as multiples of the number of frames; one is chosen on training frames
@@ -58,17 +59,15 @@ def features(
     corruption: Corruption,
     seed: int,
     progress: Progress,
-    batch: int = 32,
 ) -> np.ndarray:
     """Return the pooled features of all frames under ``corruption``, float32 [N, C]."""
     device = next(encoder.model.parameters(), torch.zeros(())).device
     batches = []
-    for start in range(0, len(frames), batch):
-        part = range(start, min(start + batch, len(frames)))
-        keys = [Key(seed, f"report-{index}") for index in part]
+    for start in range(0, len(frames), BATCH):
+        part = range(start, min(start + BATCH, len(frames)))
         views = [
-            corrupted(frames, index, corruption, key, encoder.far())
-            for index, key in zip(part, keys, strict=True)
+            corrupted(frames, index, corruption, Key(seed, f"report-{index}"), encoder.far())
+            for index in part
         ]
         inputs = torch.from_numpy(np.stack(views)).to(device)
         batches.append(encoder.pooled(encoder(inputs)).cpu().numpy())
@@ -83,12 +82,12 @@ class Resamples:
     single scene, the number of resamples R is 0, because the variation between scenes is unknown.
     """
 
-    def __init__(self, scene: np.ndarray, seed: int = 0, count: int = RESAMPLES) -> None:
+    def __init__(self, scene: np.ndarray, seed: int = 0) -> None:
         _, scene_index = np.unique(scene, return_inverse=True)
         scenes = int(scene_index.max()) + 1
-        draws = np.random.Generator(np.random.PCG64(seed)).multinomial(
-            scenes, np.full(scenes, 1 / scenes), size=count if scenes > 1 else 0
-        )
+        count = RESAMPLES if scenes > 1 else 0
+        rng = np.random.Generator(np.random.PCG64(seed))
+        draws = rng.multinomial(scenes, np.full(scenes, 1 / scenes), size=count)
         self.weights = draws[:, scene_index].astype(np.float32)
 
     def mean(self, values: np.ndarray) -> Score:
@@ -227,7 +226,5 @@ def measure(
 
 def average(scores: Iterable[Score]) -> Score:
     """Return the mean over conditions; all conditions use the same resamples."""
-    listed = list(scores)
-    return Score(
-        float(np.mean([s.value for s in listed])), np.mean([s.samples for s in listed], axis=0)
-    )
+    values, samples = zip(*((score.value, score.samples) for score in scores), strict=True)
+    return Score(float(np.mean(values)), np.mean(samples, axis=0))

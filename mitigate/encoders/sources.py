@@ -36,6 +36,7 @@ FEWEST_UNSEEN = 5
 # minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
 NEAR = 0.05
 NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth must be farther (heuristic)
+EVERY = 2  # step between the views of a panorama that are used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
@@ -76,7 +77,6 @@ class WorldFrames:
         unseen: an episode list, whose scenes are the unseen scenes.
         label: name of an entry of the ground truth ([views, L] or [L], with values 0 and 1), or
             None for no labels.
-        every: step between the views of a panorama that are used.
 
     Raises:
         ValueError: The world cannot render from arbitrary poses, it lacks the sensor, or a scene is
@@ -86,20 +86,19 @@ class WorldFrames:
     files = False
 
     def __init__(
-        self, world: Any, sensor: str, unseen: str, label: str | None = "concepts", every: int = 2
+        self, world: Any, sensor: str, unseen: str, label: str | None = "concepts"
     ) -> None:
         if not isinstance(world, Placeable):
             raise ValueError(
-                f"{type(world).__name__} must render from arbitrary poses, which needs scenes, "
-                "enter, point and put. Add these to the world (docs/bring-your-own.md), or save "
-                "its frames as PNG and use env=frames env.path=FOLDER."
+                f"{type(world).__name__} must render from arbitrary poses (scenes, enter, point, "
+                "put). Add these, or save its frames as PNG and use env=frames env.path=FOLDER."
             )
         if sensor not in world.sensors:
             raise ValueError(
                 f"{type(world).__name__} has no sensor {sensor}, only {', '.join(world.sensors)}. "
                 "Set agent.sensor, or choose another world (env=...)."
             )
-        self.world, self.sensor, self.label, self.every = world, sensor, label, every
+        self.world, self.sensor, self.label = world, sensor, label
         train = list(world.scenes)
         unseen_scenes = sorted({episode.scene_id for episode in read_episodes(find(unseen))})
         both = sorted(set(train) & set(unseen_scenes))
@@ -119,7 +118,7 @@ class WorldFrames:
         self.world.enter(scene)
         shape = self.world.sensors[self.sensor].shape
         views = shape[0] if len(shape) == 4 else 1
-        step = min(self.every, views)
+        step = min(EVERY, views)
         while count > 0:
             heading = float(rng.uniform(-np.pi, np.pi))
             chosen = list(range(int(rng.integers(step)), views, step))[:count]
@@ -221,9 +220,8 @@ class FolderFrames:
             other = count_suffixes(plan.other_files) or "none"
             raise FileNotFoundError(
                 f"{self.path} contains no {self.sensor} frames, but {plan.other_modality} frames "
-                f"of the other sensor, {self.left_out}, and other files: {other}. RGB frames must "
-                "be 8-bit RGB in PNG or JPEG. Depth frames must be 16-bit grey PNG, or NPY in "
-                "metres (agent.sensor=depth)."
+                f"of the other sensor, {self.left_out}, and other files: {other} "
+                "(docs/encoder.md lists the formats)."
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")

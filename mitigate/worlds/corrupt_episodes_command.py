@@ -57,7 +57,6 @@ class Counts:
     blank: int = 0
     skipped_languages: Counter = field(default_factory=Counter)
     tokens: Counter = field(default_factory=Counter)
-    gate: Counter = field(default_factory=Counter)
 
 
 def run(
@@ -107,11 +106,12 @@ def run(
     mask = mask_token if mask_token is not None else (words and words.mask_token) or "[MASK]"
     options = {"split": split, "mask_token": mask, "tagger": tagger}
     counts = Counts()
+    gate: Counter = Counter()
 
     def corrupted(episode: Episode) -> str:
         key, text = Key(seed, episode.episode_id), episode.instruction.text
         if corruption in MANNERS:
-            return _restyled(text, corruption, severity, key, rewrite, counts.gate)
+            return _restyled(text, corruption, severity, key, rewrite, gate)
         return corrupt_instruction(
             text, corruption, severity, key, split=split, mask_token=mask, tagger=tagger
         )
@@ -127,15 +127,11 @@ def run(
         "suite": SUITE_VERSION,
         "tokenizer": tokenizer,
         **{name: options[name] for name in USES.get(corruption, ())},
-        "episodes": counts.episodes,
-        "changed": counts.changed,
-        "blank": counts.blank,
-        "skipped_languages": dict(counts.skipped_languages),
-        "tokens": dict(counts.tokens),
+        **vars(counts),
         "sha256": sha256(out),
     }
     if corruption in MANNERS:
-        summary["gate"] = _rates(counts.gate)
+        summary["gate"] = _rates(gate)
     with atomic_text(f"{out}{SUMMARY}") as file:
         json.dump(summary, file, indent=2, ensure_ascii=False)
         file.write("\n")
@@ -147,8 +143,7 @@ def check_for_file(corruption: str) -> None:
     if corruption == "white_box":
         raise ValueError(
             "corruption=white_box is not applicable to a file, because it corrupts the system "
-            "prompt of an agent. Evaluate an agent with a system prompt, or use "
-            "corruption=black_box."
+            "prompt of an agent. Evaluate such an agent, or use corruption=black_box."
         )
     check_name(corruption, NAMES)
 
@@ -170,11 +165,7 @@ def _check_target(source: Path, out: Path) -> None:
 def _is_unchanged(out: Path, summary: Path) -> bool:
     """Return whether the content of ``out`` matches its summary."""
     try:
-        earlier = read_json(summary, "", LARGEST_LIST)
-        if "sha256" in earlier:
-            return earlier["sha256"] == sha256(out)
-        # summaries of earlier versions have no checksum
-        return earlier["episodes"] == sum(1 for _ in read_episodes(out, hidden_goals=True))
+        return read_json(summary, "", LARGEST_LIST)["sha256"] == sha256(out)
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         return False
 
@@ -282,8 +273,7 @@ def _options(words: Mapping[str, str]) -> dict[str, Any]:
         users = [user for user, used in USES.items() if name in used]
         if users and corruption not in users:
             raise ValueError(
-                f"{name}= has no effect on {corruption}, only on {' and '.join(users)}. Leave it "
-                "out."
+                f"{name}= has no effect on {corruption}, only on {' and '.join(users)}."
             )
     return options
 
@@ -299,15 +289,13 @@ def notices(summary: dict[str, Any]) -> list[str]:
         lines.append(
             f"warning: {summary['blank']} instructions have no word and were copied unchanged"
         )
-    removed = summary["tokens"].get("removed", 0)
-    if removed:
+    if removed := summary["tokens"].get("removed"):
         lines.append(
             f"notice: instruction_tokens of {removed} changed instructions were removed, because "
             "they encode the clean text. For an agent that reads tokens set tokenizer=vocabulary "
             "(of the file) or tokenizer=NAME (of the agent)"
         )
-    cut = summary["tokens"].get("cut_short", 0)
-    if cut:
+    if cut := summary["tokens"].get("cut_short"):
         lines.append(f"warning: {cut} instructions have more tokens than before and were cut short")
     return lines
 

@@ -59,10 +59,10 @@ class Record:
         ``...`` means that the key is required.
         """
         value = self.raw.get(key)
-        if value is None and default is not ...:
-            return default
         if value is None:
-            self.fail(f"lacks the key {key!r}")
+            if default is ...:
+                self.fail(f"lacks the key {key!r}")
+            return default
         if not isinstance(value, kinds) or isinstance(value, bool):
             self.fail(f"has an invalid {key!r}: {short(value)}")
         return value
@@ -265,8 +265,7 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         has_episodes = True
         if not isinstance(items, Iterator):
             raise ValueError(
-                f"{path}: 'episodes' must be a list, got {short(items)}. Correct the file, or "
-                "download it again."
+                f"{path}: 'episodes' must be a list, got {short(items)}. Correct the file."
             )
         for index, raw in enumerate(items):
             yield _read_episode(raw, path, index, hidden_goals)

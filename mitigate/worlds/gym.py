@@ -24,7 +24,7 @@ class GymWorld(SeededWorld):
         for name, space in _by_name(env.observation_space).items():
             # Text and Tuple spaces have no shape, and they contain no frames
             if space.shape is not None:
-                high = float(np.max(_attribute(space, "high", np.inf)))
+                high = float(np.max(getattr(space, "high", np.inf)))
                 arrays[name] = (space.shape, str(space.dtype), high)
         return from_gymnasium(env.action_space), arrays
 
@@ -46,7 +46,8 @@ def _by_name(observation: Any) -> dict[str, Any]:
     """Return a dict from dotted names to the parts of an observation or space. If it has no parts,
     the only name is ``WHOLE``.
     """
-    parts = _attribute(observation, "spaces", observation)
+    # spaces of gymnasium, gym and similar libraries share attribute names but no base class
+    parts = getattr(observation, "spaces", observation)
     if not isinstance(parts, Mapping):
         return {WHOLE: observation}
     return {
@@ -54,9 +55,3 @@ def _by_name(observation: Any) -> dict[str, Any]:
         for name, value in parts.items()
         for inner, part in _by_name(value).items()
     }
-
-
-def _attribute(space: Any, name: str, default: Any = None) -> Any:
-    """Return an attribute of a space, or ``default`` if the space has no such attribute."""
-    # spaces of gymnasium, gym and similar libraries share attribute names but no base class
-    return getattr(space, name, default)

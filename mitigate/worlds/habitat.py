@@ -20,15 +20,9 @@ from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.normalised import corrupt_normalised
 from mitigate.corruptions.registry import family
-from mitigate.corruptions.suite import (
-    SENSOR,
-    Corruption,
-    check_corruption,
-    corrupt_observation,
-)
+from mitigate.corruptions.suite import SENSOR, Corruption, check_corruption, corrupt_observation
 from mitigate.worlds.modalities import check_available
 
-TURNS = ("left", "right")
 _CAMERA = re.compile(r"(rgb|depth)(?:_(\d+(?:\.\d+)?))?")
 
 
@@ -71,31 +65,33 @@ def corrupt_habitat(
             below 360, the cameras of a modality differ in size, the corruption is a fault, or
             ``corrupt_normalised`` raised this error.
     """
-    if turn not in TURNS:
-        raise ValueError(
-            f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
-        )
+    check_turn(turn)
     if fault := family(check_corruption(corruption).name):
         raise ValueError(
             f"corrupt_habitat corrupts one time step, but {corruption.name!r} is a {fault} fault. "
             "Use mitigate run, the gymnasium wrapper, or a FrameStream (docs/faults.md)."
         )
-    if len(corruption.parts) > 1:
-        for part in corruption.parts:
-            obs = corrupt_habitat(
-                obs, part, key, sensor, heading=heading, turn=turn, normalised=normalised
-            )
-        return obs
-    modality = corruption.modality
-    if modality in (RGB, DEPTH):
-        check_cameras(obs, [corruption.name])
-    views = camera_views(obs, modality, turn)
-    frames = {} if not views else {modality: _panorama(obs, views)}
-    if heading is not None:
-        frames[POSE] = np.array([0.0, 0.0, heading])
     corrupt_frames = corrupt_normalised if normalised else corrupt_observation
-    corrupted = corrupt_frames(frames, corruption, key, sensor)
-    return {**obs, **{entry: corrupted[modality][view] for entry, view in views.items()}}
+    obs = dict(obs)
+    for part in corruption.parts:
+        modality = part.modality
+        if modality in (RGB, DEPTH):
+            check_cameras(obs, [part.name])
+        views = camera_views(obs, modality, turn)
+        frames = {modality: _panorama(obs, views)} if views else {}
+        if heading is not None:
+            frames[POSE] = np.array([0.0, 0.0, heading])
+        corrupted = corrupt_frames(frames, part, key, sensor)
+        obs |= {entry: corrupted[modality][view] for entry, view in views.items()}
+    return obs
+
+
+def check_turn(turn: str) -> None:
+    """Raise ValueError if ``turn`` is not "left" or "right"."""
+    if turn not in ("left", "right"):
+        raise ValueError(
+            f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
+        )
 
 
 def is_camera(entry: str) -> bool:

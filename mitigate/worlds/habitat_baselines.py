@@ -23,7 +23,7 @@ from mitigate.core.names import unknown
 from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule
 from mitigate.corruptions.keying import digest
 from mitigate.corruptions.normalised import check_sensor
-from mitigate.worlds.habitat import TURNS, check_cameras, is_camera
+from mitigate.worlds.habitat import check_cameras, check_turn, is_camera
 from mitigate.worlds.habitat_tensors import corrupt_habitat_tensors
 
 try:
@@ -74,8 +74,7 @@ class CorruptObservation(ObservationTransformer):
         self.turn = turn
         self.sensor = sensor or DepthSensor()
         check_sensor(self.sensor)
-        if turn not in TURNS:
-            raise ValueError(f"turn must be 'left' or 'right', got {turn!r}.")
+        check_turn(turn)
 
     @classmethod
     def from_config(cls, config: Any) -> CorruptObservation:
@@ -167,29 +166,14 @@ def key_of(scene_id: str, episode_id: str | int, step: int) -> np.ndarray:
     return np.array([digest(Key(0, name), "habitat") >> 1, step], np.int64)
 
 
-class EpisodeSteps:
-    """Count the steps of a Habitat environment from the arguments that its sensors receive."""
-
-    def __init__(self) -> None:
-        self._step = 0
-
-    def key(self, episode: Any, **arguments: Any) -> np.ndarray:
-        """Return the key of an observation. A reset is recognised because Habitat then passes no
-        ``action``.
-        """
-        self._step = self._step + 1 if "action" in arguments else 0
-        return key_of(episode.scene_id, episode.episode_id, self._step)
-
-
 def _keys(observations: Mapping[str, torch.Tensor]) -> list[list[int]]:
     keys = observations.get(KEY)
     if keys is None or keys.dtype != torch.int64 or keys.shape[1:] != (2,):
         actual = "nothing" if keys is None else f"{keys.dtype} {tuple(keys.shape)}"
         raise ValueError(
             f"The batch must have {KEY!r}, int64 [B, 2], which determines the corruption of each "
-            f"frame, got {actual}. Add {KEY!r} to the task's lab_sensors (importing "
-            "mitigate.worlds.habitat_baselines registers it, see docs/corruption-entry-points.md). "
-            "Outside habitat-baselines, call mitigate.worlds.habitat.corrupt_habitat."
+            f"frame, got {actual}. Add {KEY!r} to the task's lab_sensors (see "
+            "docs/corruption-entry-points.md). Elsewhere, call corrupt_habitat."
         )
     return keys.tolist()
 
@@ -208,7 +192,7 @@ def _register() -> None:
         """
 
         def __init__(self, *args: Any, **kwargs: Any) -> None:
-            self._steps = EpisodeSteps()
+            self._step = 0
             super().__init__(*args, **kwargs)
 
         def _get_uuid(self, *args: Any, **kwargs: Any) -> str:
@@ -221,7 +205,9 @@ def _register() -> None:
             return spaces.Box(0, np.iinfo(np.int64).max, (2,), np.int64)
 
         def get_observation(self, *args: Any, episode: Any, **kwargs: Any) -> np.ndarray:
-            return self._steps.key(episode, **kwargs)
+            # Habitat passes no action at a reset
+            self._step = self._step + 1 if "action" in kwargs else 0
+            return key_of(episode.scene_id, episode.episode_id, self._step)
 
     registry.register_sensor(CorruptionKeySensor, name="CorruptionKeySensor")
     baseline_registry.register_obs_transformer(CorruptObservation, name="CorruptObservation")

@@ -14,7 +14,7 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import Corruption, DepthSensor, Key
 from mitigate.corruptions.suite import SENSOR
 from mitigate.corruptions.tensors import corrupt_observations
-from mitigate.worlds.habitat import TURNS, camera_views, check_cameras
+from mitigate.worlds.habitat import camera_views, check_cameras, check_turn
 
 
 def corrupt_habitat_tensors(
@@ -54,10 +54,7 @@ def corrupt_habitat_tensors(
             below 360, the cameras of a modality differ in size, or ``corrupt_observations`` raised
             this error.
     """
-    if turn not in TURNS:
-        raise ValueError(
-            f"turn must be 'left' or 'right', the direction from rgb to rgb_30, got {turn!r}."
-        )
+    check_turn(turn)
     parts = [part for corruption in corruptions for part in corruption.parts]
     check_cameras(observations, {part.name for part in parts})
     cameras = {

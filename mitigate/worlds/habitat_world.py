@@ -76,8 +76,8 @@ class HabitatWorld(World):
         navmesh: str | dict[str, Any] | None = None,
         gpu: int = -1,
     ) -> None:
-        rules = {"apartments": measures.Rule("vln", 2.0), **measures.RULES}
-        rules = {name: known for name, known in rules.items() if not known.view_points}
+        rules = {name: known for name, known in measures.RULES.items() if not known.view_points}
+        rules["apartments"] = measures.Rule("vln", 2.0)
         if rule not in rules:
             raise ValueError(
                 f"{unknown('success rule', rule, rules)} This world has no view points."
@@ -116,7 +116,10 @@ class HabitatWorld(World):
         self.episode = episode
         start = self._on_navmesh(episode.start_position, "starts")
         self.goals = [self._on_navmesh(g.position, "has a goal") for g in episode.goals]
-        self._put(start, episode.start_rotation)
+        state = _habitat_sim().AgentState()
+        state.position = start
+        state.rotation = np.array(episode.start_rotation, np.float64)
+        self._sim.get_agent(0).set_state(state)
         self.path = [self._position()]
         self.steps = self.collisions = 0
         self.stopped = False
@@ -210,7 +213,8 @@ class HabitatWorld(World):
         rgb = np.stack([images[f"{RGB}{k}"][..., :3] for k in range(self.views)])
         depth = np.stack([images[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
         depth = np.minimum(depth, np.float32(Z_MAX)).astype(np.float32)
-        return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
+        views = slice(None) if self.views > 1 else 0
+        return {RGB: rgb[views], DEPTH: depth[views]}
 
     # the simulator ----------------------------------------------------------------------------
 
@@ -253,10 +257,11 @@ class HabitatWorld(World):
             self._camera(kind, k) for kind in (RGB, DEPTH) for k in range(self.views)
         ]
         amounts = {FORWARD: FORWARD_METRES, LEFT: TURN_DEGREES, RIGHT: TURN_DEGREES}
-        agent.action_space = {}
-        for action, name in MOVES.items():
-            amount = habitat_sim.agent.ActuationSpec(amount=amounts[action])
-            agent.action_space[name] = habitat_sim.agent.ActionSpec(name, amount)
+        spec = habitat_sim.agent
+        agent.action_space = {
+            name: spec.ActionSpec(name, spec.ActuationSpec(amount=amounts[action]))
+            for action, name in MOVES.items()
+        }
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
@@ -295,17 +300,10 @@ class HabitatWorld(World):
         if not distance <= MAX_SNAP:
             raise ValueError(
                 f"The episode {self.episode.episode_id} {what} at {list(position)}, "
-                f"{distance:.1f} m from the navmesh of {self.episode.scene_id}. Check that scene "
-                "and episodes belong to the same dataset, and that the navmesh is for an agent of "
-                "this size."
+                f"{distance:.1f} m from the navmesh of {self.episode.scene_id}. Check that scene, "
+                "episodes and navmesh belong together, and that the agent's size is right."
             )
         return snapped
-
-    def _put(self, position: np.ndarray, rotation: Any) -> None:
-        state = _habitat_sim().AgentState()
-        state.position = position
-        state.rotation = np.array(rotation, np.float64)
-        self._sim.get_agent(0).set_state(state)
 
     def _position(self) -> np.ndarray:
         return np.array(self._sim.get_agent(0).get_state().position, np.float32)
@@ -318,8 +316,7 @@ class HabitatWorld(World):
         """Free the simulator."""
         if self._sim is not None:
             self._sim.close()
-            self._sim = None
-            self._scene = ""
+            self._sim, self._scene = None, ""
 
 
 class NavmeshExpert(Expert):
@@ -367,8 +364,7 @@ def _habitat_sim() -> Any:
         import habitat_sim
     except ImportError as error:
         raise ValueError(
-            "The Habitat world needs habitat-sim 0.3, which is not on the package index. See "
-            "docs/habitat.md for how to get it."
+            "The Habitat world needs habitat-sim 0.3. docs/habitat.md explains how to get it."
         ) from error
     return habitat_sim
 

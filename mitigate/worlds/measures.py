@@ -17,23 +17,6 @@ from numpy.typing import ArrayLike
 SUCCESS_DISTANCE = 3.0
 
 
-def success(distance_to_goal: float, stopped: bool, *, threshold: float = SUCCESS_DISTANCE) -> bool:
-    """Return whether the agent stopped strictly within ``threshold`` metres of the goal.
-
-    This is the rule of VLN-CE. Other projects differ: ETPNav uses ``<=`` and does not require STOP,
-    and the VLN task of habitat-lab uses 0.2 m. An infinite distance means that the goal is
-    unreachable, and counts as a failure.
-
-    Raises:
-        ValueError: The distance is NaN.
-    """
-    if math.isnan(distance_to_goal):
-        raise ValueError(
-            "The distance to the goal must be metres, or inf if it is unreachable, got nan."
-        )
-    return bool(stopped) and distance_to_goal < threshold
-
-
 @dataclass(frozen=True)
 class Rule:
     """A success rule: an episode succeeds if it ends within ``metres`` of the goal.
@@ -73,12 +56,17 @@ class Rule:
     def met(self, distance: float, stopped: bool) -> bool:
         """Return whether an episode is a success if it ends ``distance`` metres away from the goal.
 
+        An infinite distance means that the goal is unreachable, and counts as a failure.
+
         Raises:
             ValueError: The distance is NaN.
         """
-        if self.inclusive:
-            distance = math.nextafter(distance, -math.inf)
-        return success(distance, stopped or not self.stop, threshold=self.metres)
+        if math.isnan(distance):
+            raise ValueError(
+                "The distance to the goal must be metres, or inf if it is unreachable, got nan."
+            )
+        near = distance <= self.metres if self.inclusive else distance < self.metres
+        return bool(near and (stopped or not self.stop))
 
     def __str__(self) -> str:
         """Return the text that describes the rule in result rows and tables."""
@@ -163,13 +151,7 @@ def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DI
 
 
 def of_episode(
-    rule: Rule,
-    path: ArrayLike,
-    reference: ArrayLike,
-    *,
-    start: float,
-    left: float,
-    stopped: bool,
+    rule: Rule, path: ArrayLike, reference: ArrayLike, *, start: float, left: float, stopped: bool
 ) -> dict[str, float]:
     """Return the measures of an episode: success, SPL, nDTW, and lengths in metres.
 

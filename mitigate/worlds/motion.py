@@ -16,25 +16,16 @@ from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
 
-from mitigate.core.observation import (
-    FORWARD,
-    FORWARD_METRES,
-    LEFT,
-    RIGHT,
-    STOP,
-    TURN_DEGREES,
-    Observation,
-)
+from mitigate.core.observation import FORWARD, STOP, Observation
 from mitigate.core.spaces import Box
 from mitigate.corruptions import Corruption, Key, registry
 from mitigate.corruptions.faults.motion import DRIFT, Movement
 from mitigate.corruptions.record import MOTION
 from mitigate.worlds.episodes import Episode
-from mitigate.worlds.world import World, WorldWrapper
+from mitigate.worlds.world import MOVES, World, WorldWrapper
 
 # drift bias at severity 1, as a fraction of half the range of a Box element (heuristic)
 BIAS = 0.25
-MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
 
 
 @runtime_checkable
@@ -69,8 +60,7 @@ class FaultyMotion(WorldWrapper):
             raise ValueError(
                 f"{fault.name!r} cannot change the actions of {type(_innermost(world)).__name__}. "
                 "It needs continuous actions (a Box), or a world that defines move(metres, "
-                "degrees), such as the apartments. Of the motion faults, repeated_action works "
-                "with all actions."
+                "degrees). Of the motion faults, repeated_action works with all actions."
             )
 
     def reset(self, episode: Episode) -> Observation:
@@ -94,10 +84,6 @@ class FaultyMotion(WorldWrapper):
             return self._inner.step(action)
         if self._box is not None:
             return self._inner.step(_changed(action, movement, self._box))
-        return self._move(action, movement)
-
-    def _move(self, action: Any, movement: Movement) -> Observation:
-        """Move a wheeled robot by one step."""
         if action not in MOVES:  # the world raises the error for an invalid action
             return self._inner.step(action)
         robot: Any = self._inner  # an instance of Movable, or a wrapper of such a world

@@ -182,8 +182,7 @@ class SeededWorld(World):
             raise ValueError(f"hfov must be above 0 and below 180 degrees, got {hfov!r:.80}.")
         if limit is not None and (type(limit) is not int or limit < 1):
             raise ValueError(
-                f"limit must be a whole number of steps >= 1 or None, got {limit!r}. None lets the "
-                "environment end its episodes."
+                f"limit must be a whole number of steps >= 1 or None (no limit), got {limit!r}."
             )
         _check_success(success, rule)
         self.action_space, arrays = self._spaces(env)
@@ -206,21 +205,16 @@ class SeededWorld(World):
         self.sensors: dict[str, Sensor] = {}
         for name, entry in entries.items():
             shape, dtype, high = arrays[entry]
+            options: dict[str, Any] = {}
             if name in (RGB, DEPTH):
                 _check_format(name, entry, tuple(shape), dtype)
+                options["hfov"] = hfov
             if name == DEPTH:
                 _check_unit(entry, dtype, high, unit)
-                metres = high * self.unit
-                self.sensors[name] = Sensor(name, tuple(shape), dtype, "m", hfov, high=metres)
-            else:
-                width = hfov if name == RGB else None
-                self.sensors[name] = Sensor(name, tuple(shape), dtype, hfov=width)
-
-        self.native = NativeFormat(
-            dict(self.entries),
-            {name: sensor.dtype for name, sensor in self.sensors.items()},
-            self.unit,
-        )
+                options |= {"unit": "m", "high": high * self.unit}
+            self.sensors[name] = Sensor(name, tuple(shape), dtype, **options)
+        dtypes = {name: sensor.dtype for name, sensor in self.sensors.items()}
+        self.native = NativeFormat(self.entries, dtypes, self.unit)
 
     def reset(self, episode: Episode) -> Observation:
         """Start an episode from its seed, which is ``info["seed"]`` or derived from the episode
@@ -248,7 +242,24 @@ class SeededWorld(World):
         action = self.action_space.check(action)
         with self._calling(f"{type(self.env).__name__}.step()"):
             parts, reward, over = self._step_env(action)
-        self._end_step(reward, over)
+        if math.isnan(reward) and (callable(self.success) or self.rule == RETURN):
+            raise ValueError(
+                f"The reward of step {self._steps + 1} of episode {self._name} must not be NaN."
+            )
+        self.reward = reward
+        self._total += reward
+        self._steps += 1
+        self._cut = not over and self.limit is not None and self._steps >= self.limit
+        self.done = over or self._cut
+        named = isinstance(self.success, str) and self.rule != RETURN
+        if over and named and self.success not in self._report():
+            raise ValueError(
+                f"At the end of episode {self._name} the environment must report success, but it "
+                f"has no entry {self.success!r}, only {_listed(self._report())}. Set success= to "
+                "an entry that is False after a failure, or to a function, such as "
+                'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
+                'success set score="return".'
+            )
         return self._observation(parts)
 
     def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
@@ -279,45 +290,22 @@ class SeededWorld(World):
         ``spl`` equals ``success``, because the shortest path is unknown. If the score is "return",
         both are missing.
         """
-        measures: dict[str, float] = {RETURN: self._total, "steps": self._steps}
+        measures: dict[str, float] = {}
         if self.rule != RETURN:
             succeeded = int(self.done and self._succeeded())
-            measures = {"success": succeeded, "spl": float(succeeded)} | measures
-        for name in self.extra:
-            measures[name] = self._extra(name)
-        if self.limit is None:
-            return measures
-        return measures | {"cut": int(self._cut), "limit": self.limit}
-
-    def _end_step(self, reward: float, over: bool) -> None:
-        """Update the counters after a step, and check the values that the environment reported."""
-        if math.isnan(reward) and (callable(self.success) or self.rule == RETURN):
-            raise ValueError(
-                f"The reward of step {self._steps + 1} of episode {self._name} must be a number, "
-                "got NaN. The score needs numbers."
-            )
-        self.reward = reward
-        self._total += reward
-        self._steps += 1
-        self._cut = not over and self.limit is not None and self._steps >= self.limit
-        self.done = over or self._cut
-        named = isinstance(self.success, str) and self.rule != RETURN
-        if over and named and self.success not in self._report():
-            raise ValueError(
-                f"At the end of episode {self._name} the environment must report success, but it "
-                f"has no entry {self.success!r}, only "
-                f"{', '.join(map(repr, self._report())) or 'none'}. Set success= to the name of "
-                "an entry that is False after a failure, or to a function, such as "
-                'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
-                'success set score="return".'
-            )
+            measures |= {"success": succeeded, "spl": float(succeeded)}
+        measures |= {RETURN: self._total, "steps": self._steps}
+        measures |= {name: self._extra(name) for name in self.extra}
+        if self.limit is not None:
+            measures |= {"cut": int(self._cut), "limit": self.limit}
+        return measures
 
     def _extra(self, name: str) -> float:
         value = np.asarray(self._report().get(name, math.nan)).ravel()
         if value.size != 1 or value.dtype.kind not in "biuf" or np.isnan(value[0]):
             raise ValueError(
                 f"The entry {name!r} of extra must be a number at the end of episode {self._name}; "
-                f"the environment reports {', '.join(map(repr, self._report())) or 'nothing'}."
+                f"the environment reports {_listed(self._report())}."
             )
         return float(value[0])
 
@@ -360,10 +348,8 @@ class SeededWorld(World):
         absent = [entry for entry in self.entries.values() if entry not in values]
         if absent:
             raise ValueError(
-                f"The observation after step {self._steps} of episode {self._name} must have "
-                "the entry "
-                f"{absent[0]!r}, which its space names, got "
-                f"{', '.join(map(str, values)) or 'none'}."
+                f"The observation after step {self._steps} of episode {self._name} must have the "
+                f"entry {absent[0]!r}, which its space names, got {_listed(values)}."
             )
         frames = {name: np.array(values[entry]) for name, entry in self.entries.items()}
         for name in {RGB, DEPTH}.intersection(frames):
@@ -391,6 +377,10 @@ class SeededWorld(World):
         return metres
 
 
+def _listed(names: Iterable[str]) -> str:
+    return ", ".join(map(repr, names)) or "none"
+
+
 def _as_bool(value: Any, source: str, episode: str) -> bool:
     """Return whether a value, or at least one of its elements, is true. None counts as false.
 
@@ -402,7 +392,6 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
         valid = all(part is None or part in (0, 1) for part in parts)
     # the value may be a ragged list, or an object that is not a number
     except (ValueError, TypeError):
-        parts = []
         valid = False
     if not valid:
         raise ValueError(
@@ -417,13 +406,11 @@ def _check_success(success: Any, rule: str | None) -> None:
     """Raise ValueError if ``success`` is invalid, or if it is a function but ``rule`` is not
     set.
     """
-    if callable(success):
-        if not rule:
-            raise ValueError(
-                "A success function needs rule=, the success rule in words for rows and tables, "
-                'such as rule="return > 0".'
-            )
-    elif success is not None and not (isinstance(success, str) and success):
+    if callable(success) and not rule:
+        raise ValueError(
+            'A success function needs rule=, the rule in words, such as rule="return > 0".'
+        )
+    if not (success is None or callable(success) or (isinstance(success, str) and success)):
         raise ValueError(
             f"success must be the name of an entry or a function, got {success!r:.80}. Set "
             'success="is_success", or success=lambda end: end.total > 0 with rule="return > 0".'
@@ -434,17 +421,15 @@ def _check_format(name: str, entry: str, shape: tuple[int, ...], dtype: str) -> 
     """Raise ValueError for frames that ``corruptions/suite.py`` does not support."""
     if name == RGB and dtype != "uint8":
         raise ValueError(
-            f"RGB must be uint8 in 0-255, got {dtype}. Remove wrappers that scale or transpose "
-            "frames."
+            f"RGB must be uint8 in 0-255, got {dtype}. Remove wrappers that scale frames."
         )
     channels = 3 if name == RGB else 1
     flat = name == DEPTH and len(shape) == 2
     if not flat and (len(shape) not in (3, 4) or shape[-1] != channels):
         raise ValueError(
             f"The shape of the {name} frames{f' {entry!r}' if entry else ''} must be "
-            f"[H, W, {channels}], or [views, H, W, {channels}] for a panorama (channels last, no "
-            f"alpha, no grey, no stack), got {list(shape)}. Wrap the environment "
-            "(gymnasium.wrappers.TransformObservation)."
+            f"[H, W, {channels}], or [views, H, W, {channels}] for a panorama, got {list(shape)}. "
+            "Wrap the environment (gymnasium.wrappers.TransformObservation)."
         )
 
 

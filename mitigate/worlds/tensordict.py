@@ -18,19 +18,12 @@ from torchrl.data import Bounded, Categorical, Composite, NonTensor, OneHot, Unb
 from torchrl.data.tensor_specs import ContinuousBox
 from torchrl.envs import EnvBase, GymLikeEnv
 
-from mitigate.core.observation import (
-    EPISODE,
-    FRAME,
-    INSTRUCTION,
-    STOP,
-    Observation,
-    Sensor,
-)
+from mitigate.core.observation import EPISODE, FRAME, INSTRUCTION, STOP, Observation, Sensor
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 from mitigate.worlds.episodes import Episode, read_episodes
 from mitigate.worlds.seeded import Arrays, SeededWorld
-from mitigate.worlds.world import TrainingEpisodes, World
+from mitigate.worlds.world import MOVES, TrainingEpisodes, World
 
 
 class WorldEnv(EnvBase):
@@ -38,7 +31,7 @@ class WorldEnv(EnvBase):
 
     Observations have one entry per sensor of the world. They also have ``instruction`` (str),
     ``episode`` (str, a name that is unique to each run of an episode) and ``frame`` (int64 [1], the
-    number of steps). Actions are int64 from 0 to ``actions`` - 1, where 0 is STOP. The reward
+    number of steps). Actions are int64 from 0 to 3, where 0 is STOP. The reward
     (float32 [1]) is the world's ``success`` at the end of an episode, and 0 before. If the agent
     ends the episode with STOP, ``terminated`` is set; if the world ends it, ``truncated`` is set.
 
@@ -47,7 +40,6 @@ class WorldEnv(EnvBase):
         episodes: A VLN-CE file or a list of episodes, which are run in order and repeated.
             Alternatively, a source of training episodes (``worlds/world.py``), from which episodes
             are sampled with ``seed``.
-        actions: Number of actions.
         seed: Seed for sampling episodes. The method ``set_seed`` replaces it and restarts with the
             first episode.
         worker: Index of this environment. The environment runs the episodes ``worker``, ``worker +
@@ -67,7 +59,6 @@ class WorldEnv(EnvBase):
         world: World,
         episodes: Path | str | Sequence[Episode] | TrainingEpisodes,
         *,
-        actions: int = 4,
         seed: int = 0,
         worker: int = 0,
         workers: int = 1,
@@ -78,7 +69,7 @@ class WorldEnv(EnvBase):
                 f"worker must be 0 to {workers - 1} with workers={workers}, got {worker}."
             )
         self.world = world
-        self.actions = actions
+
         self.seed = seed
         self.episodes: TrainingEpisodes | Sequence[Episode] = (
             episodes if isinstance(episodes, TrainingEpisodes) else _list_episodes(episodes)
@@ -98,7 +89,7 @@ class WorldEnv(EnvBase):
                 FRAME: Unbounded(shape=(1,), dtype=torch.int64),
             }
         )
-        self.action_spec = Categorical(self.actions, shape=(), dtype=torch.int64)
+        self.action_spec = Categorical(len(MOVES) + 1, shape=(), dtype=torch.int64)
         self.reward_spec = Unbounded(shape=(1,), dtype=torch.float32)
         self.done_spec = Composite(
             {name: flag.clone() for name in ("done", "terminated", "truncated")}
@@ -128,13 +119,11 @@ class WorldEnv(EnvBase):
         """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
-            episode = self.episodes.draw(rng, (0, 1))
-            repetition = number
+            episode, repetition = self.episodes.draw(rng, (0, 1)), number
         else:
             repetition, index = divmod(number, len(self.episodes))
             episode = self.episodes[index]
-        name = f"{episode.episode_id}@{repetition}" if repetition else episode.episode_id
-        return episode, name
+        return episode, episode.episode_id + (f"@{repetition}" if repetition else "")
 
     def _state(self, observation: Observation, stopped: bool) -> TensorDictBase:
         done = self.world.done
@@ -161,19 +150,17 @@ class EnvWorld(SeededWorld):
     def _spaces(self, env: EnvBase) -> tuple[ActionSpace, Arrays]:
         if env.batch_size.numel() != 1:
             raise ValueError(
-                f"The batch size of the environment must be [] or [1], got {list(env.batch_size)}. "
-                "Pass a single environment."
+                f"Pass a single environment, not one with batch size {list(env.batch_size)}."
             )
         action = env.full_action_spec
         actions = [action[key] for key in action.keys(True, True)]
         if len(actions) != 1:
             raise ValueError(
-                f"The environment must have one action, got {len(actions)}. Wrap it in a transform "
-                "that computes them from one action."
+                f"The environment must have one action, got {len(actions)}. Combine its actions."
             )
         spec = env.observation_spec
         arrays = {_dotted(key): _describe(spec[key]) for key in spec.keys(True, True)}
-        return _space_of(actions[0], env.batch_size.numel()), arrays
+        return _space_of(actions[0]), arrays
 
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
@@ -192,19 +179,19 @@ class EnvWorld(SeededWorld):
         self._now = self.env.step(self._now)["next"]
         reward = float(self._now.get(self.env.reward_key).sum())
         over = any(bool(self._now[key].any()) for key in self.env.done_keys)
-        ends = [key for key in self._now.keys(True, True) if _dotted(key).endswith("terminated")]
-        self.terminated = any(bool(self._now[key].any()) for key in ends)
+        ends = [value for name, value in self._report().items() if name.endswith("terminated")]
+        self.terminated = any(bool(value.any()) for value in ends)
         return self._parts(), reward, over
 
     def _report(self) -> dict[str, Any]:
         return {_dotted(key): self._now[key] for key in self._now.keys(True, True)}
 
     def _parts(self) -> dict[str, Any]:
-        keys = {_dotted(key): key for key in self._now.keys(True, True)}
-        return {e: self._now[keys[e]].numpy(force=True) for e in self.entries.values()}
+        entries = self._report()
+        return {name: entries[name].numpy(force=True) for name in self.entries.values()}
 
 
-def _space_of(spec: Any, batch: int) -> ActionSpace:
+def _space_of(spec: Any) -> ActionSpace:
     """Return the action space that corresponds to a torchrl spec.
 
     Raises:
@@ -212,9 +199,9 @@ def _space_of(spec: Any, batch: int) -> ActionSpace:
             array.
     """
     kind = type(spec).__name__
-    if kind in ("Categorical", "OneHot") and spec.shape.numel() == batch * (
-        spec.space.n if kind == "OneHot" else 1
-    ):
+    if kind == "Categorical" and spec.shape.numel() == 1:
+        return Discrete(int(spec.space.n))
+    if kind == "OneHot" and spec.shape.numel() == spec.space.n:
         return Discrete(int(spec.space.n))
     if kind == "MultiCategorical":
         return MultiDiscrete(np.asarray(spec.nvec).reshape(spec.shape))
@@ -237,8 +224,7 @@ def _list_episodes(episodes: Any) -> list[Episode]:
     listed = list(read_episodes(episodes)) if is_file else list(episodes)
     if not listed:
         raise ValueError(
-            f"{episodes if is_file else 'The list'} must contain at least one episode. Add one, or "
-            "pass a source of training episodes."
+            f"{episodes if is_file else 'The list'} must contain at least one episode."
         )
     return listed
 

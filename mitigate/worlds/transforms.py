@@ -13,14 +13,7 @@ from torchrl.data import Bounded, Composite, Unbounded
 from torchrl.envs import Transform
 
 from mitigate.core.observation import DEPTH, EPISODE, FRAME, POSE, RGB
-from mitigate.corruptions import (
-    CLEAN,
-    Corruption,
-    DepthSensor,
-    FrameStream,
-    Key,
-    Schedule,
-)
+from mitigate.corruptions import CLEAN, Corruption, DepthSensor, FrameStream, Key, Schedule
 from mitigate.corruptions.registry import family, modality
 from mitigate.corruptions.schedule import drawn, names_of
 from mitigate.corruptions.stream import is_timed
@@ -144,24 +137,22 @@ class CorruptObservation(Transform):
                 )
         out = self._corrupt(tensordict.copy())
         following = out.get("next", None)
-        if following is not None and any(
-            following.get(self.entries[name], None) is not None for name in (RGB, DEPTH)
-        ):
+        if following is not None and any(following.get(k, None) is not None for k in self.in_keys):
             self._corrupt(following)
         return out
 
     def _corrupt(self, data: TensorDictBase, rows: list[int] | None = None) -> TensorDictBase:
         drawn = self._draw(data)
         batch = len(data.batch_size)
-        stored = {name: data.get(entry, None) for name, entry in self.entries.items()}
-        if self._uses_torch(stored):
-            return self._corrupt_on_device(data, drawn, rows)
-        frames = {
-            name: value.detach().cpu().reshape(-1, *value.shape[batch:]).numpy()
-            for name, value in stored.items()
-            if value is not None
+        stored = {
+            name: value.reshape(-1, *value.shape[batch:])
+            for name, entry in self.entries.items()
+            if (value := data.get(entry, None)) is not None
         }
-        check_available(names_of(self.schedule), frames, "the data have no {0}", ENTRY_FIX)
+        check_available(names_of(self.schedule), stored, "the data have no {0}", ENTRY_FIX)
+        if self._uses_torch(stored):
+            return self._corrupt_on_device(data, stored, drawn, rows)
+        frames = {name: value.numpy(force=True) for name, value in stored.items()}
         corrupted: dict[str, np.ndarray] = {}
         for row in range(len(drawn)) if rows is None else rows:
             corruption, key = drawn[row]
@@ -176,35 +167,31 @@ class CorruptObservation(Transform):
             for name in frames.keys() & {*corruption.modalities}:
                 corrupted.setdefault(name, frames[name].copy())[row] = result[name]
         for name, views in corrupted.items():
-            value = stored[name]
-            data.set(
-                self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value.device)
-            )
+            value = data.get(self.entries[name])
+            data.set(self.entries[name], torch.from_numpy(views).reshape(value.shape).to(value))
         return data
 
-    def _uses_torch(self, stored: dict[str, torch.Tensor | None]) -> bool:
+    def _uses_torch(self, stored: dict[str, torch.Tensor]) -> bool:
         """Return whether the frames are corrupted with torch on their device."""
         if isinstance(self.schedule, Corruption) and family(self.schedule.name):
             return False
         if self._backend is not None:
             return self._backend == "torch"
-        return any(value is not None and value.device.type != "cpu" for value in stored.values())
+        return any(value.device.type != "cpu" for value in stored.values())
 
     def _corrupt_on_device(
-        self, data: TensorDictBase, drawn: list[tuple[Corruption, Key]], rows: list[int] | None
+        self,
+        data: TensorDictBase,
+        frames: dict[str, torch.Tensor],
+        drawn: list[tuple[Corruption, Key]],
+        rows: list[int] | None,
     ) -> TensorDictBase:
         corruptions = [corruption for corruption, _ in drawn]
         if rows is not None:
             reset = set(rows)
             corruptions = [c if row in reset else CLEAN for row, c in enumerate(corruptions)]
-        frames, batch = {}, len(data.batch_size)
-        for name in (RGB, DEPTH):
-            value = data.get(self.entries[name], None)
-            if value is not None:
-                views = value.reshape(-1, *value.shape[batch:])
-                frames[name] = views.unsqueeze(1) if views.dim() == 4 else views
-        check_available(names_of(self.schedule), frames, "the data have no {0}", ENTRY_FIX)
-        pose = data.get(POSE, None)
+        pose = frames.pop(POSE, None)
+        frames = {name: f.unsqueeze(1) if f.dim() == 4 else f for name, f in frames.items()}
         corrupted = corrupt_observations(
             frames,
             corruptions,
@@ -228,9 +215,8 @@ class CorruptObservation(Transform):
             raise ValueError(
                 f"The data must have {' and '.join(map(repr, missing))}, which determine the "
                 f"random numbers, got only {sorted(map(str, present))}. The environment must "
-                "provide 'episode' (a string or int64 [1], unique to each run of an episode) and "
-                "'frame' (int64 [1]), as ApartmentsEnv does. Otherwise put an EpisodeCounter() "
-                "before CorruptObservation."
+                "provide them, as ApartmentsEnv does. Otherwise put an EpisodeCounter() before "
+                "CorruptObservation."
             )
         instants = data.select(EPISODE, FRAME).cpu().reshape(-1).unbind(0)
         return [
@@ -264,8 +250,7 @@ class EpisodeCounter(Transform):
             if multiprocessing.parent_process() is not None:
                 warnings.warn(
                     "Environments in several processes draw the same corruptions: pass "
-                    "EpisodeCounter(worker=i, workers=n) in process i of n. For a single process, "
-                    "workers=1 avoids this warning.",
+                    "EpisodeCounter(worker=i, workers=n) in process i of n, or workers=1.",
                     stacklevel=2,
                 )
         if not 0 <= worker < workers:

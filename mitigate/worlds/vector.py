@@ -16,8 +16,7 @@ try:
     from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 except ImportError as error:
     raise ImportError(
-        "The wrapper for vector environments needs gymnasium 1.1 or newer: "
-        "pip install 'gymnasium>=1.1'."
+        "Vector environments need gymnasium 1.1 or newer: pip install 'gymnasium>=1.1'."
     ) from error
 
 from mitigate.core.observation import DEPTH, RGB
@@ -121,12 +120,10 @@ class CorruptVectorObservation(VectorWrapper):
         self._over = self._over & ~mask
 
     def _corrupt(self, observations: Mapping[str, Any]) -> dict[str, Any]:
-        frames = {}
-        for name, entry in self.entries.items():
-            if entry in observations:
-                frames[name] = observations[entry]
-                if isinstance(frames[name], Tensor) and frames[name].dim() == 4:
-                    frames[name] = frames[name].unsqueeze(1)
+        frames = {n: observations[e] for n, e in self.entries.items() if e in observations}
+        for name, views in frames.items():
+            if isinstance(views, Tensor) and views.dim() == 4:
+                frames[name] = views.unsqueeze(1)
         check_available(names_of(self.schedule), frames, "the observation has no {0}", ENTRY_FIX)
         numbers = torch.arange(self.num_envs) + (self._resets - 1).clamp(min=0) * self.num_envs
         instants = zip(numbers.tolist(), self._steps.tolist(), strict=True)

@@ -10,6 +10,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
+from operator import attrgetter
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -18,6 +19,7 @@ from mitigate.core.contracts import take_over
 from mitigate.core.observation import (
     DEPTH,
     FORWARD,
+    FORWARD_METRES,
     LEFT,
     RGB,
     RIGHT,
@@ -33,6 +35,8 @@ from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
 MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median depth of an indoor frame is smaller
+# metres forward and degrees to the left of each action
+MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
 
 
 class Expert:
@@ -233,32 +237,15 @@ class WorldWrapper(World):
         """Take a step by calling ``move`` of the inner world (see ``worlds/motion.py``)."""
         return self._observe(self._inner.move(metres, degrees))  # type: ignore[attr-defined]
 
-    def measures(self) -> dict[str, float]:
-        return self._inner.measures()
-
-    def expert(self) -> Any:
-        return self._inner.expert()
-
-    def truth(self) -> Mapping[str, np.ndarray]:
-        return self._inner.truth()
-
-    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
-        return self._inner.displaced(mount)
-
-    def remembering(self) -> AbstractContextManager:
-        return self._inner.remembering()
-
-    @property
-    def action_space(self) -> ActionSpace | None:  # type: ignore[override]
-        return self._inner.action_space
-
-    @property
-    def native(self) -> Callable[[Mapping[str, Any]], Any] | None:  # type: ignore[override]
-        return self._inner.native
-
-    @property
-    def draw(self) -> Callable[[Any], None] | None:  # type: ignore[override]
-        return self._inner.draw
+    # The class World defines defaults of these members, so __getattr__ does not find them.
+    measures: Any = property(attrgetter("_inner.measures"))
+    expert: Any = property(attrgetter("_inner.expert"))
+    truth: Any = property(attrgetter("_inner.truth"))
+    displaced: Any = property(attrgetter("_inner.displaced"))
+    remembering: Any = property(attrgetter("_inner.remembering"))
+    action_space: Any = property(attrgetter("_inner.action_space"))
+    native: Any = property(attrgetter("_inner.native"))
+    draw: Any = property(attrgetter("_inner.draw"))
 
     def _observe(self, observation: Observation) -> Observation:
         """Convert an observation of the inner world to the observation that the agent receives."""
@@ -426,8 +413,8 @@ def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
         ValueError: The median depth is above ``MAX_MEDIAN_DEPTH``.
     """
     readings = depth[depth > 0]
-    if len(readings) and float(np.median(readings)) > MAX_MEDIAN_DEPTH:
+    median = float(np.median(readings)) if len(readings) else 0.0
+    if median > MAX_MEDIAN_DEPTH:
         raise ValueError(
-            f"Half of {name} is farther than {np.median(readings):.0f} m: it is not in metres. "
-            f"{fix}"
+            f"Half of {name} is farther than {median:.0f} m: it is not in metres. {fix}"
         )

@@ -20,13 +20,7 @@ except ImportError as error:
     ) from error
 
 from mitigate.core.observation import DEPTH, POSE, RGB
-from mitigate.corruptions import (
-    Corruption,
-    DepthSensor,
-    FrameStream,
-    Key,
-    Schedule,
-)
+from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key, Schedule
 from mitigate.corruptions.normalised import check_sensor
 from mitigate.corruptions.schedule import drawn, names_of
 from mitigate.worlds.modalities import ENTRY_FIX, check_available
@@ -106,14 +100,13 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         self.corruption: Corruption | None = None
         self.key: Key | None = None
         self._source = ""
-        self._resets = 0
-        self._frame = 0
+        self._resets = self._frame = 0
         self._over = False
         degrees = dict.fromkeys((RGB, DEPTH), hfov)
         self._stream = FrameStream(self.sensor, normalised=normalised, hfov=degrees)
+        self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
         # modality of the observation if it is a single frame
         self._whole = _modality(env.observation_space)
-        self._entries = {RGB: rgb, DEPTH: depth, **({} if pose is None else {POSE: pose})}
         if self._whole is not None:
             self._entries = {self._whole: self._whole}
         self._check(env.observation_space, normalised)
@@ -142,13 +135,11 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:
             raise gymnasium.error.ResetNeeded(
-                "reset() must be called before step(): the reset names the episode, and the name "
-                "determines the random numbers."
+                "reset() must be called before step(), because it names the episode."
             )
+        self._frame += 1
         if self._over:
             self._begin()
-        else:
-            self._frame += 1
         self._over = bool(terminated or truncated)
         return self.observation(observation), reward, terminated, truncated, info
 
@@ -197,10 +188,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         high = float(np.max(box.high))
         largest = max(self.sensor.z_max, self.sensor.missing)
         if normalised and high > 1.0:
-            raise ValueError(
-                f"The depth space must end at 1 if normalised=True, got {high:g}. Leave normalised "
-                "out for depth in metres."
-            )
+            raise ValueError(f"The depth space must end at 1 if normalised=True, got {high:g}.")
         if not normalised and largest > high:
             raise ValueError(
                 f"{self.sensor} writes depth up to {largest:g} metres, but the depth space ends at "
@@ -213,10 +201,8 @@ def _modality(space: gymnasium.Space) -> str | None:
     """Return the modality of the frames in a space. Return None if the space has another format."""
     if not isinstance(space, gymnasium.spaces.Box):
         return None
-    views = len(space.shape) in (3, 4)
-    if space.dtype == np.uint8 and views and space.shape[-1] == 3:
+    *_, channels = space.shape if len(space.shape) in (3, 4) else (0,)
+    if space.dtype == np.uint8 and channels == 3:
         return RGB
-    flat = len(space.shape) == 2
-    if space.dtype == np.float32 and (flat or (views and space.shape[-1] == 1)):
-        return DEPTH
-    return None
+    is_depth = channels == 1 or len(space.shape) == 2
+    return DEPTH if space.dtype == np.float32 and is_depth else None

@@ -61,15 +61,6 @@ def test_reliability_weighs_blank_views_equally():
     assert torch.isfinite(fused).all()
 
 
-def test_reliability_ignores_invalid_views(views):
-    valid = torch.arange(12) < 4
-    fused, weights = fuse(views, valid=valid)
-    alone, _ = fuse(views[:4])
-    assert torch.allclose(fused, alone, atol=1e-5) and not weights[4:].any()
-    nothing = reliability(views, valid=torch.zeros(12, dtype=torch.bool))
-    assert torch.allclose(nothing.sum(), torch.tensor(1.0))
-
-
 def test_reliability_gradients_are_finite_for_blank_views():
     x = torch.zeros(12, 8, requires_grad=True)
     fuse(x)[0].sum().backward()

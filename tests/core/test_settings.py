@@ -261,13 +261,11 @@ def test_file_without_settings_is_rejected(tmp_path, text):
         ({"planner": {"rgb_width": 3}}, "no setting of agent.planner 'rgb_width'"),
         ({"planner": {"layers": 10**9}}, "a whole number from 0 to 32"),
         ({"planner": {"heads": 0}}, "a whole number from 1"),
-        ({"planner": {"heads": 3}}, "a multiple of agent.planner.heads (3)"),
         ({"planner": {"dropout": 2}}, "a number from 0 to 1"),
         ({"planner": {"fusion": {"rate": "4"}}}, "a number from 0"),
         ({"planner": {"fusion": {"learned": 1}}}, "true or false"),
         ({"planner": {"fusion": {"views": None}}}, "no setting of agent.planner.fusion 'views'"),
         ({"adapters": {"model": None}}, "no setting of agent.adapters 'model'"),
-        ({"adapters": {"ring": ["stages.0"]}}, "lacks target_modules"),
         ({"adapters": {"target_modules": "stages.0"}}, "a list of at most 64"),
         ({"adapters": {"target_modules": ["(.|.)*(.|.)*!"]}}, "patterns without groups"),
         ({"adapters": {"target_modules": [".*.*.*!"]}}, "at most 2 of * + ?"),
@@ -281,16 +279,19 @@ def test_setting_of_another_type_names_the_allowed_ones(tmp_path, own_value, wor
         assert words in message
 
 
+def test_heads_divide_the_width(tmp_path):
+    file = folder_with(tmp_path, agent_yaml(planner={"heads": 3})) / loading.CONFIG
+    with pytest.raises(ValueError, match=r"config\.yaml do not fit \(width .* multiple of heads"):
+        loading.build_from(file)
+
+
 def test_schema_has_the_arguments_of_its_class():
     def names(function, *arguments: str) -> set[str]:
         return set(signature(function).parameters) - set(arguments)
 
     schemas = {target: schema.schema_of(target) for target in schema.KINDS}
     for target, kind in schemas.items():
-        assert kind.settings.keys() == names(schema.class_of(target))
-    for kind, network in zip(schemas.values(), (Planner, Policy), strict=False):
-        usual = (signature(network).parameters[name].default for name in ("width", "heads"))
-        assert kind.usual == tuple(usual)
+        assert kind.keys() == names(schema.class_of(target))
     assert POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
     assert PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
     assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run")

@@ -228,7 +228,7 @@ def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     with pytest.raises(ValueError, match="does not have the sha256"):
         result().load(tmp_path)
     (tmp_path / MANIFEST).unlink()  # earlier versions wrote no manifest
-    with pytest.raises(ValueError, match="sensor must not be"):
+    with pytest.raises(ValueError, match=r"to an encoder with sensor=\['rgb'\]"):
         result().load(tmp_path)
 
 

@@ -16,8 +16,10 @@ from hypothesis import strategies as st
 
 from mitigate.evaluation.metrics import prs
 from mitigate.worlds.episodes import read_episodes
-from mitigate.worlds.measures import Rule, dtw, ndtw, path_length, spl, success
+from mitigate.worlds.measures import RULES, Rule, dtw, ndtw, path_length, spl
 from tests.r2r_ce import FOLDER, needs_r2r_ce
+
+success = RULES["vln_ce"].met
 
 LINE = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0)]
 
@@ -66,7 +68,7 @@ def test_success_is_stop_strictly_within_the_threshold(distance, stopped, expect
 
 
 def test_ndtw_threshold_scales():
-    assert not success(2.5, True, threshold=2.0)
+    assert not Rule("vln", 2).met(2.5, True)
     assert str(Rule("vln", 2)) == "vln: STOP and geodesic < 2.0 m"
     with pytest.raises(ValueError, match="got nan"):
         success(math.nan, True)

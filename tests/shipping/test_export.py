@@ -269,7 +269,7 @@ def test_adapter_folder_holds_no_backbone_and_needs_its_base(place, tmp_path):
     # no sidecars, because the cards contain the checksums
     assert not list((place / "hardened").rglob("*.sha256"))
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
-    with pytest.raises(ValueError, match="another"):
+    with pytest.raises(ValueError, match="has a different one"):
         loading.load_hardened(folder, base=other)
     with pytest.raises(FileNotFoundError, match="base="):
         loading.load_hardened(folder, base=tmp_path / "nothing")

@@ -51,7 +51,7 @@ def test_load_rejects_unnamed_or_different_agent(tmp_path):
     (tmp_path / "config.yaml").write_text(yaml.safe_dump({"agent": {"_target_": "os.system"}}))
     with pytest.raises(ValueError, match=r"belongs to the agent os\.system"):
         mitigate.load(tmp_path)
-    with pytest.raises(TypeError, match="got None"):
+    with pytest.raises(TypeError, match="NoneType"):
         mitigate.load(None)
 
 

@@ -460,7 +460,7 @@ class Changing(Room):
     [
         (0, np.zeros((SIZE, SIZE, 3), np.float32), "must be uint8 .*got float32"),
         (0, np.zeros((SIZE, 8, 3), np.uint8), r"after step 1 of episode e3 must be .*16, 8, 3"),
-        (1, float("nan"), "reward of step 1 of episode e3 must be a number, got NaN"),
+        (1, float("nan"), "reward of step 1 of episode e3 must not be NaN"),
         (1, None, r"step\(\) raised TypeError in episode e3"),
         (4, None, r"step\(\) raised TypeError in episode e3"),
     ],

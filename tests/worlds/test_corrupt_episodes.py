@@ -249,23 +249,6 @@ def test_run_keeps_a_changed_file(tmp_path):
     assert out.read_text() == "precious"
 
 
-@pytest.mark.parametrize("changed", [False, True])
-def test_run_reads_summaries_without_a_checksum(tmp_path, changed):
-    source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
-    beside = tmp_path / "out.json.summary.json"
-    summary = run(source, out, "mask", 1.0)
-    del summary["sha256"]
-    beside.write_text(json.dumps(summary))
-    if not changed:
-        assert "sha256" in run(source, out, "mask", 1.0)
-        return
-    for content in ("precious", json.dumps({"episodes": []})):
-        out.write_text(content)
-        with pytest.raises(ValueError, match="move"):
-            run(source, out, "mask", 1.0)
-        assert out.read_text() == content
-
-
 def test_main_writes_nothing_after_an_interrupt(tmp_path, monkeypatch, capsys):
     def interrupted(*settings, **options):
         raise KeyboardInterrupt

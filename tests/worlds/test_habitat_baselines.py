@@ -132,13 +132,9 @@ def test_transformer_explains_missing_keys(batch):
 
 
 def test_key_depends_on_scene_episode_and_step():
-    episode = SimpleNamespace(scene_id="data/mp3d/x/x.glb", episode_id="7")
-    steps = habitat_baselines.EpisodeSteps()
-    seen = [steps.key(episode), steps.key(episode, action=1), steps.key(episode, action=1)]
-    seen += [steps.key(episode)]
-    assert [int(k[1]) for k in seen] == [0, 1, 2, 0] and len({int(k[0]) for k in seen}) == 1
-    number = int(seen[0][0])
-    assert seen[0].dtype == np.int64 and number > 0
+    key = habitat_baselines.key_of("data/mp3d/x/x.glb", "7", 3)
+    number = int(key[0])
+    assert key.dtype == np.int64 and number > 0 and key[1] == 3
     assert int(habitat_baselines.key_of("/other/place/x.glb", 7, 0)[0]) == number
     assert int(habitat_baselines.key_of("x.glb", "8", 0)[0]) != number
     assert int(habitat_baselines.key_of("y.glb", "7", 0)[0]) != number
@@ -209,9 +205,12 @@ def test_import_registers_transformer_and_sensor(stand_in, batch):
     sensor = known["CorruptionKeySensor"](sim=None, config=None)
     assert sensor.uuid == "corruption_key" and sensor.observation_space[2] == (2,)
     episode = SimpleNamespace(scene_id="x.glb", episode_id="7")
-    first = sensor.get_observation(observations={}, episode=episode, task=None)
-    second = sensor.get_observation(observations={}, episode=episode, task=None, action={})
-    assert first.tolist() == module.key_of("x.glb", 7, 0).tolist() and second[1] == 1
+    seen = [
+        sensor.get_observation(observations={}, episode=episode, task=None, **action)
+        for action in ({}, {"action": 1}, {"action": 1}, {})
+    ]
+    assert seen[0].tolist() == module.key_of("x.glb", 7, 0).tolist()
+    assert [int(key[1]) for key in seen] == [0, 1, 2, 0] and len({int(key[0]) for key in seen}) == 1
     store = ConfigStore.instance()
     assert "corruption_key.yaml" in store.list("habitat/task/lab_sensors")
     group = "habitat_baselines/rl/policy/obs_transforms"

@@ -89,5 +89,5 @@ def test_vector_wrapper_explains_invalid_use():
     CorruptVectorObservation(Cameras(None), SCHEDULE, autoreset_mode=mode).reset()
     with pytest.raises(ValueError, match="the observation has no depth"):
         CorruptVectorObservation(Cameras(mode), SCHEDULE, depth="range").reset()
-    with pytest.raises(ValueError, match="is a temporal fault"):
+    with pytest.raises(ValueError, match="got the temporal fault"):
         CorruptVectorObservation(Cameras(mode), Corruption("frozen_frame", 0.5)).reset()

@@ -98,9 +98,11 @@ class FrontierAgent(SideBySide, nn.Module):
     fingerprint_kind = "mitigate.agents.frontier.agent.FrontierAgent"
 
     run_state = ("_started", "actions")
-    settings_schema = schema.Schema(
-        {**schema.ENCODERS, "width": schema.whole(4, 1024), "eye": schema.number(0.05, 5)}
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "width": schema.whole(4, 1024),
+        "eye": schema.number(0.05, 5),
+    }
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
     # number of episodes at once (heuristic): a frame takes twice as long if it is encoded alone
@@ -153,8 +155,7 @@ class FrontierAgent(SideBySide, nn.Module):
         self.thing = None if "instruction" in self.blind else named(instruction)
         if self.thing is None and "instruction" not in self.blind:
             warnings.warn(
-                f"The instruction {instruction[:60]!r} names no object that the agent knows, so it "
-                "explores until there is nothing left to explore.",
+                f"The instruction {instruction[:60]!r} names no object that the agent knows.",
                 stacklevel=2,
             )
         self._started = True
@@ -217,11 +218,17 @@ class FrontierAgent(SideBySide, nn.Module):
     def _update_map(
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
-        """Add an observation to the map."""
+        """Add an observation to the map; mark the cells ahead as blocked if the last forward step
+        was too short.
+        """
         if self.actions == 0:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
-            self._check_progress(pose, float(np.hypot(*(pose[:2] - self._before))))
+            moved = float(np.hypot(*(pose[:2] - self._before)))
+            self._bumps += moved < SLID
+            if moved < STUCK:
+                self.grid.block(pose)
+                self._planned = 0
         depth = checked.frame(observation, DEPTH, 1)[..., 0]
         thing = np.zeros((len(concepts), 2), np.float32)
         if self.thing is not None:
@@ -229,15 +236,6 @@ class FrontierAgent(SideBySide, nn.Module):
         depth = np.zeros_like(depth) if DEPTH in self.blind else depth
         self._near = float(thing[:, 1].max())
         self.grid.add(depth, pose, thing, worth(concepts, self.thing))
-
-    def _check_progress(self, pose: np.ndarray, moved: float) -> None:
-        """Mark the cells ahead as blocked if the last forward step, of ``moved`` metres, was too
-        short.
-        """
-        self._bumps += moved < SLID
-        if moved < STUCK:
-            self.grid.block(pose)
-            self._planned = 0
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
@@ -265,18 +263,18 @@ class FrontierAgent(SideBySide, nn.Module):
         if target is not None and (self._at(target, pose) or self._bumps >= BUMPS):
             self._bumps = 0
             return STOP if late else self._check(thing, pose)
-        if target is None and not late:
+        if target is None:
+            if late:
+                return STOP
             self._bumps = 0
             target = self._frontier(ways)
-            if target is not None and self._at(target, pose):
+            if target is None:
+                self.actions = LAST
+                return None
+            if self._at(target, pose):
                 # the unknown cells around this frontier cannot be observed
                 self.grid.settle(target)
                 return None
-        if target is None and not late:
-            self.actions = LAST
-            return None
-        if target is None:
-            return STOP
         step = clear_ahead(self.grid, ways.to(target), LEG)
         self.controller.follow([self.grid.place(step[None])[0]])
         self._planned = AGAIN
@@ -323,15 +321,13 @@ class FrontierAgent(SideBySide, nn.Module):
 
         The best frontier has the highest difference between its value and its path cost.
         """
-        best = -np.inf
-        target = None
+        best, target = -np.inf, None
         for group in frontiers(self.grid):
             cost = ways.at(group)
-            nearest = int(cost.argmin())
             value = float(self.grid.value[group[:, 0], group[:, 1]].max())
-            if np.isfinite(cost[nearest]) and WORTH * value - cost[nearest] > best:
-                best = WORTH * value - cost[nearest]
-                target = group[nearest]
+            gain = WORTH * value - cost.min()  # -inf for a frontier that cannot be reached
+            if gain > best:
+                best, target = gain, group[int(cost.argmin())]
         return target
 
 

@@ -64,11 +64,9 @@ class Grid:
     def __init__(self, start: np.ndarray, eye: float) -> None:
         self.origin = np.asarray(start[:2], np.float64) - SIDE * CELL / 2
         self.eye = eye
-        self.occupied, self.value, self.evidence = (
-            np.zeros((SIDE, SIDE), np.float32) for _ in range(3)
-        )
-        self.known, self.blocked = (np.zeros((SIDE, SIDE), np.bool_) for _ in range(2))
-        self.trust = np.zeros((SIDE, SIDE), np.float32)
+        maps = np.zeros((4, SIDE, SIDE), np.float32)
+        self.occupied, self.value, self.trust, self.evidence = maps
+        self.known, self.blocked = np.zeros((2, SIDE, SIDE), np.bool_)
         self._stamp = np.zeros((SIDE, SIDE), np.int32)
         self._looks = 0
 

@@ -94,9 +94,8 @@ class ActorCritic(nn.Module):
         network: Any = policy.network
         if isinstance(policy, StableBaselinesPolicy) and not hasattr(network, "predict_values"):
             raise ValueError(
-                f"{policy.name} has no critic that estimates the value of a state, but "
-                "method='ppo' needs one. In stable-baselines3, PPO and A2C have such a critic. Use "
-                "method='self_distil'."
+                f"{policy.name} has no critic of states, which method='ppo' needs and PPO and A2C "
+                "have. Use method='self_distil'."
             )
         with torch.no_grad():
             self.actions(frames)
@@ -113,9 +112,8 @@ class ActorCritic(nn.Module):
         if isinstance(answer, Tensor):
             raise ValueError(
                 f"{self.policy.name} returns actions or their values, but method='ppo' needs a "
-                "distribution of actions. Give forward= a function that returns one, such as "
-                "lambda net, observation: torch.distributions.Normal(net(observation), 0.1), or "
-                "use method='self_distil'."
+                "distribution of actions, such as a torch.distributions.Normal. Give forward= a "
+                "function that returns one, or use method='self_distil'."
             )
         return Joint(answer)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -43,31 +44,24 @@ class ModulePolicy(Policy):
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
         inputs = _tensors(observation, self.device)
         arguments = (inputs, memory) if self.recurrent else (inputs,)
+        call = self.network if self._forward is None else partial(self._forward, self.network)
         try:
-            output = (
-                self.network(*arguments)
-                if self._forward is None
-                else self._forward(self.network, *arguments)
-            )
+            output = call(*arguments)
         except KeyError as error:
             raise ValueError(
                 f"{self.name} reads the entry {error}, but the world passes only "
-                f"{', '.join(flat(inputs))}. Name every entry that the policy reads: "
-                "GymWorld(entries={...})."
+                f"{', '.join(flat(inputs))}. Name all entries: GymWorld(entries={{...}})."
             ) from error
         if self.recurrent:
             output, memory = output
-        if isinstance(output, Tensor):
-            return self._of_tensor(output), memory
-        return parts(output), memory
-
-    def _of_tensor(self, output: Tensor) -> Answer:
+        if not isinstance(output, Tensor):
+            return parts(output), memory
         if isinstance(self.space, Discrete):
-            return [Categorical(logits=check_logits(output, self))]
+            return [Categorical(logits=check_logits(output, self))], memory
         if isinstance(self.space, MultiDiscrete):
             counts = self.space.counts.ravel().tolist()
-            return [Categorical(logits=part) for part in output.split(counts, -1)]
-        return output
+            return [Categorical(logits=part) for part in output.split(counts, -1)], memory
+        return output, memory
 
 
 def _tensors(observation: Any, device: torch.device) -> Any:

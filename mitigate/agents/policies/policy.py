@@ -176,11 +176,8 @@ class Policy(Agent, nn.Module):
         """Record the outputs of a module of the network in the list that is yielded."""
         outputs: list[Tensor] = []
         target = self.network.get_submodule(module)
-        handle = target.register_forward_hook(lambda *call: outputs.append(first(call[2])))
-        try:
+        with target.register_forward_hook(lambda *call: outputs.append(first(call[2]))):
             yield outputs
-        finally:
-            handle.remove()
 
 
 def copied(policy: Policy) -> Policy:

@@ -37,9 +37,8 @@ class StableBaselinesPolicy(Policy):
         if hasattr(policy.actor, "get_action_dist_params"):
             mean, log_std, _ = policy.actor.get_action_dist_params(inputs)
             tanh = torch.distributions.TanhTransform(cache_size=1)
-            return [
-                TransformedDistribution(torch.distributions.Normal(mean, log_std.exp()), tanh)
-            ], None
+            normal = torch.distributions.Normal(mean, log_std.exp())
+            return [TransformedDistribution(normal, tanh)], None
         return policy.actor(inputs), None
 
     def _recurrent(self, inputs: Any, memory: Any) -> tuple[Answer, Any]:

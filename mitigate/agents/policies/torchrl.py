@@ -26,9 +26,8 @@ class TorchrlPolicy(Policy):
         entries = {name: entry for name, entry in native.entries.items() if entry in read_keys}
         super().__init__(network, replace(native, entries=entries or native.entries), space)
         outputs = {dotted(key) for key in network.out_keys}
-        self._fed_back = [
-            key for key in network.in_keys if f"next.{dotted(key)}" in outputs
-        ]  # recurrent modules write their new state to the entry "next"
+        # recurrent modules write their new state to the entry "next"
+        self._fed_back = [key for key in network.in_keys if f"next.{dotted(key)}" in outputs]
         self.recurrent = bool(self._fed_back)
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
@@ -54,9 +53,8 @@ class TorchrlPolicy(Policy):
         for key in ("logits", "action_value", "action"):
             if key in outputs:
                 values = outputs[key]
-                return ([Categorical(logits=values)] if key == "logits" else values), self._next(
-                    outputs
-                )
+                answer = [Categorical(logits=values)] if key == "logits" else values
+                return answer, self._next(outputs)
         raise ValueError(
             f"The policy's outputs must contain logits, action_value or action, got "
             f"{', '.join(map(str, outputs.keys()))}. Rename them (out_keys=)."

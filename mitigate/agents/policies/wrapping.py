@@ -51,24 +51,21 @@ def as_policy(
         )
     if world.action_space is None or world.native is None:
         raise ValueError(
-            f"{type(world).__name__} must have action_space (mitigate.core.spaces) and native, the "
-            "conversion of frames to the observation that the policy was trained on. GymWorld and "
-            "EnvWorld have both."
+            f"{type(world).__name__} must have action_space and native (the conversion of frames "
+            "to the policy's observation), as GymWorld and EnvWorld have."
         )
     for name in (name for name in (RGB, DEPTH) if name in world.sensors):
         if len(world.sensors[name].shape) == 4:
             raise ValueError(
                 f"The {name} frames must have the shape [H, W, channels], got "
-                f"{list(world.sensors[name].shape)}. Stacked frames are not supported: the first "
-                "of four axes counts cameras here. Use a policy with memory, or stack frames "
-                "inside it."
+                f"{list(world.sensors[name].shape)}. Stacked frames are not supported: use a "
+                "policy with memory, or stack frames inside it."
             )
     network = policy if isinstance(policy, nn.Module) else read(policy, "policy")
     if not isinstance(network, nn.Module):
         raise TypeError(
             "policy must be a model of stable-baselines3, a module of torchrl, or a "
-            f"torch.nn.Module, got a {type(policy).__name__}. A policy without "
-            "weights can be used only with mitigate.benchmark."
+            f"torch.nn.Module, got a {type(policy).__name__}."
         )
     if any(parameter.is_meta for parameter in network.parameters()):
         raise ValueError(

@@ -94,18 +94,14 @@ class RecurrentAgent(SideBySide, nn.Module):
     fingerprint_kind = "mitigate.agents.recurrent.agent.RecurrentAgent"
 
     run_state = ("_walk",)
-    settings_schema = schema.Schema(
-        {
-            **schema.ENCODERS,
-            "sensors": schema.some_of((RGB, DEPTH)),
-            "rgb_width": schema.whole(4, 1024),
-            "depth_width": schema.whole(4, 1024),
-            "policy": POLICY,
-            "vocabulary": schema.VOCABULARY,
-        },
-        part="policy",
-        usual=(160, 4),
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "sensors": schema.some_of((RGB, DEPTH)),
+        "rgb_width": schema.whole(4, 1024),
+        "depth_width": schema.whole(4, 1024),
+        "policy": POLICY,
+        "vocabulary": schema.VOCABULARY,
+    }
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
@@ -200,7 +196,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         keep_frames = any(p.requires_grad for name, p in weights if not name.startswith("policy."))
         for _ in range(LIMIT):
             rows, here = torch.tensor(running, device=self.device), [walks[i] for i in running]
-            frames = {n: np.stack([walk.see()[n] for walk in here]) for n in self.sensors}
+            looks = [walk.see(walk.observation) for walk in here]
+            frames = {name: np.stack([look[name] for look in looks]) for name in self.sensors}
             views = self._encode(frames)
             moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in here]))
             fresh = self.policy.step(
@@ -348,11 +345,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         """Return the entropy of the last decision, with gradients (``KnowsEntropy``)."""
         walk = self._walk
         assert walk is not None and walk.before is not None, "act first"
-        frames = {
-            name: torch.from_numpy(np.array(checked.frame(observation, name, 1)))[None]
-            for name in self.sensors
-        }
-        on = {name: frame.to(self.device) for name, frame in frames.items()}
+        frames = {name: np.array(checked.frame(observation, name, 1)) for name in self.sensors}
+        on = {name: torch.from_numpy(f)[None].to(self.device) for name, f in frames.items()}
         columns = self.policy.look(self._perceive(on, {})[0])
         before, motion = walk.before
         # copied, because tensors that were created in inference mode cannot be used with gradients

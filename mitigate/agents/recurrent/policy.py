@@ -21,7 +21,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.attention import TextReader
 from mitigate.agents.encoders import DIRECTIONS, GRID
-from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
+from mitigate.agents.text import CONCEPTS, Vocabulary
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, TURN_DEGREES
 
 # number of motion features: last action (5 values), sine and cosine of heading, metres, steps
@@ -190,12 +190,8 @@ class Policy(TextReader):
         rgb, concepts, depth, free = views.split(self.sizes, -1)
         x = self.column
         if self.sizes[0]:
-            concepts = concepts.unflatten(-1, (GRID, -1))
-            meaning = self.concept_words @ self.words.weight  # [concepts, width]
-            x = x + self.rgb(rgb.unflatten(-1, (GRID, -1)))
-            x = x + self.seen(concepts[..., THINGS] @ meaning[THINGS])
-            x = x + self.close(concepts[..., NEAR] @ meaning[NEAR])
-            x = x + self.kinds(concepts[..., NEAR.stop :] @ meaning[NEAR.stop :])
+            seen, close, others = self.concept_features(concepts.unflatten(-1, (GRID, -1)))
+            x = x + self.rgb(rgb.unflatten(-1, (GRID, -1))) + seen + close + others
         if self.sizes[2]:
             x = x + self.depth(depth.unflatten(-1, (GRID, -1))) + self.free(free)[..., None, :]
         return self.column_norm(x)

@@ -77,20 +77,17 @@ class TrainingWalk:
         self.steps: list[dict[str, Any]] = []
         self.before = -1
 
-    def see(self) -> dict[str, np.ndarray]:
-        """Return the current frames; the world may reuse these arrays."""
-        return self._frames(self.observation)
-
-    def _frames(self, observation: Observation) -> dict[str, np.ndarray]:
+    def see(self, observation: Observation) -> dict[str, np.ndarray]:
+        """Return the frames of an observation; the world may reuse these arrays."""
         return {n: checked.frame(observation, n, 1) for n in self.sensors}
 
     def record(self, features: dict[str, np.ndarray], clean: bool, frames: bool) -> None:
         """Add the current step, labelled with the expert's answer."""
         action = int(self.expert.action())
-        seen = {n: np.array(f) for n, f in self.see().items()} if frames else {}
+        seen = {n: np.array(f) for n, f in self.see(self.observation).items()} if frames else {}
         seen |= features
         if clean:
-            before = self._frames(self.observation.clean)
+            before = self.see(self.observation.clean)
             seen |= {f"clean_{n}": np.array(f) for n, f in before.items()}
         truth: Mapping[str, np.ndarray] = self.world.truth()
         labels = [*(LABELS[name] for name in self.sensors if frames), "goal"]

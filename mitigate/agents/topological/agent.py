@@ -100,23 +100,17 @@ class TopologicalAgent(Agent, nn.Module):
         ValueError: A name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
     """
 
-    fingerprint_kind = (
-        # this name is part of published fingerprints
-        "mitigate.agents.topological.agent.TopologicalAgent"
-    )
+    # this name is part of published fingerprints, so it must not change
+    fingerprint_kind = "mitigate.agents.topological.agent.TopologicalAgent"
 
     run_state = ("_memory", "_started")
-    settings_schema = schema.Schema(
-        {
-            **schema.ENCODERS,
-            "width": schema.whole(4, 1024),
-            "planner": PLANNER,
-            "vocabulary": schema.VOCABULARY,
-            "encoder": schema.one_of(RGB_ENCODERS),
-        },
-        part="planner",
-        usual=(128, 4),
-    )
+    settings_schema = {
+        **schema.ENCODERS,
+        "width": schema.whole(4, 1024),
+        "planner": PLANNER,
+        "vocabulary": schema.VOCABULARY,
+        "encoder": schema.one_of(RGB_ENCODERS),
+    }
     views, sensors = VIEWS, (RGB, DEPTH, POSE)
     rgb_encoder: RGBEncoder
     _started = False
@@ -324,11 +318,8 @@ class TopologicalAgent(Agent, nn.Module):
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
-            if seen.clean_rgb is None or seen.clean_depth is None:
-                raise ValueError(
-                    "The batch holds no clean frames. Call rollouts.keep_clean() in the "
-                    "constructor of the objective."
-                )
+            # the objective keeps them if its constructor calls rollouts.keep_clean()
+            assert seen.clean_rgb is not None and seen.clean_depth is not None
             return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
         if seen.views is not None:
             return seen.views, {}, {}
@@ -442,7 +433,10 @@ class TopologicalAgent(Agent, nn.Module):
         if best == 0 or not decision.ghosts:
             return False
         if self.decisions >= MAX_DECISIONS:
-            return self._give_up()
+            # stop at the visited node with the best stop score, as ETPNav does
+            self._final = True
+            self.controller.follow(self.map.route_to_node(max(self._stop_scores)[1]))
+            return True
         ghost = decision.ghosts[best - 1 - len(decision.nodes)]
         self.controller.follow(self.map.route(ghost))
         self._chosen = ghost
@@ -468,10 +462,3 @@ class TopologicalAgent(Agent, nn.Module):
             return encoded()
         digest = blake2b(frames.data, digest_size=16).digest()
         return self._memory.recall((sensor, frames.shape, digest), encoded)
-
-    def _give_up(self) -> bool:
-        """Go to the visited node with the best stop score and stop there, as ETPNav does."""
-        self._final = True
-        node = max(self._stop_scores)[1]
-        self.controller.follow(self.map.route_to_node(node))
-        return True

@@ -90,7 +90,7 @@ class ImageNetEncoder(RGBEncoder):
     """
 
     widths = (320,)  # number of channels of the last feature map
-    resize, stride, usual = "bilinear", 32, 128  # for 128 pixels, the last feature map is 4 x 4
+    resize, stride = "bilinear", 32  # for 128 pixels, the last feature map is 4 x 4
 
     def __init__(self, width: int, size: int) -> None:
         super().__init__(width, size)

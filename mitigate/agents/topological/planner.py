@@ -19,7 +19,7 @@ from torch import Tensor, nn
 
 from mitigate.agents.attention import Layer, TextReader
 from mitigate.agents.fusion import weigher
-from mitigate.agents.text import CONCEPTS, NEAR, THINGS, Vocabulary
+from mitigate.agents.text import CONCEPTS, Vocabulary
 from mitigate.agents.topological.mapping import GEOMETRY, SIGHTINGS, Decision
 from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
@@ -148,18 +148,8 @@ class Planner(TextReader):
         With ``fusion``, one more channel holds the reliability of each view.
         """
         rgb, concepts, depth = views.split(self.widths, -1)
-        meaning = self.concept_words @ self.words.weight  # [concepts, width]
-        seen = concepts[..., THINGS] @ meaning[THINGS]
-        close = concepts[..., NEAR] @ meaning[NEAR]
-        others = concepts[..., NEAR.stop :] @ meaning[NEAR.stop :]
-        x = (
-            self.seen(seen)
-            + self.close(close)
-            + self.kinds(others)
-            + self.rgb(rgb)
-            + self.depth(depth)
-            + self.yaw(self.yaws)
-        )
+        seen, close, others = self.concept_features(concepts)
+        x = seen + close + others + self.rgb(rgb) + self.depth(depth) + self.yaw(self.yaws)
         for layer in self.panorama:
             x = layer(x, None)
         x = self.view_norm(x)

@@ -120,9 +120,8 @@ class StoredWalk:
         features = self.features
         waypoints = features.waypoints[self.index]
         waypoints = waypoints[waypoints[:, 1] > 0].copy()
-        waypoints[:, 0] = (waypoints[:, 0] + np.radians(VIEW_STEP_DEGREES) * self.turn) % (
-            2 * np.pi
-        )
+        turned = np.radians(VIEW_STEP_DEGREES) * self.turn
+        waypoints[:, 0] = (waypoints[:, 0] + turned) % (2 * np.pi)
         visible = (features.seen[self.index] & self.landmarks) > 0
         self.landmark_views.append(np.roll(visible.astype(np.float32), self.turn))
         return np.roll(features.views[self.index].astype(np.float32), self.turn, 0), waypoints
@@ -196,7 +195,7 @@ class ScenesTask:
         for variant in variants:
             frames = clean if not variant else self._corrupted(clean, f"{scene}-{variant}")
             features = {**clean_features, **_features(self.agent, frames, clean)}
-            views = np.concatenate([features["rgb"], features["depth"]], -1)
+            views = np.concatenate([features[RGB], features[DEPTH]], -1)
             entries = {"xy": xy, "views": views}
             yield variant, entries | {name: features[name] for name in ("waypoints", "seen")}
 
@@ -207,10 +206,10 @@ class ScenesTask:
         sensor = depth_sensor(self.world.sensors)
         corrupted = []
         for number, (rgb, depth, seen) in enumerate(frames):
-            corruption, key = schedule.draw(self.seed, name, number)
             # the corruption may depend on the heading, as a lens flare does
             observation = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}
-            result = corrupt_observation(observation, corruption, key, sensor)
+            drawn = schedule.draw(self.seed, name, number)
+            result = corrupt_observation(observation, *drawn, sensor)
             corrupted.append((result[RGB], result[DEPTH], seen))
         return corrupted
 
@@ -228,11 +227,9 @@ def lattice(points: np.ndarray) -> np.ndarray:
 def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Return RGB, depth, and the objects visible in each view (as bits of a uint64)."""
     frames, truth = world.put(xy, 0.0)
-    seen = truth["seen"]
-    bits = (seen.astype(np.uint64) << np.arange(seen.shape[1], dtype=np.uint64)).sum(
-        1, dtype=np.uint64
-    )
-    return frames[RGB], frames[DEPTH], bits
+    seen = truth["seen"].astype(np.uint64)
+    bits = seen << np.arange(seen.shape[1], dtype=np.uint64)
+    return frames[RGB], frames[DEPTH], bits.sum(1, dtype=np.uint64)
 
 
 def _features(
@@ -242,40 +239,27 @@ def _features(
 
     Sensors are left out if their frames are the same as in ``known``.
     """
-    seen = np.stack([frame[2] for frame in frames]).view(np.int64)  # torch cannot map uint64
-    features = {"seen": seen}
-    rgb, depth = ([frame[i] for frame in frames] for i in (0, 1))
-    same_rgb, same_depth = (
-        known is not None and all(a[i] is b[i] for a, b in zip(frames, known, strict=True))
-        for i in (0, 1)
-    )
-    if not same_rgb:
-        features["rgb"] = np.concatenate([_rgb(agent, part) for part in _parts(agent, rgb)])
-    if not same_depth:
-        views, logits = zip(*(_depth(agent, part) for part in _parts(agent, depth)), strict=True)
-        features["depth"] = np.concatenate(views)
+    rgb, depth, seen = zip(*frames, strict=True)
+    features = {"seen": np.stack(seen).view(np.int64)}  # torch cannot map uint64
+    known_rgb, known_depth, _ = zip(*known, strict=True) if known else ((), (), ())
+    if [*map(id, rgb)] != [*map(id, known_rgb)]:
+        parts = [agent.encode_rgb(part) for part in _parts(agent, rgb)]
+        views = [torch.cat([view, concepts.sigmoid()], -1) for view, concepts in parts]
+        features[RGB] = torch.cat(views).half().cpu().numpy()
+    if [*map(id, depth)] != [*map(id, known_depth)]:
+        parts = [agent.encode_depth(part) for part in _parts(agent, depth)]
+        features[DEPTH] = torch.cat([views for views, _ in parts]).half().cpu().numpy()
+        grids = torch.cat([logits for _, logits in parts]).float().cpu().numpy()
         features["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
-        for row, grid in enumerate(np.concatenate(logits)):
+        for row, grid in enumerate(grids):
             chosen = select(grid)
             features["waypoints"][row, : len(chosen)] = chosen
     return features
 
 
-def _parts(agent: Any, frames: list[np.ndarray]) -> Iterator[Tensor]:
+def _parts(agent: Any, frames: Sequence[np.ndarray]) -> Iterator[Tensor]:
     for first in range(0, len(frames), _BATCH):
         yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
-
-
-def _rgb(agent: Any, frames: Tensor) -> np.ndarray:
-    """Return RGB features, float16 [n, 12, rgb + concepts]."""
-    features, concepts = agent.encode_rgb(frames)
-    return torch.cat([features, concepts.sigmoid()], -1).half().cpu().numpy()
-
-
-def _depth(agent: Any, frames: Tensor) -> tuple[np.ndarray, np.ndarray]:
-    """Return depth features, float16 [n, 12, depth], and waypoint logits."""
-    features, logits = agent.encode_depth(frames)
-    return features.half().cpu().numpy(), logits.float().cpu().numpy()
 
 
 class Store:
@@ -313,18 +297,16 @@ class Store:
         self.schedule, self.variants, self.seed = schedule, variants, seed
         self.world = world()
         self.size = self.world.sensors[RGB].shape[1]
-        encoders = torch.nn.ModuleList(
-            [agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head]
-        )
+        perception = (agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head)
+        encoders = torch.nn.ModuleList(perception)
         encoder_size = agent.rgb_encoder.size
         resized = "" if encoder_size == self.size else f"-to-{encoder_size}"
         kind = precision.current(agent.device)
         self.folder = Path(root) / f"{weights_sha(encoders)}-{self.size}{resized}-{kind}"
         if schedule is not None and variants:
             settings = repr((*_content(schedule), seed)).encode()
-            self.corrupted = (
-                self.folder / f"corrupted-{blake2b(settings, digest_size=6).hexdigest()}"
-            )
+            digest = blake2b(settings, digest_size=6).hexdigest()
+            self.corrupted = self.folder / f"corrupted-{digest}"
         self._loaded: dict[tuple[str, int], Features] = {}
 
     def build(self, workers: int | None = None) -> None:
@@ -340,10 +322,8 @@ class Store:
         for folder in (self.folder, self.corrupted) if self.variants else (self.folder,):
             delete_abandoned(make_folder(folder).glob(".*.tmp"))
         scenes, every = self.world.scenes, range(self.variants + 1)
-        missing = [
-            (scene, [v for v in every if not self.path(scene, v).exists()]) for scene in scenes
-        ]
-        jobs = [(scene, variants) for scene, variants in missing if variants]
+        missing = {s: [v for v in every if not self.path(s, v).exists()] for s in scenes}
+        jobs = [(scene, variants) for scene, variants in missing.items() if variants]
         if not jobs:
             return
         kind = precision.current(self.agent.device)
@@ -404,13 +384,9 @@ class Store:
             follow_oracle=expert_share,
             rngs=rngs,
         )
-        return Piece(
-            traces,
-            {
-                "goal": np.stack([view for walk in walks for view in walk.landmark_views]),
-                "views": np.stack([view for trace in traces for view in trace.views]),
-            },
-        )
+        goal = np.stack([view for walk in walks for view in walk.landmark_views])
+        views = np.stack([view for trace in traces for view in trace.views])
+        return Piece(traces, {"goal": goal, "views": views})
 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:

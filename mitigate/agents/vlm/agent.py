@@ -103,9 +103,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
         super().__init__()
         if adapters:
             raise ValueError(
-                "A vision-language agent trains LoRA weights (agent.lora) instead of adapters in "
-                "its encoders, so recipe=harden, conv_adapter and stacked do not fit. Choose "
-                "recipe=self_distill, ts_distill or da_per_episode (docs/vlm.md)."
+                "A vision-language agent trains LoRA weights (agent.lora) instead of adapters, so "
+                "recipe=harden, conv_adapter and stacked do not fit (docs/vlm.md)."
             )
         if not model:
             raise ValueError(
@@ -115,13 +114,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
         self.prepare(answers, history, task, system_prompt)
         if precision not in PRECISIONS:
             raise ValueError(unknown("precision (agent.precision)", precision, PRECISIONS))
-        self._settings: dict[str, Any] = {
+        self._settings |= {
             "precision": precision,
             "lora": copy.deepcopy(dict(lora)) if lora else None,
-            "answers": answers,
-            "history": history,
-            "task": self.task,
-            "system_prompt": system_prompt,
             "images": dict(images) if images else None,
         }
         self.model = model
@@ -338,22 +333,17 @@ class VLMAgent(AnsweringAgent, nn.Module):
             if base.get("sha256") != self._base():
                 raise ValueError(
                     f"The adapter {folder} was trained on the model {str(base.get('model')):.200} "
-                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to the "
-                    "model of the adapter."
+                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to it."
                 )
-        tensors, expected = load_tensors(file), self._adapter()
-        wrong = sorted(
-            name
-            for name in {*tensors, *expected}
-            if name not in tensors
-            or name not in expected
-            or tensors[name].shape != expected[name].shape
+        tensors = load_tensors(file)
+        shapes, expected = (
+            {(name, value.shape) for name, value in each.items()}
+            for each in (tensors, self._adapter())
         )
-        if wrong:
+        if wrong := sorted({name for name, _ in shapes ^ expected}):
             raise ValueError(
                 f"{file} does not fit agent.lora: {len(wrong)} tensors are missing, unknown or of "
-                f"another shape ({', '.join(wrong[:3])} ...). Use r and target modules of its "
-                f"{CONFIG} in agent.lora."
+                f"another shape ({', '.join(wrong[:3])} ...). Copy r and modules from its {CONFIG}."
             )
         set_peft_model_state_dict(self.network, tensors)
 

@@ -94,9 +94,13 @@ class AnsweringAgent(Agent):
                 f"agent.task must contain {{instruction}}, got {task!r:.80}. Without it, the model "
                 "would not see the instruction."
             )
-        self.history = history
-        self.task = task
-        self.system_prompt = system_prompt
+        self.history, self.task, self.system_prompt = history, task, system_prompt
+        self._settings: dict[str, Any] = {
+            "answers": answers,
+            "history": history,
+            "task": task,
+            "system_prompt": system_prompt,
+        }
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
         """Return, for each episode, the model's answer to its last frame."""

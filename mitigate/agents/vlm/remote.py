@@ -86,13 +86,9 @@ class RemoteAgent(AnsweringAgent):
             pause=pause,
             options={**OPTIONS, **(options or {})},
         )
-        self._settings = {
+        self._settings |= {
             "url": self.client.url,
             "model": model,
-            "answers": answers,
-            "history": history,
-            "task": self.task,
-            "system_prompt": system_prompt,
             "otherwise": fallback.text,
             "options": self.client.options,
         }
@@ -128,8 +124,7 @@ class RemoteAgent(AnsweringAgent):
         except NoAnswer as error:
             raise ConnectionError(
                 f"The served agent gave no answer after {self.client.retries + 1} attempts "
-                f"({error}). Finished rows are kept: check the server and run the same command "
-                "again, or raise agent.retries and agent.timeout."
+                f"({error}). Check the server, and run the same command again: rows are kept."
             ) from error
 
     def _read(self, text: str, memory: Memory) -> Answer:

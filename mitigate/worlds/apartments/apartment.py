@@ -59,9 +59,8 @@ class Apartment:
         for index, room in enumerate(self.rooms):
             if room.holds(xy[0], xy[1]):
                 return index
-        centres = np.array(
-            [((r.rect[0] + r.rect[2]) / 2, (r.rect[1] + r.rect[3]) / 2) for r in self.rooms]
-        )
+        rects = np.array([room.rect for room in self.rooms])
+        centres = (rects[:, :2] + rects[:, 2:]) / 2
         return int(np.argmin(((centres - xy) ** 2).sum(1)))
 
     @cached_property
@@ -84,12 +83,7 @@ class Apartment:
             for rect in ((x0, y0, x1, y0), (x0, y1, x1, y1), (x0, y0, x0, y1), (x1, y0, x1, y1)):
                 _fill(blocked, grow(rect, WALL / 2), True)
         for door in self.doors:
-            half = (WALL, DOOR / 2) if door.axis == 0 else (DOOR / 2, WALL)
-            _fill(
-                blocked,
-                (door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]),
-                False,
-            )
+            _fill(blocked, door.area(WALL, DOOR / 2), False)
         for piece in self.furniture:
             if CATALOGUE[piece.category].solid:
                 _fill(blocked, piece.rect, True)
@@ -111,8 +105,7 @@ def apartment_of(scene_id: str) -> Apartment:
     apartment = Apartment(int(parts[2]))
     if apartment.split != parts[1]:
         raise ValueError(
-            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}, "
-            f"not {parts[1]!r}."
+            f"Scene {scene_id!r}: seed {parts[2]} belongs to split {apartment.split!r}."
         )
     return apartment
 

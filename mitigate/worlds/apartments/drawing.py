@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.worlds.apartments.apartment import Apartment
-from mitigate.worlds.apartments.layout import CATALOGUE, DOOR
+from mitigate.worlds.apartments.layout import CATALOGUE, DOOR, Rect
 from mitigate.worlds.apartments.palette import palette
 
 _ROOMS = {
@@ -29,9 +29,7 @@ def draw_plan(axes: Any, apartment: Apartment) -> None:
     for room in apartment.rooms:
         _draw_room(axes, room, apartment.furniture)
     for door in apartment.doors:
-        half = (0.07, DOOR / 2) if door.axis == 0 else (DOOR / 2, 0.07)
-        corner, size = (door.x - half[0], door.y - half[1]), (2 * half[0], 2 * half[1])
-        _draw_box(axes, corner, size, fc="white", ec="none", zorder=2)
+        _draw_box(axes, door.area(0.07, DOOR / 2), fc="white", ec="none", zorder=2)
     paint = palette(apartment.split)
     for piece in apartment.furniture:
         colour = paint.colours[piece.colour].mean(0) if piece.colour else (0.62, 0.62, 0.64)
@@ -44,15 +42,12 @@ def draw_plan(axes: Any, apartment: Apartment) -> None:
 
 
 def _draw_room(axes: Any, room: Any, furniture: Sequence[Any]) -> None:
-    x0, y0, x1, y1 = room.rect
-    _draw_box(axes, (x0, y0), (x1 - x0, y1 - y0), fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
+    _draw_box(axes, room.rect, fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
     style = {"ha": "center", "va": "center", "fontsize": 10, "color": "#333333", "zorder": 4}
     axes.text(*_free_place(room.rect, furniture), room.kind, **style)
 
 
-def _free_place(
-    rect: tuple[float, float, float, float], furniture: Sequence[Any]
-) -> tuple[float, float]:
+def _free_place(rect: Rect, furniture: Sequence[Any]) -> tuple[float, float]:
     """Return the position (in metres) at which a room's name is farthest from the furniture."""
     x0, y0, x1, y1 = rect
     places = [
@@ -63,7 +58,7 @@ def _free_place(
     return max(places, key=lambda place: min((_gap(place, p.rect) for p in furniture), default=0))
 
 
-def _gap(place: tuple[float, float], rect: tuple[float, float, float, float]) -> float:
+def _gap(place: tuple[float, float], rect: Rect) -> float:
     """Return the distance in metres between a room's name at ``place`` and a piece of furniture."""
     x0, y0, x1, y1 = rect
     across = max(x0 - place[0], place[0] - x1, 0.0)
@@ -74,16 +69,15 @@ def _gap(place: tuple[float, float], rect: tuple[float, float, float, float]) ->
 def _draw_piece(axes: Any, piece: Any, colour: Any) -> None:
     x0, y0, x1, y1 = piece.rect
     alpha = 0.9 if CATALOGUE[piece.category].solid else 0.45
-    size = (x1 - x0, max(y1 - y0, 0.05))
-    _draw_box(axes, (x0, y0), size, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
+    rect = (x0, y0, x1, max(y1, y0 + 0.05))
+    _draw_box(axes, rect, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
     box = {"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4}
     style = {"ha": "center", "va": "center", "fontsize": 6, "zorder": 5, "bbox": box}
     axes.text(*piece.centre, piece.category, **style)
 
 
-def _draw_box(
-    axes: Any, corner: tuple[float, float], size: tuple[float, float], **style: Any
-) -> None:
+def _draw_box(axes: Any, rect: Rect, **style: Any) -> None:
     from matplotlib.patches import Rectangle
 
-    axes.add_patch(Rectangle(corner, *size, **style))
+    x0, y0, x1, y1 = rect
+    axes.add_patch(Rectangle((x0, y0), x1 - x0, y1 - y0, **style))

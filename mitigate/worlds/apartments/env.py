@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from mitigate.worlds.apartments.simulator import Simulator
 from mitigate.worlds.apartments.tasks import OGN_SHARE, DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from mitigate.worlds.episodes import Episode
@@ -42,16 +41,5 @@ class ApartmentsEnv(WorldEnv):
         workers: int = 1,
         size: int = 64,
     ) -> None:
-        drawn = DrawnEpisodes(apartments, ogn_share)
-        super().__init__(
-            ApartmentsWorld(size),
-            drawn if episodes is None else episodes,
-            seed=seed,
-            worker=worker,
-            workers=workers,
-        )
-
-    @property
-    def simulator(self) -> Simulator:
-        """The simulator that runs the episodes. It is created at first use."""
-        return self.world.simulator
+        source = DrawnEpisodes(apartments, ogn_share) if episodes is None else episodes
+        super().__init__(ApartmentsWorld(size), source, seed=seed, worker=worker, workers=workers)

@@ -42,6 +42,7 @@ from mitigate.worlds.apartments.navigation import RADIUS
 from mitigate.worlds.apartments.palette import PATTERNS, SPLITS, texture
 from mitigate.worlds.apartments.renderer import EYE
 from mitigate.worlds.apartments.tasks import (
+    PER_APARTMENT,
     fixed_episodes,
     landmarks,
     load_episodes,
@@ -51,7 +52,6 @@ from mitigate.worlds.apartments.tasks import (
 from mitigate.worlds.episodes import Episode, to_json
 
 TRAIN = 100  # default number of apartments for the train split (heuristic)
-PER_APARTMENT = 10  # number of episodes per apartment in the episode lists
 # arguments of habitat_sim.NavMeshSettings; Habitat places the agent cell_height above the floor
 NAVMESH = {
     "agent_radius": RADIUS,

@@ -71,12 +71,8 @@ class FaceBuilder:
             self._frame(door)
         for instance, piece in enumerate(self.apartment.furniture):
             self._piece(instance, piece)
-        return self._faces()
-
-    def _faces(self) -> Faces:
-        """Return the arrays of all collected rectangles."""
         axis, sign, pattern, room, category, instance = np.array(self.kinds).T
-        at, tile, *span = np.array(self.places, float).T
+        at, *span = np.array(self.places, float).T
         low, high = np.stack(span[:2], 1), np.stack(span[2:], 1)
         corners = _corners(axis, sign, at, low, high)
         return Faces(
@@ -84,7 +80,7 @@ class FaceBuilder:
             np.stack([axis, at], 1).astype(np.float32),
             self._tints(axis, sign, room, corners),
             pattern.astype(np.int16),
-            ((high - low) / tile[:, None]).astype(np.float32),
+            (high - low).astype(np.float32),
             category.astype(np.int16),
             room.astype(np.int16),
             instance.astype(np.int16),
@@ -115,13 +111,12 @@ class FaceBuilder:
         room: int,
         category: int = STRUCTURE,
         instance: int = -1,
-        tile: float = 1.0,
     ) -> None:
         """Add a rectangle in the plane whose coordinate on ``axis`` is ``at``. Its normal points in
         the direction ``sign``, and ``low`` and ``high`` are its bounds on the other two axes.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
-        self.places.append((at, tile, *low, *high))
+        self.places.append((at, *low, *high))
         self.colours.append(colour)
 
     def _room(self, index: int) -> None:
@@ -136,13 +131,8 @@ class FaceBuilder:
         floor_pattern = PATTERNS.index(str(rng.choice(floor_choice)))
         self._add(2, 1, 0.0, (x0, y0), (x1, y1), floors, floor_pattern, index)
         self._add(2, -1, HEIGHT, (x0, y0), (x1, y1), np.ones(3), PATTERNS.index("plain"), index)
-        inset = WALL / 2
-        for axis, sign, at in (
-            (0, 1, x0 + inset),
-            (0, -1, x1 - inset),
-            (1, 1, y0 + inset),
-            (1, -1, y1 - inset),
-        ):
+        for axis, sign, at in ((0, 1, x0), (0, -1, x1), (1, 1, y0), (1, -1, y1)):
+            at += sign * WALL / 2
             low, high = (y0, y1) if axis == 0 else (x0, x1)
             gaps = sorted(self._gaps(index, axis, at))
             edges = [low, *(e for gap in gaps for e in gap), high]
@@ -152,9 +142,9 @@ class FaceBuilder:
                 self._add(axis, sign, at, (a, LINTEL), (b, HEIGHT), walls, wall_pattern, index)
 
     def _gaps(self, room: int, axis: int, at: float) -> list[tuple[float, float]]:
-        doors = [d for d in self.apartment.doors if room in d.rooms and d.axis == axis]
-        near = [d for d in doors if abs((d.x, d.y)[axis] - at) < WALL]
-        return [((d.x, d.y)[1 - axis] - DOOR / 2, (d.x, d.y)[1 - axis] + DOOR / 2) for d in near]
+        places = [(d.x, d.y) for d in self.apartment.doors if room in d.rooms and d.axis == axis]
+        middles = [place[1 - axis] for place in places if abs(place[axis] - at) < WALL]
+        return [(middle - DOOR / 2, middle + DOOR / 2) for middle in middles]
 
     def _frame(self, door: Door) -> None:
         """Add the two sides and the top of a door frame."""

@@ -54,14 +54,6 @@ def ahead(directions: np.ndarray) -> np.ndarray:
     return np.roll(directions, half - middle, 0)[: 2 * half]
 
 
-def band(size: int) -> tuple[int, int]:
-    """Return the first pixel column of the central 36 degrees of a 90-degree view, and the column
-    after the last.
-    """
-    half = np.tan(_HALF_ANGLE) * size / 2
-    return int(round(size / 2 - half)), int(round(size / 2 + half))
-
-
 def view_labels(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -71,7 +63,9 @@ def view_labels(
         The concepts, float32 ``[12, len(CONCEPTS)]`` with values 0 and 1. The second array is bool
         ``[12, furniture]``: which pieces of furniture are visible in the central band of each view.
     """
-    return _within(apartment, ids, depth, *band(ids.shape[2]))
+    middle = ids.shape[2] / 2
+    half = np.tan(_HALF_ANGLE) * middle
+    return _within(apartment, ids, depth, round(middle - half), round(middle + half))
 
 
 def column_labels(

@@ -84,6 +84,13 @@ class Door:
     axis: int
     rooms: tuple[int, int]
 
+    def area(self, across: float, along: float) -> Rect:
+        """Return the rectangle that extends ``across`` metres to both sides of the wall and
+        ``along`` metres to both sides of the centre.
+        """
+        dx, dy = (across, along) if self.axis == 0 else (along, across)
+        return self.x - dx, self.y - dy, self.x + dx, self.y + dy
+
 
 @dataclass(frozen=True)
 class Furniture:
@@ -124,10 +131,11 @@ def _sides(rect: Rect) -> tuple[float, float]:
 def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
     x0, y0, x1, y1 = rect
     width, depth = _sides(rect)
+    least = max(_MIN_SIDE, 0.38 * max(width, depth))
     if width >= depth:
-        x = float(rng.uniform(x0 + max(_MIN_SIDE, 0.38 * width), x1 - max(_MIN_SIDE, 0.38 * width)))
+        x = float(rng.uniform(x0 + least, x1 - least))
         return [(x0, y0, x, y1), (x, y0, x1, y1)]
-    y = float(rng.uniform(y0 + max(_MIN_SIDE, 0.38 * depth), y1 - max(_MIN_SIDE, 0.38 * depth)))
+    y = float(rng.uniform(y0 + least, y1 - least))
     return [(x0, y0, x1, y), (x0, y, x1, y1)]
 
 
@@ -181,7 +189,7 @@ def furnish(
     for index, room in enumerate(rooms):
         always, choice = ROOMS[room.kind]
         extra = [str(c) for c in rng.permutation(choice)[: int(rng.integers(2, 5))]]
-        occupied = [_door_clearance(door) for door in doors if index in door.rooms]
+        occupied = [door.area(0.9, 0.65) for door in doors if index in door.rooms]
         for name in [*always, *extra]:
             piece = _place(CATALOGUE[name], room, index, occupied, colours, rng)
             if piece is None:
@@ -219,11 +227,6 @@ def _place(
         if category.name == "rug" or not any(_overlap(rect, other) for other in occupied):
             return Furniture(category.name, colour, rect, turn, index)
     return None
-
-
-def _door_clearance(door: Door) -> Rect:
-    half = (0.9, 0.65) if door.axis == 0 else (0.65, 0.9)
-    return door.x - half[0], door.y - half[1], door.x + half[0], door.y + half[1]
 
 
 def grow(rect: Rect, by: float) -> Rect:

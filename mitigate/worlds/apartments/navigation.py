@@ -26,16 +26,15 @@ class FreeSpace:
     """
 
     def __init__(self, blocked: np.ndarray) -> None:
-        distance = cv2.distanceTransform(
-            (~blocked).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE
-        )
+        open_cells = (~blocked).astype(np.uint8)
+        distance = cv2.distanceTransform(open_cells, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
         free = distance * CELL > RADIUS + CELL / 2
-        count, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
-        sizes = np.bincount(labels.ravel(), minlength=count)
+        _, labels = cv2.connectedComponents(free.astype(np.uint8), connectivity=4)
+        sizes = np.bincount(labels.ravel())
         sizes[0] = 0
         self.share = float(sizes.max() / max(1, free.sum()))
         self.free = labels == int(sizes.argmax())
-        self.index = np.full(free.shape, -1, np.int32)
+        self.index: np.ndarray = np.full(free.shape, -1, np.int32)
         self.cells = np.argwhere(self.free)
         self.index[self.free] = np.arange(len(self.cells))
         _, nearest = cv2.distanceTransformWithLabels(
@@ -120,21 +119,16 @@ class FreeSpace:
 
 @lru_cache(maxsize=GRAPHS)
 def _graph_of(space: FreeSpace) -> csr_matrix:
-    return _grid_graph(space.free, space.index)
-
-
-def _grid_graph(free: np.ndarray, index: np.ndarray) -> csr_matrix:
     rows, cols, data = [], [], []
+    height, width = space.index.shape
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
-        a = free[: free.shape[0] - di, max(0, -dj) : free.shape[1] - max(0, dj)]
-        b = free[di:, max(0, dj) : free.shape[1] + min(0, dj)]
-        both = a & b
-        ia = index[: free.shape[0] - di, max(0, -dj) : free.shape[1] - max(0, dj)][both]
-        ib = index[di:, max(0, dj) : free.shape[1] + min(0, dj)][both]
-        rows += [ia, ib]
-        cols += [ib, ia]
-        data += [np.full(2 * len(ia), CELL * np.hypot(di, dj))]
-    n = int(index.max()) + 1
+        a = space.index[: height - di, max(0, -dj) : width - max(0, dj)]
+        b = space.index[di:, max(0, dj) : width + min(0, dj)]
+        both = (a >= 0) & (b >= 0)
+        rows += [a[both], b[both]]
+        cols += [b[both], a[both]]
+        data += [np.full(2 * int(both.sum()), CELL * np.hypot(di, dj))]
+    n = len(space.cells)
     return csr_matrix((np.concatenate(data), (np.concatenate(rows), np.concatenate(cols))), (n, n))
 
 

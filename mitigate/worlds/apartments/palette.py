@@ -43,7 +43,6 @@ class Palette:
     [0, 1].
     """
 
-    split: str
     colours: dict[str, np.ndarray]
     walls: np.ndarray
     floors: np.ndarray
@@ -65,7 +64,7 @@ def palette(split: str) -> Palette:
     colours = {name: _variants(rng, spec, count) for name, spec in COLOURS.items()}
     walls = _variants(rng, (0.12, 0.50, (0.02, 0.22), (0.72, 0.97)), 2 * count)
     floors = _variants(rng, (0.08, 0.05, (0.10, 0.45), (0.40, 0.80)), 2 * count)
-    return Palette(split, colours, walls, floors)
+    return Palette(colours, walls, floors)
 
 
 def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
@@ -92,9 +91,8 @@ def texture(pattern: str, variant: int) -> np.ndarray:
         cell = int(rng.choice([4, 8]))
         base -= 60.0 * ((x // cell + y // cell) % 2)
     elif pattern == "planks":
-        base -= (
-            rng.uniform(0, 60, n // 8)[y // 8] + 40.0 * (y % 8 == 0) + rng.uniform(0, 15, (n, n))
-        )
+        planks = rng.uniform(0, 60, n // 8)[y // 8]
+        base -= planks + 40.0 * (y % 8 == 0) + rng.uniform(0, 15, (n, n))
     elif pattern == "tiles":
         cell = int(rng.choice([8, 16]))
         base -= 90.0 * ((x % cell == 0) | (y % cell == 0))

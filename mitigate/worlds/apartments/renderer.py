@@ -64,7 +64,7 @@ class Renderer:
     Raises ValueError if ``size`` is below ``LEAST`` pixels.
     """
 
-    def __init__(self, size: int = 64, scenes: int = 48) -> None:
+    def __init__(self, size: int = 64, scenes: int = SCENES) -> None:
         if size < LEAST:
             raise ValueError(f"size must be at least {LEAST} pixels, got {size}.")
         self.size, self.core = size, _panda()
@@ -95,7 +95,7 @@ class Renderer:
         self.hfov = HFOV_DEGREES  # horizontal field of view of all lenses, in degrees
         self.rig_rgb, self.rig_ids = self._rig(0), self._rig(1)
         self.scenes: OrderedDict[int, tuple[Any, Any, Faces]] = OrderedDict()
-        self.capacity, self.current = scenes, -1
+        self.capacity = scenes
 
     def load(self, apartment: Apartment) -> None:
         """Make an apartment the current scene. Its geometry is built at first use."""
@@ -109,7 +109,6 @@ class Renderer:
         rgb, ids, self.faces = self.scenes[apartment.seed]
         self.rig_rgb.reparent_to(rgb)
         self.rig_ids.reparent_to(ids)
-        self.current = apartment.seed
 
     def render(
         self,
@@ -220,17 +219,8 @@ class Renderer:
         bytes_[:, :3] = np.rint(colour.reshape(-1, 3) * 255)
         bytes_[:, 3] = 255
         packed[:, 3] = np.ascontiguousarray(bytes_).view(np.float32)[:, 0]
-        layout = core.GeomVertexArrayFormat()
-        for column, count, kind, content in (
-            (core.InternalName.get_vertex(), 3, core.Geom.NT_float32, core.Geom.C_point),
-            (core.InternalName.get_color(), 4, core.Geom.NT_uint8, core.Geom.C_color),
-            (core.InternalName.get_texcoord(), 2, core.Geom.NT_float32, core.Geom.C_texcoord),
-        ):
-            layout.add_column(column, count, kind, content)
-        form = core.GeomVertexFormat()
-        form.add_array(layout)
-        registered = core.GeomVertexFormat.register_format(form)
-        data = core.GeomVertexData("faces", registered, core.Geom.UH_static)
+        layout = core.GeomVertexFormat.get_v3c4t2()  # position, colour and texture coordinates
+        data = core.GeomVertexData("faces", layout, core.Geom.UH_static)
         data.unclean_set_num_rows(n * 4)
         data.modify_array_handle(0).copy_data_from(packed.tobytes())
         triangles = core.GeomTriangles(core.Geom.UH_static)
@@ -250,7 +240,7 @@ def shared_renderer(size: int) -> Renderer:
 
     All users of this renderer share its cache of ``SCENES`` scenes.
     """
-    return Renderer(size, scenes=SCENES)
+    return Renderer(size)
 
 
 def _make_pipe(core: Any) -> Any:

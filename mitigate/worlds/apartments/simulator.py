@@ -7,25 +7,13 @@ from functools import lru_cache
 
 import numpy as np
 
-from mitigate.core.observation import (
-    DEPTH,
-    FORWARD,
-    FORWARD_METRES,
-    LEFT,
-    MAX_STEPS,
-    POSE,
-    RGB,
-    RIGHT,
-    STOP,
-    TURN_DEGREES,
-    VIEWS,
-)
+from mitigate.core.observation import DEPTH, FORWARD_METRES, MAX_STEPS, POSE, RGB, STOP, VIEWS
 from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds.apartments.apartment import apartment_of
-from mitigate.worlds.apartments.renderer import LEVEL, Renderer
+from mitigate.worlds.apartments.renderer import LEVEL, shared_renderer
 from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
-from mitigate.worlds.world import Expert, greedy_action
+from mitigate.worlds.world import MOVES, Expert, greedy_action
 
 # maximum distance in metres from a start or goal to a free cell (heuristic); it is not 0 because a
 # goal may be a piece of furniture
@@ -47,15 +35,8 @@ class Simulator:
     VLN-CE (``core/observation.py``).
     """
 
-    def __init__(self, size: int = 64, renderer: Renderer | None = None) -> None:
+    def __init__(self, size: int = 64) -> None:
         self.size = size
-        self._renderer = renderer  # several simulators may use the same renderer
-
-    @property
-    def renderer(self) -> Renderer:
-        if self._renderer is None:
-            self._renderer = Renderer(self.size)
-        return self._renderer
 
     def reset(self, episode: Episode) -> None:
         """Place the agent at the start of an episode, or in the free cell that is nearest to the
@@ -103,9 +84,10 @@ class Simulator:
         self, views: Iterable[int] = range(VIEWS), mount: Mount = LEVEL
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Render RGB, depth and face ids of ``views`` of the panorama at the current pose."""
-        self.renderer.load(self.apartment)
+        renderer = shared_renderer(self.size)
+        renderer.load(self.apartment)
         place = float(self.xy[0]), float(self.xy[1]), float(self.heading)
-        return self.renderer.render(*place, views=views, mount=mount)
+        return renderer.render(*place, views=views, mount=mount)
 
     def step(self, action: int) -> None:
         """Execute one low-level action.
@@ -114,21 +96,12 @@ class Simulator:
             RuntimeError: The episode is over.
             ValueError: The action does not exist.
         """
-        if self.done:
-            raise RuntimeError("The episode is over. Call reset() before step().")
-        if action == FORWARD:
-            self.xy, collided = self.space.move(self.xy, self.heading, FORWARD_METRES)
-            self.collisions += collided
-            self.path.append(self.xy.copy())
-        elif action in (LEFT, RIGHT):
-            self.heading += np.radians(TURN_DEGREES) * (1 if action == LEFT else -1)
-        elif action == STOP:
-            self.stopped = True
-        else:
+        if action != STOP and action not in MOVES:
             raise ValueError(
                 f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
             )
-        self.steps += 1
+        self.move(*MOVES.get(action, (0.0, 0.0)))  # STOP is a step without movement
+        self.stopped = action == STOP
 
     def move(self, metres: float, degrees: float) -> None:
         """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.

@@ -12,7 +12,6 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -41,7 +40,7 @@ EDITION = 2
 OGN_SHARE = 0.15  # fraction of OGN episodes in training (heuristic)
 _TRIES = 60
 _POOL = 60  # number of different training paths per apartment
-_PER_APARTMENT = 10  # number of episodes per apartment in the fixed validation lists
+PER_APARTMENT = 10  # number of episodes per apartment in the episode lists
 
 
 def to_vlnce(xy: np.ndarray | tuple[float, float]) -> tuple[float, float, float]:
@@ -77,12 +76,7 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
     else:
         text = find(apartment, category, rng)
     thinned = np.concatenate([path[:-1:5], path[-1:]])
-    info: dict[str, Any] = {
-        "geodesic_distance": round(float(field[start]), 4),
-        "task": task,
-        "category": category,
-        "landmark": target,
-    }
+    metres = round(float(field[start]), 4)
     return Episode(
         episode_id=f"{apartment.seed:06d}-{task}{EDITION}-{index}" + (f"-{seed}" if seed else ""),
         trajectory_id=f"{apartment.seed:06d}-{index}",
@@ -90,19 +84,19 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
         start_position=to_vlnce(path[0]),
         start_rotation=(0.0, float(np.sin(heading / 2)), 0.0, float(np.cos(heading / 2))),
         goals=tuple(Goal(to_vlnce(apartment.space.centre(g)), SUCCESS_METRES) for g in goals),
-        instruction=Instruction(text, None, "en-US", {}),
+        instruction=Instruction(text, None, "en-US"),
         reference_path=tuple(to_vlnce(p) for p in thinned),
-        geodesic_distance=info["geodesic_distance"],
-        info=info,
+        geodesic_distance=metres,
+        info={"geodesic_distance": metres, "task": task, "category": category, "landmark": target},
     )
 
 
 def _draw_vln(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
     target = int(rng.integers(len(apartment.furniture)))
     kinds = [(p.category, p.colour, apartment.rooms[p.room].kind) for p in apartment.furniture]
-    unique = kinds.count(kinds[target]) == 1
     cells = view_cells(apartment, target)
-    return ([int(rng.choice(cells))] if unique and len(cells) else []), target
+    usable = kinds.count(kinds[target]) == 1 and len(cells)
+    return ([int(rng.choice(cells))] if usable else []), target
 
 
 def _draw_ogn(apartment: Apartment, rng: np.random.Generator) -> tuple[list[int], int]:
@@ -134,10 +128,23 @@ class DrawnEpisodes:
     ogn_share: float = OGN_SHARE
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Sample an episode from some of the layouts: they are split into ``count`` parts, and
-        ``share`` = (index, count) selects one part.
+        """Sample an episode with a newly generated instruction from some of the layouts: they are
+        split into ``count`` parts, and ``share`` = (index, count) selects one part.
+
+        Each layout has ``_POOL`` different paths.
         """
-        return draw_training_episode(rng, share_of(range(self.layouts), *share), self.ogn_share)
+        seeds = share_of(range(self.layouts), *share)
+        seed = seeds[int(rng.integers(len(seeds)))]
+        index = int(rng.integers(_POOL))
+        task = "ogn" if rng.random() < self.ogn_share else "vln"
+        episode: Episode = pickle.loads(_pooled(seed, task, index))
+        if task == "ogn":
+            return episode
+        path = np.stack([from_vlnce(p) for p in episode.reference_path])
+        heading = heading_of(episode.start_rotation)
+        apartment = apartment_of(episode.scene_id)
+        text = describe(apartment, path, heading, episode.info["landmark"], rng)
+        return replace(episode, instruction=Instruction(text, None, "en-US"))
 
 
 def landmarks(episode: Episode) -> list[int]:
@@ -176,11 +183,11 @@ def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
     """Yield the first ``count`` episodes of a split in the order of apartment seeds, with
-    ``_PER_APARTMENT`` episodes per apartment.
+    ``PER_APARTMENT`` episodes per apartment.
     """
     low, _ = SEED_RANGES[split]
     for number in range(count):
-        yield make_episode(Apartment(low + number // _PER_APARTMENT), task, number % _PER_APARTMENT)
+        yield make_episode(Apartment(low + number // PER_APARTMENT), task, number % PER_APARTMENT)
 
 
 @lru_cache(maxsize=100_000)
@@ -190,33 +197,6 @@ def _pooled(seed: int, task: str, index: int) -> bytes:
     """
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
-
-
-def draw_training_episode(
-    rng: np.random.Generator, apartments: int | range, ogn_share: float
-) -> Episode:
-    """Sample a training episode with a newly generated instruction.
-
-    The episode depends only on the generator's state and the arguments. Each apartment has
-    ``_POOL`` different paths.
-
-    Args:
-        rng: random generator.
-        apartments: the seeds of the training apartments, or their number.
-        ogn_share: fraction of object-goal episodes.
-    """
-    seeds = range(apartments) if isinstance(apartments, int) else apartments
-    seed = seeds[int(rng.integers(len(seeds)))]
-    index = int(rng.integers(_POOL))
-    task = "ogn" if rng.random() < ogn_share else "vln"
-    episode: Episode = pickle.loads(_pooled(seed, task, index))
-    if task == "vln":
-        path = np.stack([from_vlnce(p) for p in episode.reference_path])
-        heading = heading_of(episode.start_rotation)
-        apartment = apartment_of(episode.scene_id)
-        text = describe(apartment, path, heading, episode.info["landmark"], rng)
-        episode = replace(episode, instruction=Instruction(text, None, "en-US", {}))
-    return episode
 
 
 def episode_file(split: str, task: str = "vln") -> Path:

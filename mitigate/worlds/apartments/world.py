@@ -15,15 +15,7 @@ import numpy as np
 
 from mitigate.core.memory import Memory
 from mitigate.core.names import unknown
-from mitigate.core.observation import (
-    DEPTH,
-    POSE,
-    RGB,
-    VIEWS,
-    Observation,
-    Sensor,
-    cameras,
-)
+from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation, cameras
 from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
@@ -38,11 +30,9 @@ from mitigate.worlds.world import World
 
 MEMORY_BYTES = 1 << 26  # maximum bytes of rendered frames that ``remembering`` caches (heuristic)
 LARGEST = 2048  # maximum size of a view in pixels (heuristic)
-MAX_DIFFERENCE = (
-    # minimum difference in metres between the recorded and the measured distance that causes a
-    # warning (heuristic)
-    0.5
-)
+# minimum difference in metres between the recorded and the measured distance that causes a warning
+# (heuristic)
+MAX_DIFFERENCE = 0.5
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
@@ -76,10 +66,10 @@ class ApartmentsWorld(World):
         # the text must differ from older versions, which recorded distances to the goal itself
         if RULES[rule].view_points:
             self.rule += ", as are all distances"
-        self.sensors: dict[str, Sensor] = cameras(size, views)
+        self.sensors = cameras(size, views)
+        self.simulator = Simulator(size)
         self._memory = Memory(0)
-        self._simulator: Simulator | None = None
-        self._rendered: tuple[np.ndarray, np.ndarray, np.ndarray] | None = None
+        self._rendered: tuple[np.ndarray, ...] | None = None
         self._warned = False
 
     def __getstate__(self) -> dict[str, Any]:
@@ -88,12 +78,6 @@ class ApartmentsWorld(World):
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__init__(**state)  # type: ignore[misc]
-
-    @property
-    def simulator(self) -> Simulator:
-        if self._simulator is None:
-            self._simulator = Simulator(self.size, renderer=shared_renderer(self.size))
-        return self._simulator
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
@@ -176,11 +160,10 @@ class ApartmentsWorld(World):
         distance differs from the measured distance, a warning is issued once per world.
         """
         recorded, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
-        if recorded is None:
-            return round(self._left(), 4)
-        if not episode.goals:
+        if recorded is not None and not episode.goals:
             return recorded
-        if abs(recorded - measured) > MAX_DIFFERENCE and not self._warned:
+        differs = recorded is not None and abs(recorded - measured) > MAX_DIFFERENCE
+        if differs and not self._warned:
             self._warned = True
             warnings.warn(
                 f"The file records a geodesic_distance of {recorded:g} m for episode "
@@ -206,14 +189,10 @@ class ApartmentsWorld(World):
         simulator = self.simulator
         _, depth, ids = self._frames()
         marks = landmarks(simulator.episode)
-        place = (simulator.xy, simulator.heading)
-        return Labels(simulator.apartment, *place, ids, depth, marks)
+        return Labels(simulator.apartment, simulator.xy, simulator.heading, ids, depth, marks)
 
-    def landmarks(self, episode: Episode) -> list[int]:
-        """Return the indices of the furniture (as in the label "seen") that marks the goal of an
-        episode.
-        """
-        return landmarks(episode)
+    # indices of the furniture (as in the label "seen") that marks the goal of an episode
+    landmarks = staticmethod(landmarks)
 
     def draw(self, axes: Any) -> None:
         """Draw the plan of the apartment on matplotlib axes, in metres."""
@@ -221,23 +200,21 @@ class ApartmentsWorld(World):
 
     def _observation(self) -> Observation:
         self._rendered = None
-        return Observation(self.simulator.odometry(), self._copied_frames, (RGB, DEPTH))
+        return Observation(
+            self.simulator.odometry(), lambda: self._copied(self._frames()), (RGB, DEPTH)
+        )
 
-    def _copied_frames(self) -> dict[str, np.ndarray]:
-        """Return copies of the cached frames, because an agent may write into its observation."""
-        rgb, depth, _ = self._frames()
-        return self._shaped(rgb.copy(), depth.copy())
-
-    def _shaped(self, rgb: np.ndarray, depth: np.ndarray) -> dict[str, np.ndarray]:
-        """Return frames with the shapes that ``sensors`` declares. Frames of a single camera have
-        no axis for views.
+    def _copied(self, rendered: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
+        """Return copies of the frames, because an agent may write into its observation. Frames of a
+        single camera have no axis for views.
         """
-        return {RGB: rgb, DEPTH: depth} if self.views > 1 else {RGB: rgb[0], DEPTH: depth[0]}
+        views = slice(None) if self.views > 1 else 0
+        return {name: rendered[i][views].copy() for i, name in enumerate((RGB, DEPTH))}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
         """Render the frames that a displaced camera would see at the current pose."""
-        rgb, depth, _ = self._memory.recall((*self._pose(), mount), lambda: self._observe(mount))
-        return self._shaped(rgb.copy(), depth.copy())
+        key = (*self._pose(), mount)
+        return self._copied(self._memory.recall(key, lambda: self._observe(mount)))
 
     def _pose(self) -> tuple[str, float, float, float]:
         """Return the scene id and the pose of the agent."""
@@ -245,15 +222,15 @@ class ApartmentsWorld(World):
         place = (float(simulator.xy[0]), float(simulator.xy[1]), float(simulator.heading))
         return simulator.episode.scene_id, *place
 
-    def _frames(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _frames(self) -> tuple[np.ndarray, ...]:
         if self._rendered is None:
             self._rendered = self._memory.recall(self._pose(), self._observe)
         return self._rendered
 
-    def _observe(self, mount: Mount = LEVEL) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _observe(self, mount: Mount = LEVEL) -> tuple[np.ndarray, ...]:
         """Render RGB, depth and face ids of all cameras."""
-        rgb, depth, ids = self.simulator.observe_faces(range(self.views), mount)
-        return rgb[: self.views], depth[: self.views], ids[: self.views]
+        rendered = self.simulator.observe_faces(range(self.views), mount)
+        return tuple(part[: self.views] for part in rendered)
 
     # poses ------------------------------------------------------------------------------------
 
@@ -295,11 +272,10 @@ class ApartmentsWorld(World):
         renderer.load(apartment)
         selected = range(self.views) if views is None or self.views == 1 else views
         place = float(xy[0]), float(xy[1]), heading
-        rendered = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
-        frames, depth, ids = (part[: self.views] for part in rendered)
+        drawn = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
+        _, depth, ids = parts = [part[: self.views] for part in drawn]
         pose = np.array([*xy, heading], np.float32)
-        truth = Labels(apartment, xy, heading, ids, depth)
-        return {**self._shaped(frames, depth), POSE: pose}, truth
+        return {**self._copied(parts), POSE: pose}, Labels(apartment, xy, heading, ids, depth)
 
 
 class Labels(Mapping[str, np.ndarray]):

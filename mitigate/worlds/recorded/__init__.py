@@ -16,22 +16,12 @@ from mitigate.worlds.recorded.bags import Bag
 from mitigate.worlds.recorded.folders import read_frames, read_run
 from mitigate.worlds.recorded.lerobot import open_episodes
 from mitigate.worlds.recorded.options import BAG, DATASET, FRAMES, RUN, TUM, Options
-from mitigate.worlds.recorded.recording import Driven, RecordedWorld, Recording, Step, kinds, load
+from mitigate.worlds.recorded.recording import RecordedWorld, Recording, Step, kinds, load
 from mitigate.worlds.recorded.source import Source
 from mitigate.worlds.recorded.topics import Topics
 from mitigate.worlds.recorded.tum import is_tum, read_tum
 
-__all__ = [
-    "Driven",
-    "RecordedWorld",
-    "Recording",
-    "Source",
-    "Step",
-    "Topics",
-    "kinds",
-    "load",
-    "open_recording",
-]
+__all__ = ["RecordedWorld", "Recording", "Source", "Step", "kinds", "load", "open_recording"]
 
 OPEN: dict[str, Callable[[Path, Options], Sequence[Source]]] = {
     DATASET: open_episodes,
@@ -48,7 +38,7 @@ def open_recording(
     path: str | Path,
     *,
     instruction: str | None = None,
-    topics: Topics | Mapping[str, str] | None = None,
+    topics: Mapping[str, str] | None = None,
     hfov: float | None = None,
     unit: float | None = None,
     yaw: float = 0.0,
@@ -85,7 +75,12 @@ def open_recording(
         ValueError: A drive is damaged, or an option does not apply to it.
     """
     path = Path(path)
-    options = Options(_as_topics(topics), hfov, unit, yaw, cameras, episodes, tolerance)
+    allowed = [field.name for field in fields(Topics)]
+    for name in topics or ():
+        if name not in allowed:
+            raise ValueError(unknown("entry of topics", name, allowed))
+    chosen = Topics(**(topics or {}))
+    options = Options(chosen, hfov, unit, yaw, cameras, episodes, tolerance)
     if not path.exists():
         raise FileNotFoundError(f"There is no recording {path}. Give a folder or a bag.")
     inside = not _kind_of(path)
@@ -121,13 +116,3 @@ def _kind_of(path: Path) -> str | None:
     if is_tum(path):
         return TUM
     return FRAMES if (path / RGB).exists() or (path / DEPTH).exists() else None
-
-
-def _as_topics(topics: Topics | Mapping[str, str] | None) -> Topics:
-    if not isinstance(topics, Mapping):
-        return topics or Topics()
-    allowed = [field.name for field in fields(Topics)]
-    for name in topics:
-        if name not in allowed:
-            raise ValueError(unknown("entry of topics", name, allowed))
-    return Topics(**topics)

@@ -40,7 +40,7 @@ from mitigate.worlds.recorded.source import (
     match_times,
     read_instruction,
 )
-from mitigate.worlds.recorded.topics import IMAGES, INFO, POSES, choose_topics
+from mitigate.worlds.recorded.topics import IMAGES, INFO, INFO_OPTIONS, POSES, choose_topics
 from mitigate.worlds.recorded.unpacking import bounded
 
 # the first bytes of each file format, and a program that repairs such files
@@ -69,8 +69,6 @@ class Bag(Source):
         ValueError: The bag is damaged or lacks a topic, or ``rosbags`` is not installed.
     """
 
-    stepped = False
-
     def __init__(self, path: Path, options: Options) -> None:
         resolved = path.resolve()  # resolve first, because the path `.` has an empty name
         self.path = path
@@ -95,10 +93,13 @@ class Bag(Source):
         if self.unit is not None and DEPTH not in self.kinds:
             raise ValueError(f"{path} is read without depth. Remove unit=, or set topics.depth=.")
         self._match(stamps, poses, options.yaw)
-        self.cameras = {
-            kind: lenses[kind] if kind in lenses else self._lens_without_info(kind, options.hfov)
-            for kind in self.kinds
-        }
+        for option, kind in INFO_OPTIONS.items():
+            if kind in self.kinds and kind not in lenses and options.hfov is None:
+                raise ValueError(
+                    f"{path} has no CameraInfo for {self.topics[kind]}, so its field of view is "
+                    f"unknown. Set hfov=69 (degrees, horizontal), or topics.{option}=TOPIC."
+                )
+        self.cameras = {k: lenses.get(k) or Lens(k, options.hfov or 0.0) for k in self.kinds}
         self.formats = self._describe(encodings)
 
     def depth_advice(self) -> str:
@@ -111,12 +112,11 @@ class Bag(Source):
         formats = {POSE: self.topics[POSE]} if POSE in self.topics else {}
         for kind in self.kinds:
             topic = self.topics[kind]
-            encoding = encodings.get(topic, "")
-            formats[kind] = f"{topic}, {encoding}"
-            if kind == DEPTH:
-                unit = depth_unit(encoding) if self.unit is None else self.unit
-                assumed = " (assumed)" if self.unit is None else ""
-                formats[kind] += f", {unit:g} metres per count{assumed}"
+            formats[kind] = f"{topic}, {encodings.get(topic, '')}"
+        if DEPTH in formats:
+            unit = self.unit or depth_unit(encodings.get(self.topics[DEPTH], ""))
+            assumed = " (assumed)" if self.unit is None else ""
+            formats[DEPTH] += f", {unit:g} metres per count{assumed}"
         return formats
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
@@ -175,8 +175,7 @@ class Bag(Source):
             from rosbags.typesys import Stores, get_typestore
         except ModuleNotFoundError as error:
             raise ValueError(
-                "Bags need the package rosbags, which is not installed. Run pip install -e "
-                "'.[bags]'."
+                "Bags need the package rosbags. Run pip install -e '.[bags]'."
             ) from error
         with ExitStack() as stack:
             with self._explained():
@@ -268,23 +267,14 @@ class Bag(Source):
             with self._explained():
                 if name == POSE:
                     poses.append(read_pose(message))
-                elif name not in self.kinds:
-                    kind = name.removeprefix("info ")
+                elif name in INFO_OPTIONS:
+                    kind = INFO_OPTIONS[name]
                     usable = hfov is None or bool((camera_matrix(message)[:1] > 0).any())
                     if kind not in lenses and usable:
                         lenses[kind] = read_lens(kind, message, self.path)
         seconds = {name: _choose_clock(pairs) for name, pairs in stamps.items()}
         timed = zip(seconds.pop(POSE), poses, strict=True)
         return seconds, [(time, *pose) for time, pose in timed], lenses
-
-    def _lens_without_info(self, kind: str, hfov: float | None) -> Lens:
-        if hfov is None:
-            option = "info" if kind == RGB else "depth_info"
-            raise ValueError(
-                f"{self.path} has no CameraInfo for {self.topics[kind]}, so its field of view is "
-                f"unknown. Set hfov=69 (degrees, horizontal), or topics.{option}=TOPIC."
-            )
-        return Lens(kind, hfov)
 
     def _match(
         self, stamps: Mapping[str, list[float]], table: Sequence[tuple[float, ...]], yaw: float
@@ -294,12 +284,10 @@ class Bag(Source):
         for name, messages in records.items():
             if not messages:
                 raise ValueError(
-                    f"{self.path} has no message on {self.topics[name]}. Set topics.{name}=none to "
-                    "leave it out."
+                    f"{self.path} has no message on {self.topics[name]}. Set topics.{name}=none."
                 )
-        instants = match_times(stamps, np.array(table) if table else None, self.tolerance)
-        if not len(instants.times):
-            raise ValueError(f"{self.path}: {instants.mismatch(self.tolerance, self.topics)}")
+        known = np.array(table) if table else None
+        instants = match_times(self.path, stamps, known, self.tolerance, self.topics)
         self.times = instants.times
         self.poses = instants.poses
         if self.poses is not None:

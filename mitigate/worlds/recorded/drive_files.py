@@ -18,7 +18,7 @@ from mitigate.worlds.recorded.source import MAX_INSTANTS, Lens, Source, read_tex
 INSTRUCTION = "instruction.txt"
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Frames(Source):
     """A recorded drive whose frames are stored in separate files.
 
@@ -35,10 +35,9 @@ class Frames(Source):
 
     def __post_init__(self) -> None:
         assumed = "" if self.unit_given else " (assumed)"
+        counted = f"16-bit PNG, {self.unit:g} metres per count{assumed}"
         self.formats = {
-            name: f"{name}, 16-bit PNG, {self.unit:g} metres per count{assumed}"
-            if self._is_counted(name)
-            else f"{name}, {files[0].suffix[1:].upper()}"
+            name: f"{name}, {counted if self._is_counted(name) else files[0].suffix[1:].upper()}"
             for name, files in self.files.items()
         }
 
@@ -64,8 +63,7 @@ class Frames(Source):
         kind = self.cameras[camera].kind
         if (frame.shape[-1] == 3) != (kind == RGB):
             raise ValueError(
-                f"{path} must be a {kind} frame, like the other frames of camera {camera!r}. "
-                "Replace it."
+                f"{path} must be a {kind} frame, like the others of camera {camera!r}. Replace it."
             )
         if kind == RGB:
             return frame

@@ -86,8 +86,9 @@ def _read_episode(
     for camera in chosen or ():
         if camera not in names:
             raise ValueError(unknown("camera", camera, names))
-    files = {n: _list_frames(folder / n) for n in names if not chosen or n in chosen}
-    files = {name: paths for name, paths in files.items() if paths and _is_level(described, name)}
+    tilted = [n for n, c in described.items() if isinstance(c, dict) and c.get("level") is False]
+    names = [n for n in names if n not in tilted and (not chosen or n in chosen)]
+    files = {name: paths for name in names if (paths := _list_frames(folder / name))}
     if not steps or not files:
         return None
     cameras = {name: _read_lens(name, paths[0], described, hfov) for name, paths in files.items()}
@@ -117,7 +118,6 @@ def _read_episode(
         times=np.arange(len(steps)) * 1.0,
         poses=_recorded_poses(steps, folder / STEPS),
         stepped=True,
-        dropped=0,
         files=files,
         unit=unit,
     )
@@ -133,14 +133,6 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
                     f"{paths[index].parent} is incomplete: it has no frame {call:06d}, which "
                     f"{STEPS} names. {FIX}"
                 )
-
-
-def _is_level(described: Mapping[str, Any], name: str) -> bool:
-    """Return whether a camera is level. A camera is assumed to be level if the recording does not
-    describe it.
-    """
-    camera = described.get(name)
-    return not isinstance(camera, dict) or camera.get("level") is not False
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
@@ -228,8 +220,7 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
     if len(set(counts.values())) != 1 or not files:
         listed = ", ".join(f"{count} in {name}" for name, count in counts.items()) or "no frame"
         raise ValueError(
-            f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
-            "files that do not match."
+            f"{path} must have as many of each, one per step, got {listed}. Correct the files."
         )
     if options.unit is None and DEPTH in files:
         try:
@@ -239,8 +230,7 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
     stems = [[file.stem for file in paths] for paths in files.values()]
     if len(stems) == 2 and stems[0] != stems[1] and set(stems[0]) & set(stems[1]):
         raise ValueError(
-            f"{path}: some frames of rgb/ have no frame of the same name in depth/. Give both the "
-            "same names."
+            f"{path}: frames of the same step in rgb/ and depth/ must have the same name."
         )
     drive = Frames(
         name=path.name,
@@ -250,7 +240,6 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
         times=np.arange(len(stems[0])) * 1.0,
         poses=poses,
         stepped=True,
-        dropped=0,
         unit=0.001 if options.unit is None else options.unit,
         unit_given=options.unit is not None,
     )

@@ -23,7 +23,7 @@ from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import MAX_INSTANTS, Source
 
 
-@dataclass
+@dataclass(kw_only=True)
 class LerobotEpisode(Source):
     """An episode of a dataset.
 
@@ -88,8 +88,7 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
         name = f"{path.resolve().name}/episode-{episode.index:06d}"
         if episode.length > MAX_INSTANTS:
             raise ValueError(
-                f"{name} must have at most {MAX_INSTANTS} frames, got {episode.length}. Leave it "
-                "out (episodes=)."
+                f"{name} must have at most {MAX_INSTANTS} frames. Leave it out (episodes=)."
             )
         if episode.data not in signals:
             signals = {episode.data: dataset.read_signals(episode.data)}
@@ -99,9 +98,6 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
                 instruction=_instruction(dataset, rows, name),
                 cameras={camera.name: assumed_lens(camera.kind, options.hfov) for camera in chosen},
                 times=rows.times,
-                poses=None,
-                stepped=False,
-                dropped=0,
                 signals={n: values[mine] for n, values in signals[episode.data].items()},
                 dataset=dataset,
                 episode=episode,

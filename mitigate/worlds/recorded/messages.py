@@ -67,9 +67,8 @@ def read_pose(message: Any) -> tuple[float, float, float]:
     """
     while (inner := _field(message, "pose")) is not None:
         message = inner
-    orientation = message.orientation
-    quaternion = (orientation.x, orientation.y, orientation.z, orientation.w)
-    position = message.position
+    position, turn = message.position, message.orientation
+    quaternion = (turn.x, turn.y, turn.z, turn.w)
     return plan_pose(float(position.x), float(position.y), quaternion, (1.0, 0.0, 0.0))
 
 
@@ -111,14 +110,12 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
     matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
         raise ValueError(
-            f"{path}: the focal lengths in its CameraInfo must be above 0, got "
-            f"{matrix.tolist()[:9]}."
+            f"{path}: focal lengths in CameraInfo must be above 0, got {matrix.tolist()[:9]}."
         )
     size = (int(message.width), int(message.height))
     if min(size) < 1:
         raise ValueError(
-            f"{path}: the image size in its CameraInfo must be at least 1 x 1, got "
-            f"{size[0]} x {size[1]}."
+            f"{path}: the image size in CameraInfo must be at least (1, 1), got {size}."
         )
     model = str(_field(message, "distortion_model"))
     if model in FISHEYE:
@@ -126,9 +123,8 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
             f"{path}: the {kind} camera must be a pinhole camera, got a fisheye lens ({model}). "
             "Record rectified images and their CameraInfo."
         )
-    focal = (float(matrix[0]), float(matrix[4]))
-    centre = (float(matrix[2]), float(matrix[5]))
-    return Lens(kind, focal=focal, centre=centre, size=size)
+    fx, _, cx, _, fy, cy, *_ = map(float, matrix)
+    return Lens(kind, focal=(fx, fy), centre=(cx, cy), size=size)
 
 
 def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
@@ -149,8 +145,7 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
         unit = depth_unit(encoding_of(message))
     if _field(message, "format") is not None:
         return _read_compressed(message, kind, path, unit)
-    height = int(message.height)
-    width = int(message.width)
+    height, width = int(message.height), int(message.width)
     encoding = str(message.encoding)
     table: Mapping[str, object] = _COLOURS if kind == RGB else _DEPTHS
     if encoding not in table:
@@ -163,9 +158,9 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
             f"{path}: images must have 1 to {MAX_SIDE} pixels per side, got {height} x {width}."
         )
     data = np.ascontiguousarray(message.data).view(np.uint8)
+    channels, conversion = (1, None) if kind == DEPTH else _COLOURS[encoding]
     byte_order = "><"[not message.is_bigendian]
     dtype = np.dtype(byte_order + _DEPTHS[encoding]) if kind == DEPTH else np.dtype(np.uint8)
-    channels = 1 if kind == DEPTH else _COLOURS[encoding][0]
     row_bytes = width * channels * dtype.itemsize
     step = int(message.step) if height > 1 else row_bytes
     if step < row_bytes or len(data) < (height - 1) * step + row_bytes:
@@ -179,7 +174,6 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
             stored = np.where(stored == NO_READING, 0, stored)
         return _clean_depth(stored * unit)
     pixels = rows.reshape(height, width, channels)
-    conversion = _COLOURS[encoding][1]
     return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
 
 
@@ -195,8 +189,7 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
     if kind == DEPTH:
         if pixels.dtype != np.uint16 or pixels.ndim != 2 or encoding.startswith("32FC1"):
             raise ValueError(
-                f"{path}: compressed depth must be 16-bit PNG, got the format "
-                f"{encoding[:40]!r}. Record the raw images."
+                f"{path}: compressed depth must be 16-bit PNG, got the format {encoding[:40]!r}."
             )
         return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
     if pixels.dtype != np.uint8:

@@ -51,8 +51,7 @@ class Options:
             raise ValueError(f"tolerance must be at least 0 seconds, got {self.tolerance:g}.")
         if self.unit is not None and not 0 < self.unit <= 1:
             raise ValueError(
-                f"unit= must be above 0 and at most 1 metre per count, such as 0.001, got "
-                f"{self.unit:g}."
+                f"unit= must be above 0 and at most 1 metre per count, got {self.unit:g}."
             )
 
     @property

@@ -120,9 +120,8 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         raise ValueError(
             f"step.* has no effect on {source.name}, which is recorded step by step. Remove step.*."
         )
-    chosen = np.arange(len(source.times))
-    if not source.stepped:
-        chosen = step.choose(source.times, source.poses)
+    steps = np.arange(len(source.times))
+    chosen = steps if source.stepped else step.choose(source.times, source.poses)
     view_cameras = _assign_cameras(source, views)
     pixel_bytes = {RGB: 3, DEPTH: 4}
     needed = len(chosen) * size * size * sum(pixel_bytes[kind] for kind, _ in view_cameras)
@@ -130,30 +129,31 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         longer = "" if source.stepped else " set longer steps (step.metres=0.5),"
         raise ValueError(
             f"The frames of {source.name} must take at most {MAX_FRAME_BYTES >> 30} GiB, got "
-            f"{needed / 2**30:.1f} GiB for {len(chosen)} steps. Cut the recording,{longer} or use "
-            "smaller frames (size=)."
+            f"{needed / 2**30:.1f} GiB. Cut the recording,{longer} or use smaller frames (size=)."
         )
-    read = _read_views(source, chosen.tolist(), view_cameras, size, crop)
-    chosen = chosen[read.readable]
-    frames = read.frames
+    frames, readable, shapes, tangent = _read_views(
+        source, chosen.tolist(), view_cameras, size, crop
+    )
+    chosen = chosen[readable]
     if DEPTH in frames:
         check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice())
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
-    driven = None if poses is None else driver_actions(poses)
-    if poses is not None and driven is not None:
+    driven = None
+    if poses is not None:
+        driven = driver_actions(poses)
         _check_headings(source.name, poses, driven)
     signals = {name: values[chosen] for name, values in source.signals.items()}
-    hfov = 2 * math.degrees(math.atan(read.tangent))
+    hfov = 2 * math.degrees(math.atan(tangent))
     recording = Recording(
         source.name, source.instruction, frames, times, poses, driven, signals, hfov
     )
     cameras = {
         kind: Camera(
             source.cameras[name],
-            read.shapes[name],
+            shapes[name],
             source.formats.get(name, name),
-            border_fraction(source.cameras[name], *read.shapes[name], read.tangent),
+            border_fraction(source.cameras[name], *shapes[name], tangent),
         )
         for (kind, view), name in view_cameras.items()
         if view == 0
@@ -162,31 +162,20 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
     return replace(recording, summary=describe(source, recording, cameras, step))
 
 
-@dataclass(frozen=True)
-class _Views:
-    """The square views of a drive.
-
-    Attributes:
-        frames: Frames of the readable steps, in the format of :class:`Recording`.
-        readable: bool [T], whether all images of a chosen step could be read.
-        shapes: Height and width of each camera's images.
-        tangent: Tangent of half the field of view of the views.
-    """
-
-    frames: dict[str, np.ndarray]
-    readable: np.ndarray
-    shapes: dict[str, tuple[int, int]]
-    tangent: float
-
-
 def _read_views(
     source: Source,
     chosen: Sequence[int],
     view_cameras: Mapping[tuple[str, int], str],
     size: int,
     crop: bool,
-) -> _Views:
-    """Read the frames at the chosen time steps. :func:`load` describes the arguments."""
+) -> tuple[dict[str, np.ndarray], np.ndarray, dict[str, tuple[int, int]], float]:
+    """Read the square views at the chosen time steps. :func:`load` describes the arguments.
+
+    Returns:
+        The frames of the readable steps, in the format of :class:`Recording`; whether all images of
+        a chosen step could be read (bool [T]); the height and width of each camera's images; and
+        the tangent of half the field of view of the views.
+    """
     views = 1 + max(view for _, view in view_cameras)
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
     frames = {
@@ -223,11 +212,8 @@ def _read_views(
             progress.say(f"{source.name}: left out {damage}")
             frames = {kind: array[readable] for kind, array in frames.items()}
         if source.dropped:
-            progress.say(
-                f"{source.name}: left out {source.dropped} frames that have no pose or no frame of "
-                "the other camera near in time"
-            )
-    return _Views(frames, readable, shapes, tangent)
+            progress.say(f"{source.name}: left out {source.dropped} frames without a match in time")
+    return frames, readable, shapes, tangent
 
 
 def kinds(source: Source, views: int) -> list[str]:
@@ -265,8 +251,7 @@ def _assign_cameras(source: Source, views: int) -> dict[tuple[str, int], str]:
             )
     if not assigned:
         raise ValueError(
-            f"{source.name} must have a camera that faces forward. Cameras: "
-            f"{_list_cameras(source)}."
+            f"{source.name} has no camera that faces forward. Cameras: {_list_cameras(source)}."
         )
     return assigned
 

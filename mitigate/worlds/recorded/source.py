@@ -67,8 +67,7 @@ class Lens:
         hfov = vfov = self.hfov
         offset = 0.0
         if self.focal is not None and self.size is not None and self.centre is not None:
-            pairs = zip(self.size, self.focal, strict=True)
-            hfov, vfov = (math.degrees(2 * math.atan2(side / 2, f)) for side, f in pairs)
+            hfov, vfov = self.fields_of_view(self.size[1], self.size[0])
             offset = max(abs(c - s / 2) / s for c, s in zip(self.centre, self.size, strict=True))
         if not (MIN_HFOV <= hfov <= MAX_HFOV and MIN_VFOV <= vfov <= MAX_HFOV):
             raise ValueError(
@@ -114,7 +113,7 @@ class Lens:
         return round(self.yaw / VIEW_STEP_DEGREES) % round(360 / VIEW_STEP_DEGREES)
 
 
-@dataclass
+@dataclass(kw_only=True)
 class Source:
     """Base class of an opened recording of N time steps.
 
@@ -139,12 +138,12 @@ class Source:
     instruction: str
     cameras: Mapping[str, Lens]
     times: np.ndarray
-    poses: np.ndarray | None
-    stepped: bool
-    dropped: int
-    signals: Mapping[str, np.ndarray] = field(default_factory=dict, kw_only=True)
-    formats: Mapping[str, str] = field(default_factory=dict, kw_only=True)
-    damaged: list[str] = field(default_factory=list, kw_only=True)
+    poses: np.ndarray | None = None
+    stepped: bool = False
+    dropped: int = 0
+    signals: Mapping[str, np.ndarray] = field(default_factory=dict)
+    formats: Mapping[str, str] = field(default_factory=dict)
+    damaged: list[str] = field(default_factory=list)
 
     def depth_advice(self) -> str:
         """Return advice on how to correct depth that is not in metres."""
@@ -247,72 +246,63 @@ class Instants:
         poses: float64 [N, 3], or None if unknown.
         frames: int [N] for each camera: the index of its frame at each time step.
         dropped: Number of skipped time steps.
-        distances: Median time difference in seconds between a time step and the nearest frame or
-            pose. There is one entry per camera, and one named "pose". Skipped time steps are
-            included.
     """
 
     times: np.ndarray
     poses: np.ndarray | None
     frames: dict[str, np.ndarray]
     dropped: int
-    distances: dict[str, float]
-
-    def mismatch(self, tolerance: float, names: Mapping[str, str] | None = None) -> str:
-        """Return the error message for a recording that has no complete time step.
-
-        Args:
-            tolerance: The maximum time difference in seconds that :func:`match_times` used.
-            names: Displayed names of the cameras and of "pose". The default is the keys of
-                ``distances``.
-        """
-        first, *others = [(names or {}).get(name, name) for name in self.distances]
-        _, *seconds = self.distances.values()
-        listed = [f"{name} by {s:.3g} s" for name, s in zip(others, seconds, strict=True)]
-        return (
-            f"the times of its frames and poses must be within {tolerance:g} s of each other, but "
-            f"those of {first} typically differ from {' and '.join(listed)}. Correct the clocks, "
-            "allow more (tolerance=, in seconds), or leave one out."
-        )
 
 
 def match_times(
+    path: Path,
     stamps: Mapping[str, Sequence[float]],
     table: np.ndarray | None,
-    tolerance: float = MAX_FRAME_GAP,
+    tolerance: float,
+    names: Mapping[str, str],
 ) -> Instants:
     """Find frames of several cameras and poses that belong to the same times.
 
     Args:
+        path: The recording, for the error message.
         stamps: Times of the frames of each camera, in seconds. The first camera defines the time
             steps.
         table: float64 [M, 4], (time, x, y, heading) of the known poses, or None.
         tolerance: Maximum time difference in seconds between a time step and its frames.
+        names: Displayed names of the cameras and of "pose". The default is their keys.
 
-    Returns:
-        The complete time steps. There may be none.
+    Raises:
+        ValueError: No time step is complete.
     """
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
     frames = {}
-    distances = {}
+    distances = []  # from each time step to the nearest frame or pose
     for name, seconds in stamps.items():
         order = np.argsort(seconds, kind="stable")
         nearest, distance = find_nearest(times, np.sort(seconds))
         frames[name] = order[nearest]
-        distances[name] = float(np.median(distance))
+        distances.append(f"{names.get(name, name)} by {np.median(distance):.3g} s")
         complete &= distance <= tolerance
     poses = None
     if table is not None:
         poses, known = interpolate_poses(times, table, tolerance)
-        distances[POSE] = float(np.median(find_nearest(times, np.sort(table[:, 0]))[1]))
+        _, distance = find_nearest(times, np.sort(table[:, 0]))
+        distances.append(f"{names.get(POSE, POSE)} by {np.median(distance):.3g} s")
         complete &= known
+    if not complete.any():
+        first = next(iter(stamps))
+        raise ValueError(
+            f"{path}: the times of its frames and poses must be within {tolerance:g} s of each "
+            f"other, but those of {names.get(first, first)} typically differ from "
+            f"{' and '.join(distances[1:])}. Correct the clocks, allow more (tolerance=), or leave "
+            "one out."
+        )
     return Instants(
         times[complete],
         None if poses is None else poses[complete],
         {name: index[complete] for name, index in frames.items()},
         int((~complete).sum()),
-        distances,
     )
 
 

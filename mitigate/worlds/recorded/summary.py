@@ -40,10 +40,7 @@ class Camera:
 
 
 def describe(
-    source: Source,
-    recording: Recording,
-    cameras: Mapping[str, Camera],
-    step: Step,
+    source: Source, recording: Recording, cameras: Mapping[str, Camera], step: Step
 ) -> list[str]:
     """Return a description with one line for the drive, one per camera and one for the pose.
 
@@ -60,8 +57,7 @@ def describe(
     elif seconds > 0:
         rate = (len(source.times) - 1) / seconds
         distance = f"{step.metres:g} m or {step.degrees:g} degrees"
-        if recording.poses is None:
-            distance = f"{step.seconds:g} s"
+        distance = f"{step.seconds:g} s" if recording.poses is None else distance
         drive += f", one per {distance}, from {seconds:.1f} s with {rate:.3g} frames per second"
     if source.dropped:
         drive += f"; {source.dropped} frames without a match in time were left out"
@@ -115,9 +111,8 @@ def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camer
     if border > MAX_BORDER:
         warnings.warn(
             f"{name}: {100 * border:.0f} % of each view is a border, because the camera covers "
-            "less than 90 x 90 degrees. The border acts as a corruption of the clean frames: "
-            "compare the agent with the driver before you trust the result. crop=true removes the "
-            "border, but then objects look larger than in training.",
+            "less than 90 x 90 degrees. The border acts as a corruption of the clean frames. "
+            "crop=true removes it, but then objects look larger than in training.",
             stacklevel=3,
         )
     if DEPTH in recording.frames:

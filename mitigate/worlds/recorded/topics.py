@@ -6,7 +6,7 @@ import re
 import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import takewhile
+from os.path import commonprefix
 from pathlib import Path
 
 from mitigate.core.names import escaped, unknown
@@ -20,6 +20,7 @@ POSES = (
     "geometry_msgs/msg/PoseStamped",
     "geometry_msgs/msg/PoseWithCovarianceStamped",
 )
+INFO_OPTIONS = {"info": RGB, "depth_info": DEPTH}  # options of INFO topics, and their cameras
 OFF = "none"  # value of a topic option that disables the topic
 # matches topics whose name contains the word "depth", but not /depth_camera/image_raw
 _DEPTH_TOPIC = re.compile(r"(?:^|[/_])depth(?:$|/|_(?!camera))")
@@ -59,7 +60,7 @@ def choose_topics(
     counts: Mapping[str, int] | None = None,
     encodings: Mapping[str, str] | None = None,
 ) -> dict[str, str]:
-    """Choose the topics "rgb", "depth", "pose", "info rgb" and "info depth".
+    """Choose the topics of the sensors "rgb", "depth", "pose", "info" and "depth_info".
 
     Args:
         path: Path of the bag, for error messages.
@@ -78,12 +79,11 @@ def choose_topics(
             suitable, or the bag contains no images.
     """
     counts = counts or {}
-    images = [
-        name
-        for name, kind in available.items()
-        if kind in IMAGES and not _OTHER_IMAGES.search(name)
-    ]
-    rgb, depth = _sort_images(_drop_copies(images, counts), topics, encodings or {})
+    images = [n for n, kind in available.items() if kind in IMAGES and not _OTHER_IMAGES.search(n)]
+    # compressed copies of topics that have messages
+    copies = {raw + suffix for raw in images if counts.get(raw, 1) for suffix in COMPRESSED}
+    originals = [name for name in images if name not in copies]
+    rgb, depth = _sort_images(originals, topics, encodings or {})
     several = max((counts.get(name, 0) for name in images), default=0) > 1
     typed = [name for name, kind in available.items() if kind in POSES]
     others = [n for n in typed if _OTHER_POSES.search(n) or (several and counts.get(n) == 1)]
@@ -107,24 +107,20 @@ def choose_topics(
             f"of {' or '.join(IMAGES)}."
         )
     infos = [name for name, kind in available.items() if kind == INFO]
-    for kind, option, named in (
-        (RGB, "info", topics.info),
-        (DEPTH, "depth_info", topics.depth_info),
-    ):
-        candidates[option] = []
+    for option, kind in INFO_OPTIONS.items():
         if candidates[kind]:
             fitting = _infos_of(candidates[kind][0], infos)
+            named = vars(topics)[option]
             candidates[option] = _candidates(path, option, named, fitting, available, (INFO,))
-    _check_single(path, candidates)
-    candidates["info rgb"] = candidates.pop("info")
-    candidates["info depth"] = candidates.pop("depth_info")
+    open_choices = {option: names for option, names in candidates.items() if len(names) > 1}
+    if open_choices:
+        listed = "; ".join(f"{option}: {', '.join(n)}" for option, n in open_choices.items())
+        choice = " ".join(f"topics.{option}={n[0]}" for option, n in open_choices.items())
+        raise ValueError(
+            f"{path} has several topics for {listed}. Choose one for each, for example with "
+            f"{choice} (or {OFF} to leave out this sensor)."
+        )
     return {name: names[0] for name, names in candidates.items() if names}
-
-
-def _drop_copies(images: Sequence[str], counts: Mapping[str, int]) -> list[str]:
-    """Return the image topics, but leave out compressed copies of topics that have messages."""
-    copies = {raw + suffix for raw in images if counts.get(raw, 1) for suffix in COMPRESSED}
-    return [name for name in images if name not in copies]
 
 
 def _sort_images(
@@ -172,18 +168,6 @@ def _candidates(
     return [named]
 
 
-def _check_single(path: Path, candidates: Mapping[str, Sequence[str]]) -> None:
-    """Raise ValueError if several topics are suitable for an option."""
-    open_choices = {option: names for option, names in candidates.items() if len(names) > 1}
-    if open_choices:
-        listed = "; ".join(f"{option}: {', '.join(n)}" for option, n in open_choices.items())
-        choice = " ".join(f"topics.{option}={n[0]}" for option, n in open_choices.items())
-        raise ValueError(
-            f"{path} has several topics for {listed}. Choose one for each, for example with "
-            f"{choice} (or {OFF} to leave out this sensor)."
-        )
-
-
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
     """Return the CameraInfo topics of an image topic.
 
@@ -196,13 +180,10 @@ def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
         if f"{namespace}/camera_info" in infos:
             return [f"{namespace}/camera_info"]
     camera = "/" + topic.strip("/").partition("/")[0] + "/"
-    shared = {info: _shared_words(topic, info) for info in infos if info.startswith(camera)}
+    words = re.split("[/_]", topic)
+    shared = {
+        info: len(commonprefix([words, re.split("[/_]", info)]))
+        for info in infos
+        if info.startswith(camera)
+    }
     return [info for info, count in shared.items() if count == max(shared.values())]
-
-
-def _shared_words(topic: str, other: str) -> int:
-    """Return how many words at the start of two topic names are equal. Words are separated by / and
-    _.
-    """
-    pairs = zip(re.split("[/_]", topic), re.split("[/_]", other), strict=False)
-    return len([*takewhile(lambda pair: pair[0] == pair[1], pairs)])

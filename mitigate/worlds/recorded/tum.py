@@ -59,16 +59,13 @@ def read_tum(path: Path, options: Options) -> list[Frames]:
     stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
     has_poses = (path / TRAJECTORY).is_file()
     table = _read_trajectory(path / TRAJECTORY) if has_poses else None
-    instants = match_times(stamps, table, options.frame_gap)
-    if not len(instants.times):
-        raise ValueError(f"{path}: {instants.mismatch(options.frame_gap)}")
+    instants = match_times(path, stamps, table, options.frame_gap, {})
     drive = Frames(
         name=path.name,
         instruction=read_instruction(path / INSTRUCTION),
         cameras={kind: assumed_lens(kind, options.hfov, TUM_HFOV) for kind in listed},
         times=instants.times,
         poses=instants.poses,
-        stepped=False,
         dropped=instants.dropped,
         files={kind: [listed[kind][i][1] for i in rows] for kind, rows in instants.frames.items()},
         unit=TUM_UNIT if options.unit is None else options.unit,

@@ -63,8 +63,8 @@ def bounded(path: Path) -> Iterator[None]:
     size = sum(file.stat().st_size for file in files)
     _check(files, size)
     _install()
-    _budgets.append(Budget(size))
-    budget = _budgets[-1]
+    budget = Budget(size)
+    _budgets.append(budget)
     try:
         yield
     finally:
@@ -105,10 +105,7 @@ def check_tables(file: Path) -> None:
         raise ValueError(f"its database cannot be read ({error})") from error
     virtual = any("virtual" in str(sql).lower().split()[:2] for _, _, sql in schema)
     if not kinds <= {"table", "index"} or computed or virtual:
-        raise ValueError(
-            "its database has views, triggers or computed columns, which no recorder writes. Do "
-            "not use it"
-        )
+        raise ValueError("its database has views, triggers or computed columns. Do not use it")
 
 
 def _count(unpacked: bytes) -> bytes:
@@ -170,8 +167,7 @@ def _zstd() -> Any:
     """Return the module ``zstd`` that ``rosbags`` imports."""
     from rosbags.rosbag2 import storage_mcap
 
-    module = storage_mcap.zstd
-    return module
+    return storage_mcap.zstd
 
 
 def _install() -> None:

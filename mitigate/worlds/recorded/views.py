@@ -52,9 +52,7 @@ def _edges(
     image.
     """
     fx, fy, cx, cy = lens.intrinsics(height, width)
-    half_x = fx * tangent
-    half_y = fy * tangent
-    return cx - half_x, cx + half_x, cy - half_y, cy + half_y
+    return cx - fx * tangent, cx + fx * tangent, cy - fy * tangent, cy + fy * tangent
 
 
 def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) -> np.ndarray:
@@ -110,6 +108,5 @@ def _resize(frame: np.ndarray, width: int, height: int, is_depth: bool) -> np.nd
     """Resize a frame. Depth uses nearest-neighbour resampling, so missing depth stays missing."""
     shrinks = width < frame.shape[1] or height < frame.shape[0]
     smooth = cv2.INTER_AREA if shrinks else cv2.INTER_LINEAR
-    return cv2.resize(
-        frame, (width, height), interpolation=cv2.INTER_NEAREST_EXACT if is_depth else smooth
-    )
+    method = cv2.INTER_NEAREST_EXACT if is_depth else smooth
+    return cv2.resize(frame, (width, height), interpolation=method)

@@ -103,7 +103,7 @@ def test_env_gives_no_reward_far_from_the_goal(episodes):
 def test_env_truncates_at_the_step_limit(episodes):
     env = ApartmentsEnv(episodes[:1], size=SIZE)
     data = env.reset()
-    env.simulator.steps = MAX_STEPS - 1
+    env.world.simulator.steps = MAX_STEPS - 1
     ended = env.step(data.set("action", torch.tensor(2)))["next"]
     assert ended["truncated"] and ended["done"] and not ended["terminated"]
 
@@ -136,9 +136,8 @@ def test_transform_equals_the_suite(episodes):
     env = TransformedEnv(ApartmentsEnv(episodes, size=SIZE), CorruptObservation(HURT, seed=5))
     for _ in range(4):
         data = env.reset()
-        frames = {
-            k: v for k, v in env.base_env.simulator.observe().items() if k in (RGB, DEPTH, POSE)
-        }
+        seen = env.base_env.world.simulator.observe()
+        frames = {name: seen[name] for name in (RGB, DEPTH, POSE)}
         corruption, key = HURT.draw(5, data["episode"], 0)
         assert key == Key(5, data["episode"], 0)
         expected = corrupt_observation(frames, corruption, key)

@@ -17,7 +17,7 @@ from mitigate.worlds.apartments.tasks import (
     LONGEST,
     SHORTEST,
     TASKS,
-    draw_training_episode,
+    DrawnEpisodes,
     fixed_episodes,
     load_episodes,
 )
@@ -96,7 +96,7 @@ def test_shipped_list_equals_generated_episodes(split, task):
 
 def test_training_episode_depends_only_on_the_generator():
     def draw(seed):
-        return draw_training_episode(np.random.default_rng(seed), 3, 0.2)
+        return DrawnEpisodes(3, 0.2).draw(np.random.default_rng(seed))
 
     assert draw(1) == draw(1) and len({draw(seed).instruction.text for seed in range(5)}) > 3
     assert all(draw(seed).scene_id.startswith("apartments/train/") for seed in range(5))

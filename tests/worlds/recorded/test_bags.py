@@ -243,8 +243,8 @@ def test_bag_recognises_depth_by_its_encoding(tmp_path):
         RGB: "/front/rgb",
         DEPTH: "/front/stereo",
         POSE: "/odom",
-        "info rgb": "/front/rgb_info",
-        "info depth": "/front/stereo_info",
+        "info": "/front/rgb_info",
+        "depth_info": "/front/stereo_info",
     }
 
 

@@ -124,15 +124,15 @@ def test_bag_rejects_hfov_next_to_camera_info(tmp_path):
     bag = write_bag(tmp_path / "robot", steps(path_poses()), "mcap")
     with pytest.raises(ValueError, match=r"contains the field of view of its cameras. Remove hfov"):
         open_recording(bag, hfov=60.0)
-    (drive,) = open_recording(bag, hfov=60.0, topics=Topics(info="none"))
+    (drive,) = open_recording(bag, hfov=60.0, topics={"info": "none"})
     assert drive.cameras[RGB].hfov == 60.0 and drive.cameras[DEPTH].focal is not None
 
 
 def test_bag_suggests_topics_for_a_wrong_name(tmp_path):
     bag = write_bag(tmp_path / "robot", steps(path_poses()), "bag")
     with pytest.raises(ValueError, match="/camera/color/image_raw"):
-        open_recording(bag, topics=Topics(rgb="/camera/colour/image_raw"))
-    (source,) = open_recording(bag, topics=Topics(rgb="/camera/color/image_raw"))
+        open_recording(bag, topics={"rgb": "/camera/colour/image_raw"})
+    (source,) = open_recording(bag, topics={"rgb": "/camera/color/image_raw"})
     assert set(source.cameras) == {RGB, DEPTH}
 
 
@@ -431,7 +431,7 @@ def test_choose_topics_of_a_camera_called_depth_camera():
     recording = choose_topics(Path("a.bag"), there, Topics())
     assert recording[RGB] == "/depth_camera/image_raw"
     assert recording[DEPTH] == "/depth_camera/depth/image_raw"
-    assert recording["info depth"] == recording["info rgb"] == "/depth_camera/camera_info"
+    assert recording["depth_info"] == recording["info"] == "/depth_camera/camera_info"
     assert DEPTH not in choose_topics(Path("a.bag"), there, Topics(depth="none"))
     with pytest.raises(ValueError, match="must be a topic of sensor_msgs"):
         choose_topics(Path("a.bag"), there, Topics(rgb="/odom"))
@@ -442,7 +442,7 @@ def test_open_recording_rejects_options_without_effect(folder, tmp_path):
     with pytest.raises(ValueError, match="cameras= applies only .* Choose topics.rgb= and"):
         open_recording(bag, cameras=["rgb"])
     with pytest.raises(ValueError, match="topics= applies only to a bag"):
-        open_recording(folder, topics=Topics(rgb="/a"))
+        open_recording(folder, topics={"rgb": "/a"})
     with pytest.raises(ValueError, match="step by step"):
         load(open_recording(folder)[0], views=1, size=SIZE, step=Step(metres=0.5))
 
