@@ -11,9 +11,10 @@ This module needs no torch.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, replace
+from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core.observation import DEPTH, RGB, Observation
@@ -139,13 +140,12 @@ class Guard:
             )
         return f"{kind}-{hash_of(content.parts, {})}"
 
-    def check_shown(self, sensors: Iterable[str], where: str) -> None:
+    def check_shown(self, sensors: Collection[str], where: str) -> None:
         """Raise ValueError if ``sensors`` has none of the ``frames`` that this guard changes."""
-        available = [*sensors]
-        if overrides(self, "observe") and not set(self.frames) & {*available}:
+        if overrides(self, "observe") and not set(self.frames) & {*sensors}:
             raise ValueError(
                 f"The guard {self.label or type(self).__name__} is for {', '.join(self.frames)}, "
-                f"but {where} shows {', '.join(available) or 'no frames'}: omit restore=."
+                f"but {where} shows {', '.join(sensors) or 'no frames'}: omit restore=."
             )
 
 
@@ -180,9 +180,7 @@ class Guards(Guard):
         return bool(self._overriding("attach"))
 
     def begin(self, episode: EpisodeStart) -> str:
-        for guard in self.guards:
-            episode = replace(episode, instruction=guard.begin(episode))
-        return episode.instruction
+        return self.begin_all([episode])[0]
 
     def begin_all(self, episodes: Sequence[EpisodeStart]) -> list[str]:
         for guard in self.guards:
@@ -250,14 +248,11 @@ class Guards(Guard):
         The prefix of a restorer's fingerprint is removed. If no guard changes frames, return None.
         """
         fingerprints = [guard.fingerprint() for guard in self._overriding("observe")]
-        return (
-            "+".join(part.removeprefix(RESTORER) for part in fingerprints) if fingerprints else None
-        )
+        return "+".join(part.removeprefix(RESTORER) for part in fingerprints) or None
 
-    def check_shown(self, sensors: Iterable[str], where: str) -> None:
-        available = [*sensors]
+    def check_shown(self, sensors: Collection[str], where: str) -> None:
         for guard in self.guards:
-            guard.check_shown(available, where)
+            guard.check_shown(sensors, where)
 
 
 def _with(episodes: Sequence[EpisodeStart], instructions: Sequence[str]) -> list[EpisodeStart]:
@@ -285,13 +280,13 @@ class Guarded(WorldWrapper):
         return super().reset(episode)
 
     def _observe(self, met: Observation) -> Observation:
+        @cache
         def observed() -> dict[str, Any]:
             guarded_frames = self.started.observe(dict(met))
             return {name: guarded_frames[name] for name in met.frames}
 
         if self.guards.remembers:
-            frames = observed()
-            return Observation(met.ready, lambda: frames, met.frames, clean=met.clean)
+            observed()
         return Observation(met.ready, observed, met.frames, clean=met.clean)
 
 

@@ -5,7 +5,7 @@ Only the modules of the chosen guards are imported.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -70,7 +70,7 @@ class AnsweredText(Guard):
 def open_guards(
     safeguard: str | None,
     restore: str | None,
-    sensors: Iterable[str] = SENSORS,
+    sensors: Collection[str] = SENSORS,
     log: str | Path | None = None,
     adapt: str | Guard | None = None,
 ) -> Guards:
@@ -90,13 +90,12 @@ def open_guards(
         from mitigate.guards.text.choices import label
         from mitigate.guards.text.guard import open_safeguard
 
-        opened = open_safeguard(str(safeguard), log=log)
-        assert opened is not None, "only none has no safeguard"
-        guards.append(TextGuard(opened, label(str(safeguard))))
+        if opened := open_safeguard(str(safeguard), log=log):
+            guards.append(TextGuard(opened, label(str(safeguard))))
     return Guards([*guards, *([] if restorer is None else [restorer]), *open_adaptations(adapt)])
 
 
-def open_restorer(choice: str | None, sensors: Iterable[str] = SENSORS) -> Guard | None:
+def open_restorer(choice: str | None, sensors: Collection[str] = SENSORS) -> Guard | None:
     """Build the guard of ``restore=`` (``frames/choices.py``), or return None for None and "none".
 
     Raises:

@@ -203,10 +203,12 @@ def _origin(card: dict[str, Any]) -> str:
     known = card["license"] != UNKNOWN
     licence = f"licence {card['license']}" if known else "its licence is for its owner to name"
     computed = f", trained in {card['precision']}" if card.get("precision") else ""
+    changed = ", with uncommitted changes" if card.get("uncommitted") else ""
+    commit = f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
     return (
         f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
         f"corruption suite {card['suite']}{start}{taught}.\n{kind}. {_hashes(card)}, "
-        f"{licence}{_exported(card)}."
+        f"{licence}{commit}."
     )
 
 
@@ -219,12 +221,6 @@ def _hashes(card: dict[str, Any]) -> str:
     rounded = f" (`{before}` before rounding)" if before != exported else ""
     names = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
     return f"Weights `{exported}`{rounded}" + (f", in rows the agent {names}" if names else "")
-
-
-def _exported(card: dict[str, Any]) -> str:
-    """Return a text with the commit of the export, or "" if it is unknown."""
-    changed = ", with uncommitted changes" if card.get("uncommitted") else ""
-    return f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
 
 
 def _span(severity: float | list[float]) -> str:
@@ -257,27 +253,28 @@ def _use(card: dict[str, Any]) -> str:
     # file names in older and in current folders
     listed = "card.json" if "files" in card else "manifest.json"
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
-    if not card.get("program", True):
-        built_in = loading.is_ours(card.get("class", ""))
-        built = "Build the agent with the settings in `config.yaml`; it is filled in place. "
+    whole = card.get("program", True)
+    own = not whole and not loading.is_ours(card.get("class", ""))
+    start = (
+        f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
+        f"{', agent=Mine(...)' if own else ''})\n```\n\n"
+        f"{'Build the agent with the settings in `config.yaml`; it is filled in place. ' * own}"
+        f"Files are compared with the sha256 in `{listed}` first. "
+    )
+    if not whole:
         return (
-            f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
-            f"{'' if built_in else ', agent=Mine(...)'})\n```\n\n{'' if built_in else built}Files "
-            "are "
-            f"compared with the sha256 in `{listed}` first. A fresh process reloaded the folder "
-            f"and walked {card['checked']['walks']} episodes to the same measures."
+            f"{start}A fresh process reloaded the folder and walked {card['checked']['walks']} "
+            "episodes to the same measures."
         )
     times, checked = card["latency_ms"], card["checked"]
-    networks = list(times["eager"])
     rows = [
         [f"`{name}`, {kind}", *(f"{times[kind][name][which]:g}" for which in ("wall", "cpu"))]
-        for name in networks
+        for name in times["eager"]
         for kind in ("eager", "exported")
     ]
     table = markdown_table(["network", "fastest", "processor"], rows)
     return (
-        f"## Use\n\n```python\nimport mitigate\n\nagent = {load})\n```\n\n"
-        f"Files are compared with the sha256 in `{listed}` first. `program.pt2` runs a decision "
+        f"{start}`program.pt2` runs a decision "
         "without this code; `program.json` describes its inputs. Where `program.pt2` is missing, "
         "`mitigate export FOLDER --programs` writes it. Reloaded in a fresh process, "
         f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "
@@ -353,8 +350,7 @@ def front_matter(card: dict[str, Any]) -> str:
         "pipeline_tag": TASK,
         "tags": list(dict.fromkeys([*TAGS, kind, _tag(card["recipe"])])),
     }
-    results = [_result(entry) for entry in card["metrics"]]
-    if results:
+    if results := [_result(entry) for entry in card["metrics"]]:
         fields["model-index"] = [{"name": card["name"], "results": results}]
     text = yaml.safe_dump(fields, sort_keys=False, allow_unicode=True)
     return f"---\n{text}---\n"

@@ -244,15 +244,14 @@ def check_outputs(folder: str, expected: str) -> None:
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
-    size = _input_size(Path(folder))
+    inputs = programs.probe(agent, _input_size(Path(folder)))
     program = programs.load_programs(Path(folder) / loading.PROGRAM)
-    for what, networks, limit in (
-        ("agent", programs.networks(agent), RELOADED),
-        ("program", program, EXPORTED),
-    ):
-        gap = programs.difference(
-            expected_outputs, programs.outputs(networks, programs.probe(agent, size))
-        )
+    loaded: dict[str, tuple[dict[str, Any], float]] = {
+        "agent": (programs.networks(agent), RELOADED),
+        "program": (program, EXPORTED),
+    }
+    for what, (networks, limit) in loaded.items():
+        gap = programs.difference(expected_outputs, programs.outputs(networks, inputs))
         if not gap <= limit:
             raise ValueError(
                 f"The reloaded {what} differs by {gap:g}; at most {limit:g} is allowed."
@@ -287,8 +286,7 @@ def _write(
         checkpoint.load_weights(shipped, draft)
     weights = {checkpoint.weights_sha(a) for a in (agent, shipped)}
     result_rows_of_agent = _rows(run, rows, weights)
-    checks: dict[str, Any] = {"program": False, "latency_ms": {}}
-    checks["checked"] = {"walks": WALKS}
+    checks: dict[str, Any] = {"program": False, "latency_ms": {}, "checked": {"walks": WALKS}}
     expected: dict[str, Tensor] = {}
     if walks is None:
         checks, expected = _programs(draft, agent, shipped, onnx)
@@ -336,9 +334,8 @@ def _programs(
     rounded = programs.difference(before, after)
     if not rounded <= ROUNDED:
         raise ValueError(
-            f"Rounding the weights to float16 changes an output on the probe inputs by "
-            f"{rounded:g}; at most {ROUNDED:g} is allowed. Check that the run was trained to the "
-            "end. Nothing was written."
+            f"Rounding the weights to float16 changes an output by {rounded:g}; at most "
+            f"{ROUNDED:g} is allowed. Was the run trained to the end? Nothing was written."
         )
     if onnx:
         programs.save_onnx(shipped, size, draft, EXPORTED)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import copy
 import re
-from collections.abc import Callable, Collection, Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from inspect import signature
@@ -162,24 +162,20 @@ def harden(
         ValueError: An argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
-    choices: dict[str, tuple[str, Collection[str]]] = {
-        "method": (method, METHODS),
-        "tune": (tune, TUNE),
-        "schedule": (schedule, SCHEDULES),
-    }
-    for argument, (value, allowed) in choices.items():
+    for argument, value, allowed in (
+        ("method", method, tuple(METHODS)),
+        ("tune", tune, tuple(TUNE)),
+        ("schedule", schedule, SCHEDULES),
+    ):
         if value not in allowed:
             raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
-    if type(steps) is not int or steps < 1:
-        raise ValueError(f"steps must be a whole number >= 1, got {steps!r:.80}.")
-    if type(validation) is not int or validation < 0:
-        raise ValueError(f"validation must be a whole number >= 0, got {validation!r:.80}.")
+    for argument, number, least in (("steps", steps, 1), ("validation", validation, 0)):
+        if type(number) is not int or number < least:
+            raise ValueError(f"{argument} must be a whole number >= {least}, got {number!r:.80}.")
     parameters = signature(METHODS[method]).parameters
     known = [name for name in parameters if name not in OWN]
-    unknown_names = sorted(set(settings) - set(known))
-    if unknown_names:
-        what = f"argument of harden(method={method!r})"
-        raise ValueError(unknown(what, unknown_names[0], known))
+    if others := sorted(set(settings) - set(known)):
+        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], known))
     first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
@@ -194,7 +190,7 @@ def harden(
         _insert_adapters(after, first, compared[0], targets, seed)
     start = {name: value.clone() for name, value in after.network.state_dict().items()}
     episodes = _Training(training, compared)
-    available: dict[str, Any] = {
+    available = {
         "agent": after,
         "world": world,
         "training": episodes,
@@ -203,8 +199,8 @@ def harden(
         "steps": steps,
         "seed": seed,
     }
-    shared_arguments = {name: value for name, value in available.items() if name in parameters}
-    objective = METHODS[method](**shared_arguments, **settings)
+    own: dict[str, Any] = {name: available[name] for name in OWN if name in parameters}
+    objective = METHODS[method](**own, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
         "losses": 2,  # version of the losses; version 1 had no imitation loss
@@ -234,7 +230,13 @@ def harden(
     with FolderLock(folder):
         _check_folder(trainer, folder)
         provenance.keep(folder, first, made_by, SPLIT, compared)
-        _print_estimate(before, world, compared, conditions, steps, folder)
+        each = seconds_per_episode(before, world(), compared)
+        count = len(compared) * len(conditions)
+        say(
+            f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}),"
+            f" {counted(steps, 'step')} of training, {counted(count, 'episode')} with the hardened "
+            f"policy; in {folder}"
+        )
         measure = partial(
             evaluate, world=world, episodes=compared, out=folder / ROWS, split=SPLIT, seed=seed
         )
@@ -283,8 +285,7 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
     newest = states.load_newest(trainer.folder)
     if newest is None:
         return
-    changed = states.differences(states.as_json(newest[1]["config"]), trainer.config)
-    if changed:
+    if changed := states.differences(states.as_json(newest[1]["config"]), trainer.config):
         raise ValueError(
             f"{folder} holds the run of another policy or of other arguments "
             f"({'; '.join(changed[:6])}). Use the old arguments to continue it, or choose another "
@@ -348,8 +349,7 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
             f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. "
             "Name another suite, or a list of corruptions."
         )
-    left = [name for name in kinds if name not in names]
-    if left:
+    if left := [name for name in kinds if name not in names]:
         say(f"{policy.name} reads only {' and '.join(sensors)}: left out {', '.join(left)}")
     return names
 
@@ -379,27 +379,6 @@ def _insert_adapters(
         parameter.requires_grad_(True)
     share = trainable_share(policy.network)
     say(f"adapters behind {', '.join(adapted)}: {share:.1%} of the policy's weights")
-
-
-def _print_estimate(
-    policy: Policy,
-    world: Callable[[], World],
-    episodes: Sequence[Episode],
-    conditions: Sequence[Corruption],
-    steps: int,
-    folder: Path,
-) -> None:
-    """Print the amount of work and the estimated time of the comparison.
-
-    The estimate is based on one episode.
-    """
-    each = seconds_per_episode(policy, world(), episodes)
-    count = len(episodes) * len(conditions)
-    say(
-        f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}), "
-        f"{counted(steps, 'step')} of training, {counted(count, 'episode')} with the hardened "
-        f"policy; in {folder}"
-    )
 
 
 def _like(policy: Any, hardened: Policy) -> Any:

@@ -12,7 +12,8 @@ from __future__ import annotations
 import io
 import statistics
 import time
-from collections.abc import Callable
+from collections import defaultdict
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any
 
@@ -47,11 +48,7 @@ INPUTS = {  # maps the name of each input to its dtype, shape and meaning
         "panorama": ("int64", "[B]", "the current panorama, row of views"),
         "nodes": ("int64", "[B, N]", "panorama of each visited node, -1: padding"),
         "sightings": ("int64", "[B, G, 4]", "views that faced a ghost, panorama * 12 + k, or -1"),
-        "geometry": (
-            "float32",
-            "[B, 1 + N + G, 12]",
-            "place of [stop], nodes, ghosts; 0: padding",
-        ),
+        "geometry": ("float32", "[B, 1 + N + G, 12]", "place of [stop], nodes, ghosts; 0: padding"),
         "valid": ("bool", "[B, 1 + N + G]", "false: padding"),
         "allowed": ("bool", "[B, 1 + N + G]", "what may be chosen: [stop] and ghosts"),
     },
@@ -215,9 +212,8 @@ def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[s
     results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):
         inputs = {**probe_inputs, **results}
-        results |= zip(
-            OUTPUTS[name], programs[name](*(inputs[k] for k in INPUTS[name])), strict=True
-        )
+        answers = programs[name](*(inputs[key] for key in INPUTS[name]))
+        results |= zip(OUTPUTS[name], answers, strict=True)
     return results
 
 
@@ -256,10 +252,8 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
         median processor time of all threads ("cpu"). Other programs affect the processor time less.
     """
     inputs_by_name = probe(agent, size)
-    single = {name: tensor[:1] for name, tensor in inputs_by_name.items()} | {
-        "views": inputs_by_name["views"]
-    }
-    times: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
+    times = defaultdict(list)
     for _ in range(3 + TIMED):  # the first three calls are a warm-up and are not counted
         for kind, programs in kinds.items():
             for name in (PERCEIVE, DECIDE):
@@ -267,7 +261,7 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
                 wall, cpu = time.perf_counter(), time.process_time()
                 programs[name](*inputs)
                 spent = (time.perf_counter() - wall, time.process_time() - cpu)
-                times.setdefault((kind, name), []).append(spent)
+                times[kind, name].append(spent)
     report: dict[str, Any] = {"threads": torch.get_num_threads(), "calls": TIMED}
     for (kind, name), seconds in times.items():
         walls, cpus = zip(*seconds[3:], strict=True)
@@ -345,8 +339,8 @@ def _free(shape: str) -> dict[int, Any]:
 # ONNX ---------------------------------------------------------------------------------------------
 
 
-def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> list[Path]:
-    """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder`` and return their paths.
+def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> None:
+    """Write ``perceive.onnx`` and ``decide.onnx`` to ``folder``.
 
     The weights are float32. The dynamic dimensions are the same as in ``export_programs``. Raises
     ValueError if the extra ``onnx`` is not installed, or if :func:`check_onnx` fails.
@@ -360,23 +354,19 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
             f"ONNX files need the extra onnx ({error}): pip install -e '.[onnx]'."
         ) from error
     inputs = probe(agent, size)
-    files = []
     for name, network in networks(agent).items():
-        files.append(folder / f"{name}.onnx")
-        keys = tuple(INPUTS[name])
         torch.onnx.export(
             network.eval(),
-            tuple(inputs[key] for key in keys),
-            files[-1],
+            tuple(inputs[key] for key in INPUTS[name]),
+            folder / f"{name}.onnx",
             dynamo=True,
             dynamic_shapes=free_dimensions(name),
-            input_names=list(keys),
+            input_names=list(INPUTS[name]),
             output_names=list(OUTPUTS[name]),
             external_data=False,
             verbose=False,
         )
     check_onnx(folder, agent, size, most)
-    return files
 
 
 def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
@@ -385,19 +375,11 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
     The probe inputs are used twice: with both decisions and with only the first one. Differences up
     to ``most`` are allowed.
     """
-    import onnxruntime
-
     eager, probe_inputs = networks(agent), probe(agent, size)
-    sessions = {
-        name: _Session(
-            onnxruntime.InferenceSession(str(folder / f"{name}.onnx")),
-            tuple(INPUTS[name]),
-        )
-        for name in eager
-    }
-    first = {name: tensor[:1] for name, tensor in probe_inputs.items()}
+    sessions = {name: _session(folder / f"{name}.onnx", INPUTS[name]) for name in eager}
     shared = ("rgb", "depth", "views")
-    for inputs in (probe_inputs, {**first, **{name: probe_inputs[name] for name in shared}}):
+    first = {name: t if name in shared else t[:1] for name, t in probe_inputs.items()}
+    for inputs in (probe_inputs, first):
         gap = difference(outputs(eager, inputs), outputs(sessions, inputs))
         if not gap <= most:
             raise ValueError(
@@ -405,12 +387,14 @@ def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) ->
             )
 
 
-class _Session:
-    """Wrapper that makes an onnxruntime session callable like the original network."""
+def _session(file: Path, keys: Iterable[str]) -> Callable[..., tuple[Tensor, ...]]:
+    """Return a function that runs the ONNX network in ``file`` like the original network."""
+    import onnxruntime
 
-    def __init__(self, session: Any, keys: tuple[str, ...]) -> None:
-        self._session, self._keys = session, keys
+    session = onnxruntime.InferenceSession(str(file))
 
-    def __call__(self, *inputs: Tensor) -> tuple[Tensor, ...]:
-        feed = {key: tensor.numpy() for key, tensor in zip(self._keys, inputs, strict=True)}
-        return tuple(torch.from_numpy(array) for array in self._session.run(None, feed))
+    def run(*inputs: Tensor) -> tuple[Tensor, ...]:
+        feed = {key: tensor.numpy() for key, tensor in zip(keys, inputs, strict=True)}
+        return tuple(map(torch.from_numpy, session.run(None, feed)))
+
+    return run

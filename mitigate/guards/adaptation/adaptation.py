@@ -91,8 +91,3 @@ def modules_of(agent: Any) -> list[nn.Module]:
     """Return all modules of an agent's networks, in order and without repeats."""
     roots = [agent] if isinstance(agent, nn.Module) else networks(agent).values()
     return [*dict.fromkeys(module for root in roots for module in root.modules())]
-
-
-def channel_means(features: Tensor, axis: int) -> Tensor:
-    """Return the mean of each channel, computed over all axes except ``axis``."""
-    return features.float().movedim(axis, 0).flatten(1).mean(1)

@@ -8,7 +8,7 @@ a layer, this guard moves its two statistics towards the statistics of the curre
 from __future__ import annotations
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import torch
@@ -53,12 +53,10 @@ class Norm(Adaptation):
 
     @contextmanager
     def adapting(self, agent: Any) -> Iterator[None]:
-        handles = [layer.register_forward_pre_hook(self._update) for layer in _layers(agent)]
-        try:
+        with ExitStack() as hooks:
+            for layer in _layers(agent):
+                hooks.enter_context(layer.register_forward_pre_hook(self._update))
             yield
-        finally:
-            for handle in handles:
-                handle.remove()
 
     def _update(self, layer: Any, inputs: tuple[Tensor, ...]) -> None:
         # another guard repeats the decision to compute gradients, so do not count its input twice

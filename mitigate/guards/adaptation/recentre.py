@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from typing import Any
 
 import torch
@@ -21,7 +21,7 @@ from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.policies.policy import Policy, last_convolution
 from mitigate.core.contracts import missing_members
 from mitigate.core.precision import computing
-from mitigate.guards.adaptation.adaptation import Adaptation, channel_means
+from mitigate.guards.adaptation.adaptation import Adaptation
 from mitigate.guards.adaptation.choices import EPISODE
 from mitigate.worlds.episodes import Episode
 
@@ -97,25 +97,21 @@ class Recentre(Adaptation):
 
             return hook
 
-        threads = torch.get_num_threads()
-        # one thread, as in evaluations, makes rounding errors of sums reproducible
-        torch.set_num_threads(1)
-        handles = [module.register_forward_hook(record(i)) for i, module in enumerate(modules)]
         device = next(modules[0].parameters(), torch.empty(0)).device
-        try:
-            with computing("fp32", device), in_eval_mode(agent):
-                for number in range(EPISODES):
-                    chosen = episode(number)
-                    observation = world.reset(chosen)
-                    agent.reset(chosen.instruction.text)
-                    steps = 0
-                    while not world.done and steps < STEPS:
-                        observation = world.step(agent.act(observation))
-                        steps += 1
-        finally:
-            torch.set_num_threads(threads)
-            for handle in handles:
-                handle.remove()
+        with ExitStack() as stack, computing("fp32", device), in_eval_mode(agent):
+            # one thread, as in evaluations, makes rounding errors of sums reproducible
+            stack.callback(torch.set_num_threads, torch.get_num_threads())
+            torch.set_num_threads(1)
+            for i, module in enumerate(modules):
+                stack.enter_context(module.register_forward_hook(record(i)))
+            for number in range(EPISODES):
+                chosen = episode(number)
+                observation = world.reset(chosen)
+                agent.reset(chosen.instruction.text)
+                steps = 0
+                while not world.done and steps < STEPS:
+                    observation = world.step(agent.act(observation))
+                    steps += 1
         if not all(counts):
             raise ValueError(
                 f"{type(agent).__name__} did not call all modules that Recentre shifts. Name other "
@@ -130,13 +126,10 @@ class Recentre(Adaptation):
 
     @contextmanager
     def adapting(self, agent: Any) -> Iterator[None]:
-        modules = _modules(agent, self.modules)
-        handles = [module.register_forward_hook(self._shift(i)) for i, module in enumerate(modules)]
-        try:
+        with ExitStack() as hooks:
+            for i, module in enumerate(_modules(agent, self.modules)):
+                hooks.enter_context(module.register_forward_hook(self._shift(i)))
             yield
-        finally:
-            for handle in handles:
-                handle.remove()
 
     def _shift(self, place: int) -> Callable:
         def hook(module: nn.Module, inputs: Any, output: Any) -> Any:
@@ -189,5 +182,6 @@ def _axis(features: Tensor) -> int:
 
 
 def _means(output: Any) -> Tensor:
+    """Return the mean of each channel, computed over all other axes."""
     features = output[0] if isinstance(output, (tuple, list)) else output
-    return channel_means(features.detach(), _axis(features))
+    return features.detach().float().movedim(_axis(features), 0).flatten(1).mean(1)

@@ -47,21 +47,38 @@ class FramesCallable(Guard):
     Args:
         choice: ``module:callable`` or ``module:callable@VERSION``. A pickled guard contains only
             this text, so each process imports the module again.
+        named: the parts of ``choice``.
         call: the callable. The callable may have an attribute ``frames``, which names its sensors
             (by default both), and an attribute ``version``.
         module: the module of the callable. The module's source file is part of the fingerprint.
     """
 
-    def __init__(self, choice: str, call: Callable[[dict], Mapping], module: ModuleType) -> None:
-        named = _parts(choice)
+    def __init__(
+        self,
+        choice: str,
+        named: CallableChoice,
+        call: Callable[[dict], Mapping],
+        module: ModuleType,
+    ) -> None:
         self.choice = choice
         self.label = label(choice)
         self.call = call
         # Both attributes of the callable are optional.
         version = named.version or getattr(call, "version", None)
         self.version = None if version is None else str(version)
-        self.frames = _frames(getattr(call, "frames", SENSORS), choice)
-        identity = [f"{named.module}:{named.name}", _source(module, self.version), self.version]
+        frames = getattr(call, "frames", SENSORS)
+        self.frames = (frames,) if isinstance(frames, str) else tuple(frames)
+        if not self.frames or not set(self.frames) <= set(SENSORS):
+            raise ValueError(
+                f"restore={choice}: frames must name rgb, depth or both, got {frames!r:.80}."
+            )
+        source = _source_sha(module)
+        if not source and self.version is None:
+            raise ValueError(
+                f"{named.module} has no source file to tell its versions apart: write "
+                f"restore={named.module}:NAME@VERSION, and change VERSION with its behaviour."
+            )
+        identity = [f"{named.module}:{named.name}", source, self.version]
         digest = hashlib.sha256(json.dumps(identity).encode()).hexdigest()
         self._fingerprint = RESTORER + digest[:DIGITS]
 
@@ -117,15 +134,16 @@ def open_callable(choice: str) -> Guard:
     Raises:
         ValueError: The module or the callable does not exist, or the object cannot be called.
     """
-    named = _parts(choice)
+    named = callable_of(choice)
+    assert named is not None, f"{choice} is no module:callable"
     try:
         module = importlib.import_module(named.module)
     except ImportError as error:
         stem = named.module.removesuffix(".py")
         hint = "" if stem == named.module else f" Write {stem}:{named.name}."
         raise ValueError(
-            f"restore={choice}: {error}. It must be module:callable or the folder of a restorer. "
-            f"The module must be installed, in the current folder, or on PYTHONPATH.{hint}"
+            f"restore={choice}: {error}. It must be module:callable (installed, in the current "
+            f"folder, or on PYTHONPATH) or the folder of a restorer.{hint}"
         ) from error
     try:
         target = getattr(module, named.name)  # the user's option contains the attribute name
@@ -144,13 +162,7 @@ def open_callable(choice: str) -> Guard:
             f"restore={choice}: a {type(instance).__name__} cannot be called with frames. Name a "
             "function, an object that can be called, or a class of such objects."
         )
-    return FramesCallable(choice, instance, module)
-
-
-def _parts(choice: str) -> CallableChoice:
-    named = callable_of(choice)
-    assert named is not None, f"{choice} is no module:callable"
-    return named
+    return FramesCallable(choice, named, instance, module)
 
 
 def _form(frame: Any) -> str:
@@ -158,29 +170,6 @@ def _form(frame: Any) -> str:
     if isinstance(frame, np.ndarray):
         return f"{frame.dtype} {list(frame.shape)}"
     return f"a {type(frame).__name__}"
-
-
-def _frames(frames: Any, choice: str) -> tuple[str, ...]:
-    names = (frames,) if isinstance(frames, str) else tuple(frames)
-    if not names or not set(names) <= set(SENSORS):
-        raise ValueError(
-            f"restore={choice}: frames must name rgb, depth or both, got {frames!r:.80}."
-        )
-    return names
-
-
-def _source(module: ModuleType, version: str | None) -> str:
-    """Return the sha256 of a module's source file.
-
-    If there is no source file, return "" if ``version`` is given, and raise ValueError otherwise.
-    """
-    source = _source_sha(module)
-    if not source and version is None:
-        raise ValueError(
-            f"{module.__name__} has no source file to tell its versions apart: write "
-            f"restore={module.__name__}:NAME@VERSION, and change VERSION with its behaviour."
-        )
-    return source
 
 
 @cache

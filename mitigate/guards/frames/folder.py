@@ -73,18 +73,18 @@ def _wrong(content: Any) -> str:
         return "it must have settings and a hash"
     if set(settings) != {"sensors", "far", *LIMITS}:
         return f"settings must be sensors, far, {', '.join(LIMITS)}"
+    return problem(settings)
+
+
+def problem(settings: dict[str, Any]) -> str:
+    """Return a message about the first invalid setting of a restorer, or "" if there is none."""
     sensors, far = settings["sensors"], settings["far"]
     if sensors not in ([RGB], [DEPTH], [RGB, DEPTH], [DEPTH, RGB]):
-        return "sensors must be a list of rgb, depth or both"
+        return f"sensors={sensors!r:.60} must name rgb, depth or both"
     if type(far) not in (int, float) or not 0 < far <= FARTHEST:
-        return f"far must be metres above 0, {FARTHEST:g} at most"
-    return problem({name: settings[name] for name in LIMITS})
-
-
-def problem(sizes: dict[str, Any]) -> str:
-    """Return a message about the first size that is out of range, or "" if all are in range."""
+        return f"far={far!r:.40} must be metres above 0, {FARTHEST:g} at most"
     for name, (least, most) in LIMITS.items():
-        value = sizes[name]
+        value = settings[name]
         if type(value) is not int or not least <= value <= most:
             return f"{name}={value!r:.40} must be a whole number from {least} to {most}"
     return ""

@@ -97,15 +97,11 @@ class UNet(nn.Module):
         middle = self.middle(active(self.down1(fine)))
         coarse = self.coarse[0](active(self.down2(middle)))
         view_mean = coarse.mean((2, 3))
-        instant_mean = (
-            view_mean.unflatten(0, (-1, views)).mean(1, keepdim=True).expand(-1, views, -1)
-        )
-        context = self.context(torch.cat([view_mean, instant_mean.flatten(0, 1)], 1))
+        ring_mean = view_mean.unflatten(0, (-1, views)).mean(1).repeat_interleave(views, 0)
+        context = self.context(torch.cat([view_mean, ring_mean], 1))
         coarse = self.coarse[1](coarse + context[..., None, None])
         levels = (fine, middle, coarse)
-        stats = [
-            part for level in levels for part in (level.abs().mean((2, 3)), level.amax((2, 3)))
-        ]
+        stats = [part for x in levels for part in (x.abs().mean((2, 3)), x.amax((2, 3)))]
         return Encoded(*levels, torch.cat(stats, 1).float())
 
     def decode(self, maps: Encoded) -> Tensor:
@@ -160,15 +156,9 @@ def texture(x: Tensor, valid: Tensor) -> Tensor:
         for axis in (2, 3):
             step = level.diff(dim=axis).abs()
             bend = level.diff(n=2, dim=axis).abs()
-            statistics += [
-                step.mean((1, 2, 3)),
-                bend.mean((1, 2, 3)),
-                bend.square().mean((1, 2, 3)),
-            ]
+            statistics += [part.mean((1, 2, 3)) for part in (step, bend, bend.square())]
             flat = bend.flatten(1)
             statistics += [(flat < t).float().mean(1) for t in FLAT]
-    if x.shape[1] == 3:
-        statistics.append((x - grey).abs().mean((1, 2, 3)))
-    else:
-        statistics.append(torch.zeros_like(statistics[0]))
+    # the colours, which depth does not have
+    statistics.append((x - grey).abs().mean((1, 2, 3)) * (x.shape[1] == 3))
     return (torch.stack(statistics, 1) + 1e-4).log() / 3 + 1

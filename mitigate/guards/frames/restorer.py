@@ -15,7 +15,6 @@ from torch import nn
 from mitigate.core.checkpoint import weights_sha
 from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find
-from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
 from mitigate.corruptions.depth_sensor import DepthSensor
 from mitigate.corruptions.suite import depth_views, rgb_views
@@ -48,21 +47,15 @@ class Restorer(nn.Module, Guard):
         far: float = Z_MAX,
     ) -> None:
         super().__init__()
-        for sensor in sensors:
-            if sensor not in SENSORS:
-                raise ValueError(unknown("sensor", sensor, SENSORS))
-        if not sensors or len(set(sensors)) < len(sensors):
-            raise ValueError(f"agent.sensors={list(sensors)} must name rgb, depth or both.")
-        problem = folders.problem({"width": width, "depth_width": depth_width, "size": size})
-        if problem:
-            raise ValueError(f"agent.{problem}.")
-        self._settings = {
+        self._settings: dict[str, Any] = {
             "sensors": list(sensors),
             "width": width,
             "depth_width": depth_width,
             "size": size,
             "far": float(far),
         }
+        if problem := folders.problem(self._settings):
+            raise ValueError(f"agent.{problem}.")
         widths = {RGB: width, DEPTH: depth_width}
         self.nets = nn.ModuleDict({s: SensorRestorer(s, widths[s], size, far) for s in sensors})
 
@@ -73,7 +66,7 @@ class Restorer(nn.Module, Guard):
 
     def parts(self) -> dict[str, SensorRestorer]:
         """The networks by sensor."""
-        return {sensor: self._net(sensor) for sensor in self.nets}
+        return dict(self.nets.items())  # type: ignore[arg-type]
 
     def settings(self) -> dict[str, Any]:
         """Return the constructor arguments."""
@@ -108,7 +101,7 @@ class Restorer(nn.Module, Guard):
         """Return :attr:`hash` with the prefix that is used in rows."""
         return RESTORER + self.hash
 
-    def forward(self, observation: Mapping[str, Any]) -> dict[str, Any]:
+    def observe(self, observation: Mapping[str, Any]) -> dict[str, Any]:
         """Return ``observation`` with those frames restored that the gate classifies as corrupted.
 
         Other entries, and frames that are classified as clean, are returned as the same objects.
@@ -122,9 +115,7 @@ class Restorer(nn.Module, Guard):
                 restored[sensor] = self.restore(sensor, restored[sensor])
         return restored
 
-    def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Apply :meth:`forward` to an observation."""
-        return self.forward(observation)
+    forward = observe
 
     def restore(self, sensor: str, frame: np.ndarray) -> np.ndarray:
         """Return the restored frame as a new array of the same shape and dtype.

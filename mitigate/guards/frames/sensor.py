@@ -65,9 +65,8 @@ class SensorRestorer(nn.Module):
     def __init__(self, sensor: str, width: int, size: int, far: float = Z_MAX) -> None:
         super().__init__()
         self.sensor, self.size, self.far = sensor, size, far
-        channels = CHANNELS[sensor]
-        inputs = 3 * channels + 1 + (sensor == DEPTH)
-        self.net = UNet(inputs, 3 * channels, width)
+        channels = 3 * CHANNELS[sensor]
+        self.net = UNet(channels + 1 + (sensor == DEPTH), channels, width)
         self.gate = Gate(width)
         self.alone = nn.Parameter(torch.tensor(ALONE))
         self.register_buffer("threshold", torch.zeros(()))
@@ -113,7 +112,7 @@ class SensorRestorer(nn.Module):
         """
         x, valid = self.scaled(frames)
         maps, outside, _ = self.judge(*self.small(x, valid), views)
-        return self._composed(x, valid, self._corrections(maps, outside), views)
+        return self._composed(x, valid, maps, outside, views)
 
     def judge(self, x: Tensor, valid: Tensor, views: int) -> tuple[Encoded, Tensor, Tensor]:
         """Encode frames at the working size, and detect corruption.
@@ -142,15 +141,14 @@ class SensorRestorer(nn.Module):
         outside = (distance / MARGIN[self.sensor] - 1).clamp(min=0)
         return torch.cat([*inputs, (low - x) * 2, (high - x) * 2, has_other], 1), outside
 
-    def _corrections(self, maps: Encoded, outside: Tensor) -> Tensor:
-        """Return the log gain, bias and "lost" logit of each pixel, at the working size."""
-        gain_bias, lost = self.net.decode(maps).tensor_split([2 * CHANNELS[self.sensor]], 1)
-        return torch.cat([gain_bias, lost + self.alone * outside], 1)
-
-    def _composed(self, x: Tensor, valid: Tensor, maps: Tensor, views: int) -> Tensor:
-        """Restore frames [n, c, H, W] with the ``maps`` that :meth:`_corrections` returned."""
-        channels, full, small = x.shape[1], x.shape[-2:], maps.shape[-2:]
-        maps = maps if full == small else _resized(maps, full)
+    def _composed(
+        self, x: Tensor, valid: Tensor, encoded: Encoded, outside: Tensor, views: int
+    ) -> Tensor:
+        """Restore frames [n, c, H, W] with the results of :meth:`judge`."""
+        channels, full = x.shape[1], x.shape[-2:]
+        gain_bias, lost = self.net.decode(encoded).tensor_split([2 * channels], 1)
+        maps = torch.cat([gain_bias, lost + self.alone * outside], 1)
+        maps = maps if full == maps.shape[-2:] else _resized(maps, full)
         gain, bias, lost = maps.split(channels, 1)
         trust = (-SUREST * ((lost + LOST) / SUREST).tanh()).sigmoid() * valid
         y = (x * gain.clamp(*GAINS).exp() + bias).clamp(0, 1)
@@ -178,7 +176,7 @@ class SensorRestorer(nn.Module):
         maps, outside, gate = self.judge(*self.small(x, valid), len(frames))
         if not bool(gate > self.threshold):
             return False, frames
-        y = self._composed(x, valid, self._corrections(maps, outside), len(frames))
+        y = self._composed(x, valid, maps, outside, len(frames))
         if self.sensor == DEPTH and _share((y - x).abs() > MOVED, valid) > 0.5:
             return False, frames
         return True, self.unscaled(y)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import re
-import warnings
 from pathlib import Path
 
 from mitigate.core.addresses import check_choice, is_plain
@@ -20,8 +19,7 @@ CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
 CLASSIFIER, ADAPTER = SHIPPED, "checkpoints/safeguard"
 # file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
-# Names of safeguards in earlier versions. All these names now select the classifier.
-REPLACED = {"rules": "classifier", "tagger": "classifier", "reader": "classifier"}
+EARLIER = "rules"  # name of the classifier in earlier versions
 FOLDER = (
     "A safeguard's folder holds classifier.json and classifier.safetensors (`python -m "
     "mitigate.guards.text.fit --out FOLDER`), or card.json, adapter_config.json and "
@@ -33,25 +31,8 @@ ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 
 def current(choice: str) -> str:
-    """Replace an old name of a safeguard by its current name.
-
-    Warns about ``tagger`` and ``reader``, because these safeguards no longer exist.
-    """
-    first, plus, second = choice.partition("+")
-    if first not in REPLACED:
-        return choice
-    instead = second if plus else REPLACED[first]
-    _warn(first, choice, instead)
-    return current(instead)
-
-
-def _warn(name: str, choice: str, instead: str) -> None:
-    if name != "rules":
-        warnings.warn(
-            f"safeguard={choice}: the {name} was removed, since the classifier finds more attacks "
-            f"and changes less. safeguard={instead} is used; write that to avoid this warning.",
-            stacklevel=3,
-        )
+    """Return "classifier" for "rules", its name in earlier versions; return other names as is."""
+    return "classifier" if choice == EARLIER else choice
 
 
 def check(choice: object) -> None:
@@ -63,25 +44,29 @@ def check(choice: object) -> None:
     text = choice if isinstance(choice, str) else ""
     # rejects a value that may contain a password, before a message can show the value
     check_choice(text)
-    first, plus, second = text.partition("+")
-    name = second if plus and first in REPLACED else text
-    if name.lower().startswith(("http://", "https://")):
+    if is_endpoint(text) or text in (*CHOICES, EARLIER):
         return
-    alone = bool(plus) and name in ("none", *REPLACED, "classifier")
-    if alone or name not in (*CHOICES, *REPLACED) and not (name and Path(name).is_dir()):
+    if not text or not Path(text).is_dir():
         cause = f"This value names no safeguard that exists. Choose one of: {', '.join(CHOICES)}."
         # other values may contain a password, so the message does not show them
         if is_plain(choice):
             cause = unknown("safeguard", choice, CHOICES)
         raise ValueError(f"{cause} Or name a folder. {FOLDER}")
-    if name not in (*CHOICES, *REPLACED) and kind(name) is None:
-        raise FileNotFoundError(not_in(name))
+    if kind(text) is None:
+        raise FileNotFoundError(
+            f"There is no safeguard in {text}. {FOLDER} Or choose one of: {', '.join(CHOICES)}."
+        )
+
+
+def is_endpoint(choice: str) -> bool:
+    """Return whether ``choice`` is the address of an endpoint."""
+    return choice.lower().startswith(("http://", "https://"))
 
 
 def kind(folder: str | Path) -> str | None:
     """Return whether a folder contains a "classifier" or an "adapter", or None if neither.
 
-    Raises ValueError if the folder contains both, or a tagger or reader of an earlier version.
+    Raises ValueError if the folder contains both.
     """
     folder = Path(folder)
     classifier = (folder / CONFIG).is_file()
@@ -91,29 +76,7 @@ def kind(folder: str | Path) -> str | None:
             f"{folder} holds two safeguards, a classifier and an adapter: put each into a "
             "separate folder."
         )
-    if not classifier and not adapter and _is_tagger(folder):
-        raise ValueError(
-            f"{folder} holds a tagger or a reader, which were removed: choose classifier (faster, "
-            "finds more attacks), or train your own classifier with `python -m "
-            "mitigate.guards.text.fit`."
-        )
     return "classifier" if classifier else "adapter" if adapter else None
-
-
-def _is_tagger(folder: Path) -> bool:
-    config = folder / "config.yaml"
-    if not config.is_file() or config.stat().st_size > 1 << 16:
-        return False
-    text = config.read_text(encoding="utf-8", errors="replace")
-    return (
-        re.search(r"(?:guards\.text|safeguard)\.(?:tagger\.Tagger|reader\.Reader)\b", text)
-        is not None
-    )
-
-
-def not_in(folder: str | Path) -> str:
-    """Return the error message for a folder that contains no safeguard."""
-    return f"There is no safeguard in {folder}. {FOLDER} Or choose one of: {', '.join(CHOICES)}."
 
 
 def label(choice: str) -> str:
@@ -122,10 +85,8 @@ def label(choice: str) -> str:
     The label is the safeguard's name, the name of its folder with a hash, or the host and the model
     of an endpoint.
     """
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        choice = current(choice)
-    if choice.lower().startswith(("http://", "https://")):
+    choice = current(choice)
+    if is_endpoint(choice):
         return re.sub(r"[^A-Za-z0-9.@-]+", "-", choice.partition("://")[2])
     file = weights_in(choice)
     if file is None:
@@ -143,10 +104,7 @@ def identity(choice: str) -> str:
     """
     if choice == "none":
         return choice
-
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        choice = current(choice)
+    choice = current(choice)
     chosen = {"classifier": CLASSIFIER, "lora": ADAPTER}.get(choice, choice)
     folders = [chosen] if chosen == CLASSIFIER else [CLASSIFIER, chosen]
     files = [file for folder in folders if (file := weights_in(find(folder)))]
@@ -157,8 +115,6 @@ def identity(choice: str) -> str:
 
 def weights_in(folder: str | Path) -> Path | None:
     """Return the path of the weights in a safeguard's folder, or None for any other folder."""
-    if not Path(folder).is_dir():
-        return None
-    name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS, None: None}[kind(folder)]
+    name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS}.get(kind(folder) or "")
     file = Path(folder) / name if name else None
-    return file if file is not None and file.is_file() else None
+    return file if file and file.is_file() else None

@@ -107,21 +107,15 @@ def _letters(text: str, marks: set[str]) -> str:
     plain = unicodedata.normalize("NFKC", text)
     if sum(a.isascii() for a in plain) - sum(a.isascii() for a in text) > 2:
         marks.add("wide")
-    stripped = "".join(
-        c for c in unicodedata.normalize("NFD", plain) if unicodedata.category(c) != "Mn"
-    )
-    if sum(
-        unicodedata.category(c) == "Mn" for c in unicodedata.normalize("NFD", plain)
-    ) > 0.5 * len(plain):
+    parts = unicodedata.normalize("NFD", plain)
+    stripped = "".join(c for c in parts if unicodedata.category(c) != "Mn")
+    if len(parts) - len(stripped) > 0.5 * len(plain):  # mostly accents
         marks.add("wide")
         plain = stripped
     for word in re.findall(r"\w+", plain):
         read = word.translate(_ALIKE)
-        if (
-            read != word
-            and read.isascii()
-            and (any(c.isascii() and c.isalpha() for c in word) or len(word) > 2)
-        ):
+        mixed = any(c.isascii() and c.isalpha() for c in word)
+        if read != word and read.isascii() and (mixed or len(word) > 2):
             marks.add("alike")
             plain = plain.replace(word, read)
     return plain
@@ -172,11 +166,8 @@ def _escaped(coded: str) -> str:
 
 
 def _morse(coded: str) -> str:
-    decoded = (
-        " " if c in ("/", "|") else _MORSE_LETTERS.get(c, "")
-        for c in re.split(r"\s+|(?=[/|])|(?<=[/|])", coded)
-    )
-    return "".join(decoded)
+    codes = re.split(r"\s+|(?=[/|])|(?<=[/|])", coded)
+    return "".join(" " if c in ("/", "|") else _MORSE_LETTERS.get(c, "") for c in codes)
 
 
 _CODES: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
@@ -187,11 +178,8 @@ _CODES: tuple[tuple[re.Pattern[str], Callable[[str], str]], ...] = (
 
 def _joined(match: re.Match[str]) -> str:
     """Join the letters of words that were spelled out letter by letter."""
-    letters = match.group()
-    parts = (
-        re.split(r"\s{2,}|\s*[/|]\s*", letters) if re.search(r"\s{2,}|[/|]", letters) else [letters]
-    )
-    return " ".join(re.sub(r"[^A-Za-z]+", "", word) for word in parts)
+    words = re.split(r"\s{2,}|\s*[/|]\s*", match.group())
+    return " ".join(re.sub(r"[^A-Za-z]+", "", word) for word in words)
 
 
 def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
@@ -199,11 +187,8 @@ def _without_leet(word: str, known: Set[str], marks: set[str]) -> str:
     if _MEASURE.fullmatch(word):
         return word
     read = word.lower().translate(_LEET)
-    for candidate in (
-        read,
-        read.replace("i", "l"),
-        word.lower().replace("1", "l").translate(_LEET),
-    ):
+    other = word.lower().replace("1", "l").translate(_LEET)
+    for candidate in (read, read.replace("i", "l"), other):
         if candidate.strip("i") in known or candidate in known:
             marks.add("leet")
             return candidate

@@ -30,6 +30,7 @@ from scipy.sparse import csr_matrix
 from mitigate.core import checksums
 from mitigate.core.errors import error_message
 from mitigate.core.files import find, make_folder, write_text
+from mitigate.core.progress import say
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
 from mitigate.guards.text.decode import decode
@@ -78,12 +79,10 @@ class Regressions:
         )
 
 
-def fit(
-    folder: Path, routes: int = ROUTES, texts: int = SPLICES, log: Any = sys.stderr
-) -> Classifier:
+def fit(folder: Path, routes: int = ROUTES, texts: int = SPLICES) -> Classifier:
     """Train a classifier on the data in a folder."""
     lines = read_lines(folder, routes)
-    regressions = regress(lines, log)
+    regressions = regress(lines)
     classifiers = [regressions.classifier(fold) for fold in range(FOLDS)]
     examples = [
         example
@@ -92,20 +91,19 @@ def fit(
     ]
     networks = []
     for seed in range(NETWORKS):
-        message = f"training network {seed + 1} of {NETWORKS} on {len(examples)} texts"
-        print(message, file=log, flush=True)
-        networks.append(train(examples, seed, log))
-    arrays = {name: np.stack([network[name] for network in networks]) for name in NAMES}
+        say(f"training network {seed + 1} of {NETWORKS} on {len(examples)} texts")
+        networks.append(train(examples, seed))
+    arrays = {name: np.concatenate([network[name] for network in networks]) for name in NAMES}
     return regressions.classifier(network=arrays)
 
 
-def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
+def regress(lines: Sequence[Line]) -> Regressions:
     """Train the logistic regressions on sentences and clauses."""
     words = common_words(lines)
     pieces = list(_pieces(varied(lines)))
     known = frozenset(words)
     terms = [model.terms(decode(text, known), text, block) for text, block, _, _ in pieces]
-    print(f"training on {len(pieces)} pieces of text", file=log, flush=True)
+    say(f"training on {len(pieces)} pieces of text")
     seen = Counter(index for term_counts in terms for index in term_counts)
     idf = np.zeros(SIZE, np.float32)
     for index, n in seen.items():
@@ -133,8 +131,7 @@ def regress(lines: Sequence[Line], log: Any = sys.stderr) -> Regressions:
     for number, ((weights, bias), _) in enumerate(folds):
         rows = fold == number
         right = (x[rows] @ weights[used] + bias > 0) == attack[rows]
-        message = f"fold {number + 1}: {100 * right.mean():.1f} % of unseen pieces are recognised"
-        print(message, file=log, flush=True)
+        say(f"fold {number + 1}: {100 * right.mean():.1f} % of unseen pieces are recognised")
     return Regressions(words, idf, both(np.ones(len(pieces), bool), STEPS), folds)
 
 

@@ -14,9 +14,10 @@ from collections import Counter
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.guards.text.learning.route_words import ROOMS, THINGS
+from mitigate.guards.text.learning.route_words import WORDS
 
-KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | bag(" ".join((*THINGS, *ROOMS)))
+_PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
+KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
 LONG = 3000  # longer texts are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
@@ -56,9 +57,9 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     return ""
 
 
-def is_too_long(heard: str, rewrite: str) -> bool:
-    """Return whether a rewrite is so long that it is not checked."""
-    return len(rewrite) > max(LENGTH, TIMES * len(heard))
+def longest(heard: str) -> int:
+    """Return the maximum number of characters of a rewrite; a longer one is not checked."""
+    return max(LENGTH, TIMES * len(heard))
 
 
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
@@ -68,7 +69,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     """
     if rewrite is None:
         return "no answer in time"
-    if is_too_long(heard, rewrite) or len(words(rewrite)) > len(words(heard)) + LONGER:
+    if len(rewrite) > longest(heard) or len(words(rewrite)) > len(words(heard)) + LONGER:
         return "longer than what it replaces"
     plain = heard.replace("[MASK]", "the")
     if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:

@@ -220,7 +220,7 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
 def _opened(name: str, log: str | Path | None) -> Safeguard:
     if name == "classifier":
         return Safeguard(log=log)
-    if name.lower().startswith(("http://", "https://")):
+    if choices.is_endpoint(name):
         from mitigate.guards.text.language_models.endpoint import ChatEndpoint
 
         url, _, model = name.rpartition("@")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 
 from mitigate.core.markdown import markdown_table
@@ -72,31 +72,33 @@ def score(repairs: Sequence[Repair]) -> Scores:
     chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
     landmark_counts = [_landmarks_kept(r) for r in repairs]
-    injected = [gone for r in repairs for gone in _gone(r)]
+    removed = [left(text, r.repaired) < REMAINS for r in repairs for text in r.injected]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
         count=len(repairs),
         exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]) or 0.0,
         token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
         chrf=chrf.score / 100,
-        directions=_mean([_same_directions(r) for r in repairs]) or 0.0,
+        directions=_mean(
+            [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
+        )
+        or 0.0,
         landmarks=_ratio(sum(k for k, _ in landmark_counts), sum(n for _, n in landmark_counts)),
         faithful=1 - sum(problems) / len(problems),
-        removed=_mean(injected),
+        removed=_mean(removed),
         changed=_mean(clean),
     )
 
 
-def by_family(repairs: Iterable[Repair]) -> dict[str, Scores]:
+def by_family(repairs: Sequence[Repair]) -> dict[str, Scores]:
     """Return the scores by family.
 
     Families are in order of appearance. The key "all" holds the scores of all repairs.
     """
     groups: dict[str, list[Repair]] = defaultdict(list)
-    every = list(repairs)
-    for repair in every:
+    for repair in repairs:
         groups[repair.family].append(repair)
-    return {family: score(group) for family, group in groups.items()} | {"all": score(every)}
+    return {family: score(group) for family, group in groups.items()} | {"all": score(repairs)}
 
 
 def table(scores: dict[str, Scores]) -> str:
@@ -122,20 +124,11 @@ def words_of(text: str) -> list[str]:
     return _WORD.findall(text.lower())
 
 
-def _same_directions(repair: Repair) -> bool:
-    return facts(repair.clean).directions == facts(repair.repaired).directions
-
-
 def _landmarks_kept(repair: Repair) -> tuple[int, int]:
     """Return how many landmarks of the original are kept, and how many the original has."""
     landmarks = set(facts(repair.clean).landmarks)
     lost = sum(p.startswith("landmark lost") for p in check(repair.clean, repair.repaired))
     return len(landmarks) - lost, len(landmarks)
-
-
-def _gone(repair: Repair) -> list[bool]:
-    """Return for each injected sentence whether more than half of its word pairs are removed."""
-    return [left(sentence, repair.repaired) < REMAINS for sentence in repair.injected]
 
 
 def pairs(text: str) -> list[tuple[str, str]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections import Counter
 from functools import lru_cache
+from typing import Any
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
@@ -127,11 +128,8 @@ def _best(left: str, right: str) -> str:
 
 
 @lru_cache(maxsize=1)
-def _counts() -> tuple[Counter, Counter, Counter, Counter]:
-    both: Counter = Counter()
-    before: Counter = Counter()
-    after: Counter = Counter()
-    plain: Counter = Counter()
+def _counts() -> tuple[Counter, ...]:
+    both, before, after, plain = (Counter[Any]() for _ in range(4))
     for index in range(ROUTES):
         tokens = _TOKEN.findall(draw_route(generator(0, "masks", index)).lower())
         tokens = [".", *tokens, "."]

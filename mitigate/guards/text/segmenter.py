@@ -104,16 +104,11 @@ class Segmenter:
 
     ``arrays`` contains the weights under the names in ``NAMES``. H is the size of the GRU's hidden
     state. ``net_from_input`` [K, 2, 3H, H] and ``net_from_state`` [K, 2, 3H, H] are the weights of
-    the forward and the backward GRU, with the gates in the order reset, update, new. If the arrays
-    have no axis K, they belong to one network.
+    the forward and the backward GRU, with the gates in the order reset, update, new.
     """
 
     def __init__(self, arrays: Mapping[str, np.ndarray]) -> None:
-        single = arrays[NAMES[0]].ndim == 2
-        self.arrays = {
-            name: (arrays[name][None] if single else arrays[name]).astype(np.float32)
-            for name in NAMES
-        }
+        self.arrays = {name: arrays[name].astype(np.float32) for name in NAMES}
 
     def attack(self, values: np.ndarray, bonus: float) -> tuple[float, int, int]:
         """Return the log odds that the text contains an attack, and the best span.

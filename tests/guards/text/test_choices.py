@@ -42,22 +42,12 @@ def test_identity_depends_on_weights_and_versions(tmp_path, monkeypatch):
     assert open_safeguard("classifier").identity == before[0]
 
 
-def test_open_safeguard_reads_names_of_earlier_versions(recwarn):
+def test_open_safeguard_reads_the_earlier_name():
     assert open_safeguard("rules").identity == identity("classifier") == identity("rules")
-    assert not recwarn.list
-    for name in ("reader", "tagger"):
-        with pytest.warns(
-            UserWarning, match=rf"the {name} was removed.*safeguard=classifier is used"
-        ):
-            assert open_safeguard(name).rewriter is None
-    with pytest.warns(UserWarning, match=r"safeguard=lora is used"):
-        assert choices.current("reader+lora") == "lora"
-    assert label("reader+lora") == "lora"
+    assert label("rules") == "classifier"
 
 
-@pytest.mark.parametrize(
-    "choice", ["", None, 5, "tagger+", "reader+none", "reader+tagger", "clasifier"]
-)
+@pytest.mark.parametrize("choice", ["", None, 5, "tagger", "reader+none", "clasifier"])
 def test_open_safeguard_lists_the_choices_for_unknown_names(choice):
     with pytest.raises(ValueError, match=r"no safeguard .* one of: none, classifier, .* folder"):
         open_safeguard(choice)
@@ -79,11 +69,6 @@ def test_open_safeguard_opens_a_classifier_folder(tmp_path):
 
 def test_open_safeguard_explains_folders_without_a_safeguard(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"no safeguard in .* holds classifier\.json"):
-        open_safeguard(str(tmp_path))
-    (tmp_path / "config.yaml").write_text("agent:\n  _target_: mitigate.safeguard.tagger.Tagger\n")
-    with pytest.raises(
-        ValueError, match="a tagger or a reader, which were removed: choose classifier"
-    ):
         open_safeguard(str(tmp_path))
     (tmp_path / choices.ADAPTER_CONFIG).write_text("{}")
     with pytest.raises(FileNotFoundError, match="adapter_model.safetensors missing"):

@@ -109,14 +109,19 @@ USER, ASSISTANT = {"role": "user", "content": "Go."}, {"role": "assistant", "con
 @pytest.mark.parametrize(
     "line, problem",
     [
-        ("{", "is not JSON"),
-        ("[1]", "no list 'messages'"),
-        ('{"messages": {}}', "no list 'messages'"),
-        (json.dumps({"messages": ["hello"]}), "message 0 has no role"),
-        (json.dumps({"messages": [{"role": "boss", "content": "x"}]}), "role of system, user"),
-        (json.dumps({"messages": [{"role": "user", "content": 3}]}), "no text 'content'"),
-        (json.dumps({"messages": [USER]}), "one user and then one assistant"),
-        (json.dumps({"messages": [ASSISTANT, USER]}), "one user and then one assistant"),
+        ("{", "is no chat (JSONDecodeError"),
+        ("[" * 100_000, "is no chat (RecursionError"),
+        ("[1]", "is no chat"),
+        ('{"messages": {}}', "not one user and one assistant"),
+        (json.dumps({"messages": ["hello"]}), "is no chat"),
+        (json.dumps({"messages": [{"role": "user"}]}), "is no chat (KeyError: 'content')"),
+        (
+            json.dumps({"messages": [{"role": "boss", "content": "x"}]}),
+            "roles ['boss'], not one user",
+        ),
+        (json.dumps({"messages": [USER, {**ASSISTANT, "content": 3}]}), "content that is not text"),
+        (json.dumps({"messages": [USER]}), "not one user and one assistant"),
+        (json.dumps({"messages": [ASSISTANT, USER]}), "not one user and one assistant"),
         (json.dumps({"messages": [{**USER, "content": "  "}, ASSISTANT]}), "empty user text"),
     ],
 )

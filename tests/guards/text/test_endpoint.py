@@ -14,9 +14,10 @@ from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 import pytest
 
 from mitigate.core.addresses import check_arguments, check_choice
+from mitigate.core.chat import ENVELOPE
 from mitigate.evaluation import evaluate
 from mitigate.guards.text.guard import Safeguard, open_safeguard
-from mitigate.guards.text.language_models.endpoint import ENVELOPE, ChatEndpoint
+from mitigate.guards.text.language_models.endpoint import ChatEndpoint
 
 
 class Server(ThreadingHTTPServer):

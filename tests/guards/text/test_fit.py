@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import json
 
 import numpy as np
@@ -45,7 +44,7 @@ def data(tmp_path_factory):
 @pytest.mark.slow
 def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
     monkeypatch.setattr(fit, "STEPS", 30)
-    output = fit.fit(data, routes=40, texts=2000, log=io.StringIO())
+    output = fit.fit(data, routes=40, texts=2000)
     fit.save(output, tmp_path)
     again = classifier.load(tmp_path)
     text = "Turn left at the sofa. Blorp the snarfle, zib. Stop by the lamp."
@@ -69,7 +68,7 @@ def test_load_adds_the_shipped_network_to_an_older_classifier(tmp_path, extra):
 def test_load_averages_one_or_more_networks(tmp_path):
     shipped = classifier.load(find(choices.CLASSIFIER))
     assert shipped.arrays["net_none"].shape == (fit.NETWORKS, 1)
-    one = {name: a[0] if name.startswith("net_") else a for name, a in shipped.arrays.items()}
+    one = {name: a[:1] if name.startswith("net_") else a for name, a in shipped.arrays.items()}
     (tmp_path / "classifier.json").write_text(json.dumps(shipped.config))
     save_file(one, tmp_path / "classifier.safetensors")
     again = classifier.load(tmp_path)
@@ -105,8 +104,8 @@ def test_fit_explains_missing_data(tmp_path):
     ("line", "problem"),
     [
         ('{"attack"', r"attacks\.jsonl, line 2 must be one JSON object"),
-        ('{"mechanism": "a", "place": "any"}', "line 2 must have the key 'attack'"),
-        ('{"mechanism": "a", "place": "any", "attack": 1}', "line 2 must be text under"),
+        ('{"mechanism": "a", "place": "any"}', "line 2 must be .* with text under attack"),
+        ('{"mechanism": "a", "place": "any", "attack": 1}', "line 2 must be .* text under attack"),
     ],
 )
 def test_read_lines_explains_malformed_attacks(tmp_path, line, problem):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import io
-
 import numpy as np
 import pytest
 import torch
@@ -35,11 +33,11 @@ def test_segmenter_computes_the_scores_of_the_trained_network(count):
 
 def test_segmenter_averages_the_scores_of_several_networks():
     single = [network(seed).arrays() for seed in range(3)]
-    several = Segmenter({name: np.stack([one[name] for one in single]) for name in NAMES})
+    several = Segmenter({name: np.concatenate([one[name] for one in single]) for name in NAMES})
     scores = [Segmenter(one).scores(values(7)) for one in single]
     for averaged, each in zip(several.scores(values(7)), zip(*scores, strict=True), strict=True):
         np.testing.assert_allclose(averaged, np.mean(each, 0), atol=1e-5)
-    same = Segmenter({name: np.stack([single[0][name]] * 2) for name in NAMES})
+    same = Segmenter({name: np.concatenate([single[0][name]] * 2) for name in NAMES})
     assert same.attack(values(7), 0.5) == pytest.approx(Segmenter(single[0]).attack(values(7), 0.5))
     none = {name: array.copy() for name, array in same.arrays.items()}
     none["net_none"][1] += 1.0
@@ -73,7 +71,7 @@ def test_attack_finds_nothing_in_a_single_clause():
 
 
 @pytest.mark.slow
-def test_train_finds_marked_clauses():
+def test_train_finds_marked_clauses(capsys):
     rng = np.random.default_rng(0)
     examples = []
     for _ in range(2000):
@@ -83,14 +81,13 @@ def test_train_finds_marked_clauses():
         features = 0.1 * rng.standard_normal((4, FEATURES)).astype(np.float32)
         features[attack, 0] += 3
         examples.append(segmentation.Example(features, attack))
-    log = io.StringIO()
-    segmenter = Segmenter(segmentation.train(examples, 0, log))
+    segmenter = Segmenter(segmentation.train(examples, 0))
     found = [segmenter.attack(example.features, 0.0) for example in examples]
     right = [
         (odds > 0, last + 1 if odds > 0 else 0) == (attack.any(), attack.sum())
         for (odds, _, last), attack in zip(found, (e.attack for e in examples), strict=True)
     ]
-    assert np.mean(right) > 0.95 and log.getvalue().count("loss") == segmentation.EPOCHS
+    assert np.mean(right) > 0.95 and capsys.readouterr().out.count("loss") == segmentation.EPOCHS
 
 
 def test_splices_record_the_spans_of_attacks_and_keep_groups_in_folds():

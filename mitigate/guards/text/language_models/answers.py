@@ -12,6 +12,8 @@ from mitigate.core.output import open_output
 LONGEST = 1 << 16  # maximum number of characters of an answer (heuristic)
 # maximum seconds to wait for a lock of another process, in addition to any deadline (heuristic)
 WAIT = 0.1
+_NO_CACHE = "is not a cache of endpoint answers"
+_OTHER = "Name another file, or delete this one."
 
 
 class AnswerCache:
@@ -37,25 +39,14 @@ class AnswerCache:
             file = self._file
             file.execute("CREATE TABLE IF NOT EXISTS answers (name TEXT PRIMARY KEY, answer)")
             objects = file.execute("SELECT type, name FROM sqlite_master").fetchall()
-        except sqlite3.OperationalError as error:
-            if "locked" not in str(error):
-                what = f"{path} cannot be opened ({error}): name another file."
-                raise ValueError(what) from error
-            raise ValueError(
-                f"{path} is in use by another process: wait for it, or name another file."
-            ) from error
         except sqlite3.Error as error:
-            raise ValueError(
-                f"{path} is not a cache of endpoint answers ({error}): name another file, or "
-                "delete "
-                "it."
-            ) from error
+            if "locked" in str(error):
+                what = f"{path} is in use by another process: wait for it, or name another file."
+                raise ValueError(what) from error
+            raise ValueError(f"{path} {_NO_CACHE} ({error}). {_OTHER}") from error
         others = [name for kind, name in objects if (kind, name) not in _OURS]
         if others:  # SQLite would run a view or trigger in the file as part of our queries
-            raise ValueError(
-                f"{path} is not a cache of endpoint answers (it holds {others[0]!r:.60}): name "
-                "another file, or delete it."
-            )
+            raise ValueError(f"{path} {_NO_CACHE} (it holds {others[0]!r:.60}). {_OTHER}")
         self._opened.clear()
         self._wait = WAIT
 

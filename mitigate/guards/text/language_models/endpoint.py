@@ -12,13 +12,11 @@ from typing import Any
 
 from tqdm import tqdm
 
-from mitigate.core.chat import ENVELOPE, ChatClient, NoAnswer
+from mitigate.core.chat import ChatClient, NoAnswer
 from mitigate.core.seeding import digest
 from mitigate.guards.text import gate
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
-
-__all__ = ["ENVELOPE", "ChatEndpoint"]
 
 
 class ChatEndpoint(ChatClient):
@@ -61,9 +59,8 @@ class ChatEndpoint(ChatClient):
         return [self._answer(text, ends) for text in progress]
 
     def _answer(self, text: str, ends: float | None) -> str | None:
-        name = (
-            f"{digest(self.url, self.model, PROMPTS[self.prompt], repr(self.options), text):032x}"
-        )
+        prompt = PROMPTS[self.prompt]
+        name = f"{digest(self.url, self.model, prompt, repr(self.options), text):032x}"
         answer = None if self._cache is None else self._cache.get(name)
         if answer is None:
             answer = self._ask(text, ends)
@@ -72,9 +69,8 @@ class ChatEndpoint(ChatClient):
         return answer
 
     def _ask(self, text: str, ends: float | None) -> str | None:
-        longest = max(gate.LENGTH, gate.TIMES * len(text))  # the gate does not check longer answers
         try:
-            return self.ask(prompt_messages(text, self.prompt), longest, ends)
+            return self.ask(prompt_messages(text, self.prompt), gate.longest(text), ends)
         except NoAnswer as error:
             self.failures.append(str(error))
             return None

@@ -60,10 +60,8 @@ class LanguageModel(nn.Module):
         batch: int = 32,
     ) -> None:
         super().__init__()
-        for name, value, allowed in (
-            ("precision", precision, PRECISIONS),
-            ("prompt", prompt, tuple(PROMPTS)),
-        ):
+        choices = (("precision", precision, PRECISIONS), ("prompt", prompt, tuple(PROMPTS)))
+        for name, value, allowed in choices:
             if value not in allowed:
                 raise ValueError(f"{name}={value} is unknown; choose one of {', '.join(allowed)}.")
         self.base, self.precision, self.prompt, self.batch = base, precision, prompt, batch
@@ -239,14 +237,14 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     card, config = read_adapter(folder)
     # damaged files raise an error before the base is loaded, which is slow
     adapter_tensors(folder, config)
-    lora = {"r": config["r"], "alpha": config["lora_alpha"], "dropout": config["lora_dropout"]}
-    model = LanguageModel(
-        card["base"],
-        precision,
-        {**lora, "targets": config["target_modules"]},
-        card["prompt"],
-        batch,
-    )
+    names = {
+        "r": "r",
+        "alpha": "lora_alpha",
+        "dropout": "lora_dropout",
+        "targets": "target_modules",
+    }
+    lora = {name: config[entry] for name, entry in names.items()}
+    model = LanguageModel(card["base"], precision, lora, card["prompt"], batch)
     model.load(folder)
     if precision == "fp32":
         model.network.merge_adapter()

@@ -110,15 +110,15 @@ def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
                 continue
             try:
                 d = json.loads(line)
-                if all(isinstance(d[key], str) for key in keys):
-                    yield d
-                    continue
-                problem = "must be text under " + ", ".join(keys)
-            except (ValueError, TypeError) as error:
-                problem = f"must be one JSON object ({error})"
-            except KeyError as error:
-                problem = f"must have the key {error}"
-            raise ValueError(f"{file}, line {number} {problem}. Fix or delete that line.")
+                valid = all(isinstance(d[key], str) for key in keys)
+            except (ValueError, TypeError, KeyError):
+                valid = False
+            if not valid:
+                raise ValueError(
+                    f"{file}, line {number} must be one JSON object with text under "
+                    f"{', '.join(keys)}. Fix or delete that line."
+                )
+            yield d
 
 
 def _text(file: Path) -> list[str]:

@@ -11,14 +11,5 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-_WORDS = json.loads(Path(__file__).with_name("route_words.json").read_text(encoding="utf-8"))
-ROOMS: list[str] = _WORDS["rooms"]
-THINGS: list[str] = _WORDS["things"]
-LOOKS: list[str] = _WORDS["looks"]
-STAIRS: list[str] = _WORDS["stairs"]
-DOORS: list[str] = _WORDS["doors"]
-PLACES: list[str] = _WORDS["places"]
-OPEN: list[str] = _WORDS["open"]
-MIDDLE: list[str] = _WORDS["middle"]
-CLOSE: list[str] = _WORDS["close"]
-ASIDES: list[str] = _WORDS["asides"]
+_FILE = Path(__file__).with_name("route_words.json")
+WORDS: dict[str, list[str]] = json.loads(_FILE.read_text(encoding="utf-8"))

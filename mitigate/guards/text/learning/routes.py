@@ -12,22 +12,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from mitigate.guards.text.learning.route_words import (
-    ASIDES,
-    CLOSE,
-    DOORS,
-    LOOKS,
-    MIDDLE,
-    OPEN,
-    PLACES,
-    ROOMS,
-    STAIRS,
-    THINGS,
-)
+from mitigate.guards.text.learning.route_words import WORDS
 from mitigate.worlds.apartments.instructions import TEMPLATES
 
 JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
-_FIELDS = {"open": OPEN, "middle": MIDDLE, "close": CLOSE}
 
 
 def draw_route(rng: np.random.Generator, longest: int = 7) -> str:
@@ -64,19 +52,19 @@ def _clauses(rng: np.random.Generator, longest: int) -> list[str]:
     verbose = rng.random() < 0.2
     found: list[str] = []
     for kind in kinds:
-        found.append(_fill(_pick(_FIELDS[kind], rng), rng))
+        found.append(_fill(_word(kind, rng), rng))
         if verbose and rng.random() < 0.4:
-            found.append(_fill(_pick(ASIDES, rng), rng))
+            found.append(_fill(_word("asides", rng), rng))
     return found
 
 
 def _fill(template: str, rng: np.random.Generator) -> str:
-    template = template.replace("{place}", _pick(PLACES, rng))
+    template = template.replace("{place}", _word("places", rng))
     thing, other = _thing(rng), _thing(rng)
     text = template.format(
         a=thing.removeprefix("set of ") if "{look} {a}" in template else thing,
-        aa=other, room=_pick(ROOMS, rng), aroom=_pick(ROOMS, rng), door=_pick(DOORS, rng),
-        stairs=_pick(STAIRS, rng), side=_pick(("left", "right"), rng), look=_pick(LOOKS, rng),
+        aa=other, room=_word("rooms", rng), aroom=_word("rooms", rng), door=_word("doors", rng),
+        stairs=_word("stairs", rng), side=_pick(("left", "right"), rng), look=_word("looks", rng),
         n=_pick(("two", "three", "four", "five", "2", "3"), rng),
         ordinal=_pick(("first", "second", "third", "next", "last"), rng),
     )  # fmt: skip
@@ -84,7 +72,7 @@ def _fill(template: str, rng: np.random.Generator) -> str:
 
 
 def _thing(rng: np.random.Generator) -> str:
-    thing, look = _pick(THINGS, rng), _pick(LOOKS, rng)
+    thing, look = _word("things", rng), _word("looks", rng)
     return f"{look} {thing}" if rng.random() < 0.25 and " " not in thing else thing
 
 
@@ -108,6 +96,10 @@ def _careless(text: str, rng: np.random.Generator) -> str:
     if draw[2] < 0.08:
         text = text.replace(". ", ".  ")
     return text.replace(", ", " , ") if draw[3] < 0.03 else text
+
+
+def _word(kind: str, rng: np.random.Generator) -> str:
+    return _pick(WORDS[kind], rng)
 
 
 def _pick(options, rng: np.random.Generator) -> str:

@@ -7,15 +7,14 @@ weight.
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 import torch
 from torch import nn
 
+from mitigate.core.progress import say
 from mitigate.guards.text.segmenter import EDGES, FEATURES, NAMES
 
 STATE = 32  # size of the GRU's hidden state
@@ -63,17 +62,17 @@ class Network(nn.Module):
         return clause, self.edge(torch.cat(around, -1))[..., 0]
 
     def arrays(self) -> dict[str, np.ndarray]:
-        """Return the weights under the names that :class:`Segmenter` reads."""
+        """Return the weights as :class:`Segmenter` reads them, with one network (K = 1)."""
         gru = {name: value.detach() for name, value in self.gru.named_parameters()}
         kinds = ("weight_ih", "weight_hh", "bias_ih", "bias_hh")
         both = [torch.stack([gru[f"{kind}_l0"], gru[f"{kind}_l0_reverse"]]) for kind in kinds]
         layers = (self.clause, self.edge)
         ends = [value for layer in layers for value in (layer.weight[0], layer.bias)]
         values = [self.input.weight, self.input.bias, *both, *ends, self.none]
-        return {name: v.detach().numpy() for name, v in zip(NAMES, values, strict=True)}
+        return {name: v.detach().numpy()[None] for name, v in zip(NAMES, values, strict=True)}
 
 
-def train(examples: Sequence[Example], seed: int, log: Any = sys.stderr) -> dict[str, np.ndarray]:
+def train(examples: Sequence[Example], seed: int) -> dict[str, np.ndarray]:
     """Train one network and return its weights.
 
     ``seed`` is the seed of all random numbers.
@@ -98,7 +97,7 @@ def train(examples: Sequence[Example], seed: int, log: Any = sys.stderr) -> dict
             optimizer.step()
             schedule.step()
             losses.append(loss.item())
-        print(f"epoch {epoch + 1} of {EPOCHS}: loss {np.mean(losses):.3f}", file=log, flush=True)
+        say(f"epoch {epoch + 1} of {EPOCHS}: loss {np.mean(losses):.3f}")
     torch.set_num_threads(threads)
     return network.eval().arrays()
 

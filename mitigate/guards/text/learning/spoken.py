@@ -68,14 +68,8 @@ def spoken(split: str) -> tuple[Spoken, ...]:
     for file in sorted(find(FOLDER).glob("*.jsonl")):
         held_out = file.stem in (*VALIDATION, *TEST)
         if file.stem in styles if styles else not held_out:
-            texts += voice(file.stem)
+            texts += _read(file)
     return tuple(texts)
-
-
-@lru_cache(maxsize=32)
-def voice(name: str) -> tuple[Spoken, ...]:
-    """Return all texts of a style."""
-    return tuple(_read(find(FOLDER) / f"{name}.jsonl"))
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:

@@ -14,7 +14,7 @@ from functools import lru_cache
 import numpy as np
 
 from mitigate.core.files import find
-from mitigate.guards.text.learning.route_words import LOOKS, ROOMS, THINGS
+from mitigate.guards.text.learning.route_words import WORDS
 
 FILE = "tools/safeguard/data/styler.json"
 _THIRD = frozenset(
@@ -39,8 +39,8 @@ def draw_styled(rng: np.random.Generator) -> str:
     verbs = {"go": one(lists["go"]), "turn": one(lists["turn"]), "stop": one(lists["stop"])}
 
     def thing() -> str:
-        look = f"{one(LOOKS)} " if rng.random() < 0.25 else ""
-        return f"{article} {look}{one(THINGS if rng.random() < 0.6 else ROOMS)}".strip()
+        look = f"{one(WORDS['looks'])} " if rng.random() < 0.25 else ""
+        return f"{article} {look}{one(WORDS['things' if rng.random() < 0.6 else 'rooms'])}".strip()
 
     def clause(kind: str, first: bool) -> str:
         verb = verbs[kind] if rng.random() < 0.6 else one(lists[kind])
