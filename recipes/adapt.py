@@ -35,7 +35,7 @@ class Adapt(Distil):
     the teacher's features are matched.
 
     Raises:
-        ValueError: The agent has no adapters.
+        ValueError: If the agent has no adapters.
     """
 
     def __init__(
@@ -83,7 +83,7 @@ class AdaptViews(DistilViews):
             (``agents.adapters.scale_adapters``).
 
     Raises:
-        ValueError: The encoders have no adapters, or a number is invalid.
+        ValueError: If the encoders have no adapters, or a number is invalid.
     """
 
     teaches_gates = True

@@ -45,7 +45,7 @@ class Dagger(Imitate):
         losses: same as in ``Imitate``.
 
     Raises:
-        ValueError: The rollouts of the agent are not plain data, or the schedule samples
+        ValueError: If the rollouts of the agent are not plain data, or the schedule samples
             corruptions by success rate, which needs a trained agent.
     """
 

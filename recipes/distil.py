@@ -47,8 +47,8 @@ class Distil(OnEpisodes):
             not depend on a trained weight are not matched.
 
     Raises:
-        FileNotFoundError: The teacher is missing.
-        ValueError: A weight or the temperature is invalid, or ``Imitate`` raised this error.
+        FileNotFoundError: If the teacher is missing.
+        ValueError: If a weight or the temperature is invalid, or ``Imitate`` raised this error.
     """
 
     def __init__(
@@ -134,8 +134,8 @@ class DistilViews(OnViews):
         adapters_only: whether to train only the agent's adapters.
 
     Raises:
-        FileNotFoundError: The teacher is missing.
-        ValueError: The adapters have gates, or a weight is invalid.
+        FileNotFoundError: If the teacher is missing.
+        ValueError: If the adapters have gates, or a weight is invalid.
     """
 
     teaches_gates: ClassVar[bool] = False

@@ -71,7 +71,8 @@ class HardenEncoder(Objective):
             channels have equal weight. If false, it is divided by the mean variance.
 
     Raises:
-        ValueError: A number is invalid, or the schedule has no corruption of the encoder's sensor.
+        ValueError: If a number is invalid, or the schedule has no corruption of the encoder's
+            sensor.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"source": frame_source}

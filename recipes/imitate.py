@@ -35,7 +35,7 @@ class Imitate(OnEpisodes):
         losses: weights of auxiliary losses by name, which override the agent's defaults.
 
     Raises:
-        ValueError: A part is unknown, or a weight is invalid.
+        ValueError: If a part is unknown, or a weight is invalid.
     """
 
     def __init__(

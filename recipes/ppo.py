@@ -64,8 +64,8 @@ class Ppo(Objective):
         seed: seed of episodes, corruptions and actions.
 
     Raises:
-        ValueError: A number is out of range, the policy reads no frames, has a memory or gives no
-            distribution of actions, or the world has no reward.
+        ValueError: If a number is out of range, the policy reads no frames, has a memory or gives
+            no distribution of actions, or the world has no reward.
     """
 
     loss: Any  # ClipPPOLoss

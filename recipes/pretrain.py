@@ -48,7 +48,7 @@ def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> di
         The arguments of ``Poses.learn``.
 
     Raises:
-        ValueError: The agent has no method ``see``, or the modality is unknown.
+        ValueError: If the agent has no method ``see``, or the modality is unknown.
     """
     if not isinstance(agent, Seeing):
         raise ValueError(

@@ -46,7 +46,7 @@ class Restore(Objective):
         w_far: factor by which the error of depth that is too far is multiplied.
 
     Raises:
-        ValueError: A number is invalid.
+        ValueError: If a number is invalid.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}

@@ -77,7 +77,7 @@ class RestoreGate(Objective):
         seed: seed of the batches.
 
     Raises:
-        ValueError: A number is invalid.
+        ValueError: If a number is invalid.
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}

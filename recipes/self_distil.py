@@ -75,7 +75,7 @@ class SelfDistil(Objective):
         seed: seed of episodes and corruptions.
 
     Raises:
-        ValueError: A number is out of its range, or the policy reads no frames or has no such
+        ValueError: If a number is out of its range, or the policy reads no frames or has no such
             module.
     """
 

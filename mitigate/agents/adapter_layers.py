@@ -309,7 +309,7 @@ class RingAdapter(Adapter):
         hfov: horizontal field of view in degrees.
 
     Raises:
-        ValueError: An argument is out of range.
+        ValueError: If an argument is out of range.
 
     Source: this project. The adapters of the NavTrust paper read one view at a time.
     """

@@ -88,7 +88,7 @@ def insert_adapters(
         The names of the adapted modules, in the order of the model.
 
     Raises:
-        TypeError: The targets are a single string instead of a list.
+        TypeError: If the targets are a single string instead of a list.
         ValueError: There are no targets; a target matches no module or is not a regular
             expression; the channels of a module are unknown; a module has a child called
             "adapter"; a gate controls no adapter; or the model has adapters already. In each case,
@@ -157,7 +157,7 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
     adapters, it is sufficient to scale the layers that were initialised to zero.
 
     Raises:
-        ValueError: ``strength`` is outside [0, 1], or the model has no adapters.
+        ValueError: If ``strength`` is outside [0, 1], or the model has no adapters.
     """
     if not 0 <= strength <= 1:
         raise ValueError(f"strength must be from 0 to 1, got {strength}.")
@@ -185,7 +185,7 @@ def save_adapters(model: nn.Module, folder: str | Path) -> Path:
     after the adapters were inserted.
 
     Raises:
-        ValueError: The model has no adapters.
+        ValueError: If the model has no adapters.
     """
     with write_folder(folder, "adapters") as draft:
         write_adapters(model, draft)
@@ -220,8 +220,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if there is one.
 
     Raises:
-        FileNotFoundError: A file is missing.
-        ValueError: A file is damaged, the model already has adapters, it lacks a module, or the
+        FileNotFoundError: If a file is missing.
+        ValueError: If a file is damaged, the model already has adapters, it lacks a module, or the
             adapters were trained on a different backbone or dtype.
     """
     folder = Path(folder)

@@ -249,7 +249,7 @@ def check_logits(logits: Tensor, agent: Any) -> Tensor:
     Without this check, argmax would silently return the first action, STOP.
 
     Raises:
-        ValueError: A logit is NaN or +inf, or no action is allowed.
+        ValueError: If a logit is NaN or +inf, or no action is allowed.
     """
     valid = torch.isfinite(logits.amax(-1))
     if not valid.all():

@@ -112,8 +112,8 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     If the file does not exist, the result is empty.
 
     Raises:
-        ValueError: The weights belong to a different kind of agent than ``node``, or the file holds
-            a value that the agent does not accept.
+        ValueError: If the weights belong to a different kind of agent than ``node``, or the file
+            holds a value that the agent does not accept.
     """
     place = find(weights)
     if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):

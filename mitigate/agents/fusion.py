@@ -36,7 +36,7 @@ def reliability(views: Tensor, rate: float = RATE, cap: float = CAP) -> Tensor:
         Weights ``[..., V]`` that sum to 1. All weights are equal if every view is blank (M = 0).
 
     Raises:
-        ValueError: ``rate`` or ``cap`` is negative.
+        ValueError: If ``rate`` or ``cap`` is negative.
     """
     if rate < 0 or cap < 0:
         raise ValueError(f"rate and cap of the reliability must be >= 0, got {rate} and {cap}.")
@@ -61,7 +61,7 @@ class LearnedReliability(nn.Module):
         cap: must be >= 0; the weights of two views differ at most by a factor of exp(2 cap).
 
     Raises:
-        ValueError: ``cap`` is negative.
+        ValueError: If ``cap`` is negative.
 
     Source: this project. The paper's rule differs from this score: it uses only the magnitude of a
     view's features.
@@ -92,7 +92,7 @@ def weigher(
     The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
 
     Raises:
-        ValueError: ``learned`` and ``rate`` are both set.
+        ValueError: If ``learned`` and ``rate`` are both set.
     """
     if learned and rate is not None:
         raise ValueError(

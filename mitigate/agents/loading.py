@@ -72,7 +72,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         FileNotFoundError, ValueError: Weights are missing or damaged; the settings of their agent
             are missing; the agent is of a user's class, but ``agent`` is missing; or ``agent`` has
             different settings. The error message names the file.
-        TypeError: ``folder`` is not a path, or ``agent`` has no weights.
+        TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
     place = find(folder)
     if (place / CARD).is_file():
@@ -113,7 +113,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
 
     Raises:
         FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
-        TypeError: ``folder`` is not a path, or ``agent`` has no weights.
+        TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
     folder = Path(folder)
     card = check_hardened(folder)
@@ -159,8 +159,8 @@ def build_from(config: Path, weights: Path | None = None) -> Any:
     bytes, no memory is allocated for it.
 
     Raises:
-        ValueError: The file is damaged, names a different kind of agent, or describes a large agent
-            that does not fit ``weights``.
+        ValueError: If the file is damaged, names a different kind of agent, or describes a large
+            agent that does not fit ``weights``.
     """
     kind = kind_of(config)
     make = partial(schema.class_of(kind), **agent_settings(config, kind))
@@ -182,8 +182,9 @@ def config_of(weights: Path) -> Path:
     """Return the path of the config that belongs to ``weights``, which is a file or a folder.
 
     Raises:
-        FileNotFoundError: There are no weights.
-        ValueError: ``weights`` is a file inside a hardened folder; the folder itself must be named.
+        FileNotFoundError: If there are no weights.
+        ValueError: If ``weights`` is a file inside a hardened folder; the folder itself must be
+            named.
     """
     if is_hardened(weights) or (weights / PEFT_WEIGHTS).is_file():
         return weights / CONFIG
@@ -221,7 +222,7 @@ def check_same(agent: Any, config: Path, again: str) -> None:
     the same name may mean something else.
 
     Raises:
-        ValueError: The settings differ, or the file has no settings (this message ends with
+        ValueError: If the settings differ, or the file has no settings (this message ends with
             ``again``).
     """
     stored = _settings_in(config, again)
@@ -342,8 +343,8 @@ def check_hardened(folder: Path) -> dict[str, Any]:
     --programs` writes it again.
 
     Raises:
-        FileNotFoundError: Another file is missing.
-        ValueError: A file has been changed, or the card is damaged.
+        FileNotFoundError: If another file is missing.
+        ValueError: If a file has been changed, or the card is damaged.
     """
     card = read_card(folder)
     manifest = folders.read_manifest(folder, _AGAIN)

@@ -77,9 +77,9 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
         and writeable.
 
     Raises:
-        KeyError: The entry is missing.
+        KeyError: If the entry is missing.
         TypeError: RGB is not uint8, or depth is not floating point.
-        ValueError: The shape is not the expected shape, or depth is in millimetres.
+        ValueError: If the shape is not the expected shape, or depth is in millimetres.
     """
     array = _entry(observation, name)
     if name == RGB and array.dtype != np.uint8:
@@ -111,8 +111,8 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
     """Check the pose [3] and return it unchanged.
 
     Raises:
-        KeyError: The pose is missing.
-        ValueError: The pose does not consist of three finite numbers.
+        KeyError: If the pose is missing.
+        ValueError: If the pose does not consist of three finite numbers.
     """
     array = _entry(observation, POSE)
     if array.shape != (3,) or not np.isfinite(array).all():
@@ -127,7 +127,7 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
     """Return ``text``, and warn if it contains no word of ``vocabulary``.
 
     Raises:
-        TypeError: ``text`` is not a string.
+        TypeError: If ``text`` is not a string.
     """
     if not isinstance(text, str):
         raise TypeError(f"instruction must be a string, got a {type(text).__name__}.")

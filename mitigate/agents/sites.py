@@ -107,7 +107,7 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     is used. A ResNet, for example, has four stages in one list, and each stage is a list of blocks.
 
     Raises:
-        ValueError: The encoder has no list of at least four blocks.
+        ValueError: If the encoder has no list of at least four blocks.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
@@ -144,7 +144,7 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
     Targets are regular expressions for a dotted name or its end.
 
     Raises:
-        ValueError: A target matches no module or is not a regular expression.
+        ValueError: If a target matches no module or is not a regular expression.
     """
     names = [name for name, _ in model.named_modules() if name]
     matches: set[str] = set()

@@ -126,7 +126,7 @@ class StepwiseAgent(Agent, nn.Module):
         The agent's STOP is never executed, so that the agent also learns from later steps.
 
         Raises:
-            ValueError: One of the worlds has no expert, or the logits are invalid.
+            ValueError: If one of the worlds has no expert, or the logits are invalid.
         """
         observations = [world.reset(e) for world, e in zip(worlds, episodes, strict=True)]
         experts = [expert_of(world) for world in worlds]

@@ -55,7 +55,7 @@ class Vocabulary:
         words: lower-case words without the special tokens. None means ``WORDS``.
 
     Raises:
-        ValueError: A word is repeated or has characters other than a to z, or the word for a
+        ValueError: If a word is repeated or has characters other than a to z, or the word for a
             concept is missing.
     """
 

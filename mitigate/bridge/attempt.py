@@ -73,7 +73,7 @@ class Attempt:
         Files of an earlier attempt are moved to another folder first.
 
         Raises:
-            ValueError: Another run uses the folder, or the command cannot be started.
+            ValueError: If another run uses the folder, or the command cannot be started.
         """
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)

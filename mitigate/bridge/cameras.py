@@ -189,7 +189,7 @@ class Rig:
             for the first rig.
 
     Raises:
-        ValueError: A camera cannot be corrupted, or there are too many cameras.
+        ValueError: If a camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(
@@ -230,7 +230,7 @@ class Rig:
         """Return the memory offset of each camera of the given ``kinds``, and the total size.
 
         Raises:
-            ValueError: The size is above ``MAX_BYTES``.
+            ValueError: If the size is above ``MAX_BYTES``.
         """
         offsets: dict[str, int] = {}
         size = 0

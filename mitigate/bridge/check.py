@@ -73,7 +73,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         command: The words of the user's command.
 
     Raises:
-        ValueError: An option is invalid, or the command sends no frame within
+        ValueError: If an option is invalid, or the command sends no frame within
             ``FIRST_FRAME_LIMIT`` seconds or before it ends.
     """
     plan = make_plan(config, command)

@@ -161,7 +161,7 @@ class Words:
             guards: Guards that change the corrupted instruction.
 
         Raises:
-            ValueError: The corrupted instruction cannot be passed to the agent.
+            ValueError: If the corrupted instruction cannot be passed to the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
@@ -194,8 +194,8 @@ def load_tokenizer(name: str) -> Tokenizer:
         name: A folder, a hub name, or a ``.json`` or ``.json.gz`` file with a vocabulary.
 
     Raises:
-        ValueError: The file or folder contains no tokenizer.
-        FileNotFoundError: There is no such file or folder.
+        ValueError: If the file or folder contains no tokenizer.
+        FileNotFoundError: If there is no such file or folder.
     """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))

@@ -75,8 +75,8 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
     """Check the options and the command.
 
     Raises:
-        ValueError: An option is invalid, or there is no command.
-        OSError: The folder of ``record=`` cannot be written.
+        ValueError: If an option is invalid, or there is no command.
+        OSError: If the folder of ``record=`` cannot be written.
     """
     check_choice(config.safeguard)
     if not command:

@@ -65,7 +65,7 @@ class SharedMemory:
         """Map ``size`` new bytes, and return the path and size for the other process.
 
         Raises:
-            ValueError: There is not enough free space.
+            ValueError: If there is not enough free space.
         """
         self.delete_file()
         self.file = self.folder / secrets.token_hex(8)

@@ -90,7 +90,7 @@ def put_aside(folder: Path, kind: str) -> None:
     is deleted first, so that the condition immediately counts as unfinished.
 
     Raises:
-        UnsafePathError: ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
+        UnsafePathError: If ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
     """
     if any(path.name != LOCK for path in folder.iterdir()):
         aside = folder.with_name(f"{folder.name}.{kind}")
@@ -113,7 +113,7 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     """Return the scene and the id from the message that begins an episode.
 
     Raises:
-        ValueError: The name is not allowed in rows.
+        ValueError: If the name is not allowed in rows.
     """
     scene, episode = str(message["scene"]), str(message["id"])
     constraint = allowed("episode_id", episode_name(scene, episode))

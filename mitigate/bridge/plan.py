@@ -196,7 +196,7 @@ def split_adapters(adapters: str) -> tuple[str, str, str]:
     """Split ``adapters=`` into its folder, module and target (Class.attribute).
 
     Raises:
-        ValueError: The module or the class is missing.
+        ValueError: If the module or the class is missing.
     """
     folder, module, target = (*str(adapters).rsplit(":", 2), "", "")[:3]
     if not target.partition(".")[0] or not module:

@@ -54,7 +54,7 @@ class Command:
         marker: A text that only this command's environment contains.
 
     Raises:
-        OSError: The command cannot be started.
+        OSError: If the command cannot be started.
     """
 
     def __init__(

@@ -143,8 +143,8 @@ def delete_drafts(folder: Path) -> None:
     recording.
 
     Raises:
-        UnsafePathError: ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO or
-            a device; nothing was deleted.
+        UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO
+            or a device; nothing was deleted.
     """
     with output.output_folder(folder.parent):
         output.check(folder / RECORDING)

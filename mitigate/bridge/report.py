@@ -37,7 +37,7 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
         out: The run's folder.
 
     Raises:
-        ValueError: No episode has a result, or existing rows would be lost.
+        ValueError: If no episode has a result, or existing rows would be lost.
     """
     done = [cell for cell in cells if cell.is_done()]
     others, left_out = find_earlier(cells, out)

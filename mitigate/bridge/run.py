@@ -311,7 +311,7 @@ def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
     """Run conditions on the launcher's machines, ``jobs`` at a time; return the problems.
 
     Raises:
-        WorkersDied: Several workers died while running the same condition.
+        WorkersDied: If several workers died while running the same condition.
     """
     if not cells:
         return []

@@ -19,7 +19,7 @@ def chosen(launcher: LauncherConfig) -> LauncherConfig:
     """Check ``launcher`` before any work is done, and return it.
 
     Raises:
-        ValueError: A number is out of range, a package is missing, or the cluster is unknown or
+        ValueError: If a number is out of range, a package is missing, or the cluster is unknown or
             cannot be reached.
     """
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
@@ -45,7 +45,7 @@ def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int
             time than it saves.
 
     Raises:
-        ValueError: ``requested`` is less than 1.
+        ValueError: If ``requested`` is less than 1.
     """
     if launcher.name == "local":
         return workers.count(requested, jobs, worth)
@@ -71,7 +71,7 @@ def results(
     As with ``core.workers.results``, each result is yielded exactly once, even if workers die.
 
     Raises:
-        WorkersDied: The worker of a group of jobs died too often.
+        WorkersDied: If the worker of a group of jobs died too often.
         Exception: The error that a job raised.
     """
     if isinstance(launcher, RayConfig):

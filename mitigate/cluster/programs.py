@@ -142,7 +142,7 @@ def run(
     save their state first.
 
     Raises:
-        WorkersDied: The worker process that ran a chain died too often.
+        WorkersDied: If the worker process that ran a chain died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)

@@ -113,7 +113,7 @@ def locate(target: str) -> Any:
     """Import and return the object that ``target`` names (``module.Name``).
 
     Raises:
-        ValueError: There is no such object.
+        ValueError: If there is no such object.
     """
     try:
         return get_object(target)
@@ -125,7 +125,7 @@ def imported(name: str | None, option: str) -> Callable[..., Any]:
     """Import and return the callable that an option names as ``module:callable``.
 
     Raises:
-        ValueError: The module cannot be imported, or has no such callable.
+        ValueError: If the module cannot be imported, or has no such callable.
     """
     module_name, _, attribute = (name or "").partition(":")
     if not (module_name and attribute):

@@ -85,7 +85,7 @@ class ChatClient:
             ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
 
         Raises:
-            NoAnswer: All attempts failed, a failure was not temporary, or the time is over.
+            NoAnswer: If all attempts failed, a failure was not temporary, or the time is over.
         """
         problem = "out of time"
         for attempt in range(self.retries + 1):

@@ -33,7 +33,7 @@ def weights_file(path: str | Path) -> Path:
     """Return the safetensors file that ``path`` names directly or by its folder.
 
     Raises:
-        FileNotFoundError: There is no safetensors file at ``path``.
+        FileNotFoundError: If there is no safetensors file at ``path``.
     """
     path = Path(path)
     file = path if path.suffix == ".safetensors" else path / WEIGHTS
@@ -108,9 +108,9 @@ def load_weights(module: nn.Module, path: str | Path) -> None:
     the weights of a base agent), the adapters of ``module`` keep their values.
 
     Raises:
-        FileNotFoundError: There is no safetensors file at ``path``.
-        ValueError: The weights are damaged or do not match the module; the message names the file
-            and the first differences.
+        FileNotFoundError: If there is no safetensors file at ``path``.
+        ValueError: If the weights are damaged or do not match the module; the message names the
+            file and the first differences.
     """
     file = weights_file(path)
     _fill(module, load_tensors(file), file)
@@ -199,8 +199,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     """Return the tensors of a safetensors file; if its sha256 is recorded, check it first.
 
     Raises:
-        ValueError: The file is damaged.
-        PermissionError: The user has no permission to read the file.
+        ValueError: If the file is damaged.
+        PermissionError: If the user has no permission to read the file.
     """
     # a missing permission raises PermissionError here, because it does not mean that the file is
     # damaged

@@ -60,7 +60,7 @@ def problem(path: Path) -> str:
         sidecar.
 
     Raises:
-        PermissionError: The user has no permission to read the file; it may be intact.
+        PermissionError: If the user has no permission to read the file; it may be intact.
     """
     note = sidecar(path)
     if not note.is_file():

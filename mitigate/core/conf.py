@@ -248,8 +248,8 @@ def load_config(primary: str, words: Sequence[str] = (), with_hydra: bool = Fals
     ``with_hydra`` adds Hydra's own settings as ``hydra``.
 
     Raises:
-        ValueError: No imported module has registered the types of this file, or an address in the
-            words contains a password.
+        ValueError: If no imported module has registered the types of this file, or an address in
+            the words contains a password.
     """
     check_arguments(words)
     if primary not in TYPES:

@@ -53,7 +53,8 @@ def find(path: str | Path) -> Path:
         The first existing path of :func:`places`, or ``path`` itself if none exists.
 
     Raises:
-        FileNotFoundError: The path names shipped weights (``checkpoints/...``) that do not exist.
+        FileNotFoundError: If the path names shipped weights (``checkpoints/...``) that do not
+            exist.
     """
     candidates = places(path)
     place = next((candidate for candidate in candidates if candidate.exists()), candidates[0])
@@ -101,8 +102,8 @@ def open_text(path: Path | str) -> io.TextIOWrapper:
     the gzip file is damaged or cut short, or if it unpacks to too many bytes (``RATIO``).
 
     Raises:
-        FileNotFoundError: The file does not exist; the message lists the nearest names.
-        UnsafePathError: The path is a FIFO, a socket or a device.
+        FileNotFoundError: If the file does not exist; the message lists the nearest names.
+        UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     path = Path(path)
     if not output.is_regular(path):
@@ -158,7 +159,7 @@ def read_bounded(path: Path | str, most: int) -> bytes:
 
     Raises:
         ValueError: "it has more than ... bytes"; the caller names the file.
-        UnsafePathError: The path is a FIFO, a socket or a device.
+        UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     output.is_regular(path)
     with open(path, "rb") as file:

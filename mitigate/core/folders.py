@@ -87,8 +87,8 @@ def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
     manifest lists are kept.
 
     Raises:
-        OSError: The folder cannot be written.
-        ValueError: The folder holds files of a different kind.
+        OSError: If the folder cannot be written.
+        ValueError: If the folder holds files of a different kind.
     """
     folder = make_folder(folder)
     _check_kind(folder, kind)
@@ -280,8 +280,8 @@ def check(
         again: advice for a damaged folder; each message ends with it.
 
     Raises:
-        FileNotFoundError: A file is missing.
-        ValueError: A file was changed or cut short, or the manifest is damaged.
+        FileNotFoundError: If a file is missing.
+        ValueError: If a file was changed or cut short, or the manifest is damaged.
     """
     folder = Path(folder)
     manifest = read_manifest(folder, again)
@@ -328,7 +328,7 @@ def problem(file: Path) -> str:
         manifest or sidecar lists it.
 
     Raises:
-        PermissionError: The user has no permission to read the file; it may be intact.
+        PermissionError: If the user has no permission to read the file; it may be intact.
     """
     try:
         manifest = read_manifest(file.parent)

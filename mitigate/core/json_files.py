@@ -33,7 +33,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
     Raises:
         ValueError: The file has more than ``most`` bytes, holds a number that is not finite, or is
             damaged. Each message ends with the advice ``again``.
-        UnsafePathError: The path is a FIFO, a socket or a device.
+        UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     try:
         return parse_json(read_bounded(path, most).decode("utf-8-sig"))

@@ -47,10 +47,10 @@ class FolderLock:
         within: names of subfolders to which the process also writes.
 
     Raises:
-        ValueError: A different process has the lock (the message names it), or the lock file is not
-            a regular file.
-        OSError: The folder cannot be written.
-        FolderLostError: The folder was removed.
+        ValueError: If a different process has the lock (the message names it), or the lock file is
+            not a regular file.
+        OSError: If the folder cannot be written.
+        FolderLostError: If the folder was removed.
     """
 
     def __init__(self, folder: str | Path, within: Iterable[str] = ()) -> None:

@@ -25,7 +25,7 @@ def card_files(folder: Path, again: str) -> dict[str, Any] | None:
     Returns None for any other folder.
 
     Raises:
-        ValueError: The card is invalid; the message ends with the advice ``again``.
+        ValueError: If the card is invalid; the message ends with the advice ``again``.
     """
     file = folder / CARD
     card = read_object(file, again) if file.is_file() else {}

@@ -38,7 +38,7 @@ def paths_and_options(
         The paths, and the options by name, as text.
 
     Raises:
-        ValueError: The number of paths is wrong, an option is unknown or set twice, or a word
+        ValueError: If the number of paths is wrong, an option is unknown or set twice, or a word
             begins with a dash.
     """
     words: list[str] = []

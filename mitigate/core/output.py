@@ -73,8 +73,8 @@ class Root:
         """Check each subfolder on the relative path ``inner``.
 
         Raises:
-            UnsafePathError: One of the subfolders is a link.
-            FolderLostError: A subfolder that existed before is missing.
+            UnsafePathError: If one of the subfolders is a link.
+            FolderLostError: If a subfolder that existed before is missing.
         """
         place = self.places[0]
         for part in inner.parts:
@@ -170,7 +170,7 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
         expected: Names of files that must be in the folder when the block ends.
 
     Raises:
-        FolderLostError: The folder was removed or replaced while the block ran.
+        FolderLostError: If the folder was removed or replaced while the block ran.
     """
     folder = Path(folder)
     with writing(folder):
@@ -188,8 +188,8 @@ def check(path: Path | str) -> None:
     """Check the parent folder of ``path`` before writing to ``path``.
 
     Raises:
-        FolderLostError: An output folder that is in use was removed or replaced.
-        UnsafePathError: A folder between the output folder and ``path`` is a link.
+        FolderLostError: If an output folder that is in use was removed or replaced.
+        UnsafePathError: If a folder between the output folder and ``path`` is a link.
     """
     _check_folder(Path(os.path.abspath(path)).parent)
 
@@ -214,7 +214,7 @@ def delete_folder(folder: Path | str) -> None:
     Raises:
         UnsafePathError: ``folder`` is a symbolic link, a FIFO or a file, or its path goes through a
             symbolic link inside an output folder. Nothing was deleted.
-        FolderLostError: The output folder was removed or replaced.
+        FolderLostError: If the output folder was removed or replaced.
     """
     check(folder)
     try:
@@ -234,7 +234,7 @@ def is_regular(path: Path | str) -> bool:
     """Return whether the file ``path`` exists; links are followed.
 
     Raises:
-        UnsafePathError: ``path`` is a FIFO, a socket or a device; reading it could wait forever.
+        UnsafePathError: If ``path`` is a FIFO, a socket or a device; reading it could wait forever.
     """
     try:
         mode = os.stat(path).st_mode
@@ -266,10 +266,10 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
         options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
-        UnsafePathError: ``path`` is a link, a FIFO, a socket or a device, has a second name (a hard
-            link), or goes through a link inside an output folder.
-        FolderLostError: The output folder was removed or replaced.
-        OSError: The file cannot be opened.
+        UnsafePathError: If ``path`` is a link, a FIFO, a socket or a device, has a second name (a
+            hard link), or goes through a link inside an output folder.
+        FolderLostError: If the output folder was removed or replaced.
+        OSError: If the file cannot be opened.
     """
     check(path)
     _check_file(path)

@@ -53,7 +53,7 @@ def device_of(name: str) -> torch.device:
     """Return the device for a ``name`` such as "cpu" or "cuda:1"; "auto" means CUDA if available.
 
     Raises:
-        ValueError: The device is not available.
+        ValueError: If the device is not available.
     """
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")

@@ -33,7 +33,7 @@ def read(file: Path) -> dict[str, Any]:
     that contain such values.
 
     Raises:
-        ValueError: The file contains a value of another type, a repeated key or an OmegaConf
+        ValueError: If the file contains a value of another type, a repeated key or an OmegaConf
             interpolation, is larger than ``LARGEST`` bytes, or is nested deeper than ``DEEPEST``
             levels.
     """

@@ -22,7 +22,7 @@ class ActionSpace:
         """Check ``action`` and convert it to the format that the world accepts.
 
         Raises:
-            ValueError: The action is not in the space.
+            ValueError: If the action is not in the space.
         """
         raise NotImplementedError
 
@@ -128,7 +128,7 @@ def from_gymnasium(space: Any) -> ActionSpace:
     """Return the action space that corresponds to ``space`` of gymnasium or gym.
 
     Raises:
-        ValueError: The kind of space is not supported, for example text or a graph.
+        ValueError: If the kind of space is not supported, for example text or a graph.
     """
     kind = type(space).__name__
     if kind == "Discrete":

@@ -83,7 +83,7 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
             than it saves.
 
     Raises:
-        ValueError: ``requested`` is less than 1.
+        ValueError: If ``requested`` is less than 1.
     """
     if requested is not None and requested < 1:
         raise ValueError(f"workers must be >= 1 or null (one per core), got {requested}.")
@@ -102,7 +102,7 @@ def results(
     If a worker dies, a new process runs its unfinished jobs; this happens at most once.
 
     Raises:
-        WorkersDied: A second worker died.
+        WorkersDied: If a second worker died.
         Exception: A job raised an error, which is raised again here.
     """
     work = numbered(groups)
@@ -265,7 +265,7 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
         shared: whether to pass tensors in shared memory; then only one process may read them, once.
 
     Raises:
-        ValueError: ``thing`` cannot be pickled.
+        ValueError: If ``thing`` cannot be pickled.
     """
     try:
         return bytes(ForkingPickler.dumps(thing)) if shared else pickle.dumps(thing)

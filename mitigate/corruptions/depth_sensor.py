@@ -38,7 +38,7 @@ class DepthSensor:
         missing: Value in metres that marks missing depth.
 
     Raises:
-        ValueError: The range is invalid.
+        ValueError: If the range is invalid.
     """
 
     z_min: float = 0.0

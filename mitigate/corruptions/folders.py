@@ -123,10 +123,10 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
         ``out/corrupt.json``.
 
     Raises:
-        FileNotFoundError: The folder does not exist or contains no frame.
-        ValueError: One folder contains the other, or ``out`` was written with different settings or
-            frames, or by a different program.
-        OSError: ``out`` cannot be written.
+        FileNotFoundError: If the folder does not exist or contains no frame.
+        ValueError: If one folder contains the other, or ``out`` was written with different settings
+            or frames, or by a different program.
+        OSError: If ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
     check_folders(source, out)
@@ -263,7 +263,7 @@ def earlier_summary(out: Path, settings: Mapping[str, Any]) -> dict[str, Any]:
     """Return the summary of an earlier run in ``out``, or an empty dict if the folder is empty.
 
     Raises:
-        ValueError: ``out`` contains other files, or was written with different settings.
+        ValueError: If ``out`` contains other files, or was written with different settings.
     """
     if all(path.name[0] == "." for path in out.iterdir()):
         return {}
@@ -322,8 +322,8 @@ def check_folders(source: Path, out: Path) -> None:
     """Check that ``source`` exists and that neither folder contains the other one.
 
     Raises:
-        FileNotFoundError: There is no folder ``source``.
-        ValueError: ``out`` is a file, or one folder contains the other.
+        FileNotFoundError: If there is no folder ``source``.
+        ValueError: If ``out`` is a file, or one folder contains the other.
     """
     if not source.is_dir():
         hint = " Put single files into a folder." if source.is_file() else " Check the path."

@@ -51,7 +51,7 @@ def modality(path: Path) -> str:
     """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
     Raises:
-        LeftOutError: The file has neither modality, or it is a pipe or a device, which may never
+        LeftOutError: If the file has neither modality, or it is a pipe or a device, which may never
             end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
@@ -96,7 +96,7 @@ def corrupt_file(
         no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
 
     Raises:
-        LeftOutError: The file is damaged or has an unsupported format.
+        LeftOutError: If the file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         form = "PNG" if suffix.lower() == ".png" else "JPEG"
@@ -139,7 +139,7 @@ def read(path: Path, unit: float) -> np.ndarray:
         unit: Metres per count of a 16-bit PNG.
 
     Raises:
-        LeftOutError: The file is damaged or has an unsupported format.
+        LeftOutError: If the file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         return _decode(path)

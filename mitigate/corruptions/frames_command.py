@@ -61,7 +61,7 @@ def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]
     ``DATASET_OPTIONS``.
 
     Raises:
-        ValueError: An argument is invalid.
+        ValueError: If an argument is invalid.
     """
     known = [option.name for option in fields(Settings)]
     (source, out), options = paths_and_options(arguments, ("IN", "OUT"), [*known, *DATASET_OPTIONS])

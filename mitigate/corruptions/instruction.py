@@ -69,7 +69,7 @@ def corrupt_instruction(
         tagger: tagger that finds the eligible words: "own" or "spacy".
 
     Raises:
-        ValueError: An argument is invalid, or the text is empty.
+        ValueError: If an argument is invalid, or the text is empty.
     """
     check_name(name, INSTRUCTION)
     severity = check_severity(severity)
@@ -122,7 +122,7 @@ def inject_system_prompt(
     meaning as for "black_box". If ``prompt`` is None or empty, the result is NotApplicable.
 
     Raises:
-        ValueError: The severity, key or split is invalid.
+        ValueError: If the severity, key or split is invalid.
     """
     severity, key = check_severity(severity), as_key(key)
     if not prompt:

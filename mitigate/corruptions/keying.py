@@ -95,7 +95,7 @@ def as_key(key: Key | int | str) -> Key:
     """Convert ``key`` to a Key: an int n becomes Key(n, "0"), and a str t becomes Key(0, t).
 
     Raises:
-        ValueError: ``key`` is neither a Key, an int nor a str.
+        ValueError: If ``key`` is neither a Key, an int nor a str.
     """
     if isinstance(key, Key):
         return key

@@ -50,7 +50,7 @@ class Record:
             (``mitigate/corruptions/faults``).
 
     Raises:
-        ValueError: The name, modality, half or function is invalid.
+        ValueError: If the name, modality, half or function is invalid.
     """
 
     name: str

@@ -99,7 +99,7 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
     restricts them to the validation or the test set.
 
     Raises:
-        ValueError: ``half`` is unknown.
+        ValueError: If ``half`` is unknown.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))

@@ -54,7 +54,7 @@ class Schedule:
             until ``refresh`` is called.
 
     Raises:
-        ValueError: An argument is out of range.
+        ValueError: If an argument is out of range.
     """
 
     mode: str
@@ -121,7 +121,7 @@ class Schedule:
         """Return a copy of the schedule with only the corruptions of one modality.
 
         Raises:
-            ValueError: The schedule has no corruption of the modality.
+            ValueError: If the schedule has no corruption of the modality.
         """
         names = tuple(name for name in self.names if modality(name) == modality_)
         if not names:
@@ -138,7 +138,7 @@ class Schedule:
         rates; the other modes keep uniform weights.
 
         Raises:
-            ValueError: No rate of a corruption is known, or a rate is outside [0, 1].
+            ValueError: If no rate of a corruption is known, or a rate is outside [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]
@@ -214,7 +214,7 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
     frame.
 
     Raises:
-        ValueError: ``by`` is neither a Corruption nor a Schedule.
+        ValueError: If ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return by.draw(seed, episode, frame)
@@ -226,7 +226,7 @@ def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
     stay clean.
 
     Raises:
-        ValueError: ``by`` is neither a Corruption nor a Schedule.
+        ValueError: If ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return () if by.mode == "clean" else by.names

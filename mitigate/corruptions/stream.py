@@ -137,7 +137,7 @@ class FrameStream:
         """Keep the frames and the pose of a time step, because later time steps may show them.
 
         Raises:
-            ValueError: A frame and the previous frame have different shapes.
+            ValueError: If a frame and the previous frame have different shapes.
         """
         if (key.seed, key.episode) != self._episode:
             self._past.clear()

@@ -151,7 +151,7 @@ class Corruption:
         severity: Severity in [0, 1]; both corruptions of a pair have this severity.
 
     Raises:
-        ValueError: The name is unknown, a pair is invalid, the severity is outside [0, 1], or
+        ValueError: If the name is unknown, a pair is invalid, the severity is outside [0, 1], or
             "clean" has a severity above 0.
     """
 
@@ -299,7 +299,7 @@ def corrupt(
         A new array of the same shape and dtype; the input is not modified.
 
     Raises:
-        ValueError: An argument is invalid, or the corruption depends on earlier frames, or more
+        ValueError: If an argument is invalid, or the corruption depends on earlier frames, or more
             than nine tenths of the depth values exceed three times the sensor's z_max (and are
             probably in millimetres).
     """
@@ -395,8 +395,8 @@ def corrupt_observation(
         A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
     Raises:
-        ValueError: The modality is missing, the shape of the pose is not [3], ``corruption`` is not
-            a Corruption, or ``corrupt`` raises an error.
+        ValueError: If the modality is missing, the shape of the pose is not [3], ``corruption`` is
+            not a Corruption, or ``corrupt`` raises an error.
     """
     parts = [p for p in check_corruption(corruption).parts if p.modality not in OF_NO_FRAME]
     pose = obs.get(observation.POSE) if parts else None
@@ -425,7 +425,7 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
     """Return the names of the entries of an observation that a single corruption changes.
 
     Raises:
-        ValueError: The observation has no entry that the corruption could change.
+        ValueError: If the observation has no entry that the corruption could change.
     """
     modalities = registry.record(part.name).modalities
     # entries have the names of modalities

@@ -40,8 +40,9 @@ class DatasetFrames:
         tolerance: maximum seconds between a row and its video frame.
 
     Raises:
-        FileNotFoundError: There is no such dataset, or a file is missing.
-        ValueError: The dataset is damaged, an argument is out of range, or several cameras match.
+        FileNotFoundError: If there is no such dataset, or a file is missing.
+        ValueError: If the dataset is damaged, an argument is out of range, or several cameras
+            match.
     """
 
     files = True

@@ -75,8 +75,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     """Read ``encoder.json``.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged.
     """
     file = Path(folder) / CARD
     if not file.is_file():

@@ -171,7 +171,7 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
         prefix: prefix of the entries to load; it is removed from their names.
 
     Raises:
-        FileNotFoundError: The file does not exist.
+        FileNotFoundError: If the file does not exist.
         ValueError: The file contains more than tensors and plain data, or its weights do not match
             the model. The message lists the first differences.
     """

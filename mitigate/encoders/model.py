@@ -51,7 +51,7 @@ class Transform:
             it is None, depth is not scaled but stays in metres.
 
     Raises:
-        ValueError: An argument is invalid; the message names the option.
+        ValueError: If an argument is invalid; the message names the option.
     """
 
     size: int
@@ -107,7 +107,7 @@ def transform_of(options: Mapping[str, Any]) -> Transform:
     """Return a transform with the arguments ``options``.
 
     Raises:
-        ValueError: An argument is unknown or invalid.
+        ValueError: If an argument is unknown or invalid.
     """
     known = [field.name for field in fields(Transform)]
     for name in options:

@@ -44,9 +44,9 @@ def attach(model, folder, check=True):
         ``model`` itself.
 
     Raises:
-        ValueError: The folder is damaged, it does not match the model, or the model already has
+        ValueError: If the folder is damaged, it does not match the model, or the model already has
             adapters.
-        OSError: A file is missing.
+        OSError: If a file is missing.
     """
     hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
     if any(isinstance(hook, _Adapter) for hook in hooks):

@@ -79,8 +79,8 @@ class WorldFrames:
             None for no labels.
 
     Raises:
-        ValueError: The world cannot render from arbitrary poses, it lacks the sensor, or a scene is
-            in both splits.
+        ValueError: If the world cannot render from arbitrary poses, it lacks the sensor, or a scene
+            is in both splits.
     """
 
     files = False
@@ -153,9 +153,9 @@ class FolderFrames:
         unit: metres per count of a 16-bit PNG.
 
     Raises:
-        FileNotFoundError: The folder does not exist or contains no frame.
-        ValueError: An argument is out of range, there are too few frames, or a file is unreadable,
-            is not depth in metres, or has a different size than the first file.
+        FileNotFoundError: If the folder does not exist or contains no frame.
+        ValueError: If an argument is out of range, there are too few frames, or a file is
+            unreadable, is not depth in metres, or has a different size than the first file.
     """
 
     files = True
@@ -348,7 +348,7 @@ def source_of(
     ``split`` are the unseen scenes.
 
     Raises:
-        ValueError: The episode list does not exist, or the source cannot be used.
+        ValueError: If the episode list does not exist, or the source cannot be used.
     """
     result = world()
     if isinstance(result, Source):
@@ -410,7 +410,7 @@ def collect(source: Source, split: str, count: int, seed: int) -> Frames:
     A smaller ``count`` gives a subset of these frames.
 
     Raises:
-        ValueError: The frames differ in size, need too much memory, or are all black.
+        ValueError: If the frames differ in size, need too much memory, or are all black.
     """
     scenes = list(source.scenes(split))
     order = generator(seed, "encoder scenes", split).permutation(len(scenes))

@@ -126,7 +126,7 @@ def benchmark(
         and the fraction of the clean return that is kept.
 
     Raises:
-        ValueError: The agent, an option or a text for the entry is invalid, or ``out`` contains
+        ValueError: If the agent, an option or a text for the entry is invalid, or ``out`` contains
             rows of a different world.
         FileNotFoundError: Weights are missing.
     """
@@ -242,7 +242,7 @@ def checked_world(
     (``provenance.first_world``).
 
     Raises:
-        ValueError: ``make_world`` does not return a world, or the world lacks a sensor that a
+        ValueError: If ``make_world`` does not return a world, or the world lacks a sensor that a
             condition corrupts.
     """
     if not callable(make_world):
@@ -285,8 +285,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: There are no episodes, or the world has a different class than the world in the
-            config (``own``) but no episode list.
+        ValueError: If there are no episodes, or the world has a different class than the world in
+            the config (``own``) but no episode list.
     """
     split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:

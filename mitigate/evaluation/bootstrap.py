@@ -91,7 +91,7 @@ def resampled_means(
             resampled as a whole. None makes each episode a unit.
 
     Raises:
-        ValueError: There are no values, or some values are not finite.
+        ValueError: If there are no values, or some values are not finite.
     """
     table = np.atleast_2d(np.asarray(values, float))
     if table.ndim != 2 or not table.size or not np.isfinite(table).all():

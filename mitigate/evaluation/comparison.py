@@ -132,7 +132,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
     returns needs them: (R_corrupted - R_random) / (R_clean - R_random).
 
     Raises:
-        ValueError: The agents have no episodes in common, or the first agent is no better than
+        ValueError: If the agents have no episodes in common, or the first agent is no better than
             random actions.
     """
     rows = list(rows)

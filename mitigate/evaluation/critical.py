@@ -38,7 +38,7 @@ def check_losses(losses: Sequence[float]) -> list[float]:
     """Return ``losses`` in ascending order, without repeats.
 
     Raises:
-        ValueError: The list is empty, or a loss is not between 0 and 1.
+        ValueError: If the list is empty, or a loss is not between 0 and 1.
     """
     if not losses or not all(0 < loss < 1 for loss in losses):
         raise ValueError(
@@ -134,7 +134,7 @@ def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corrup
     corruptions at severity 1.
 
     Raises:
-        ValueError: ``conditions`` contains no corruption or a severity of 0, or the world has no
+        ValueError: If ``conditions`` contains no corruption or a severity of 0, or the world has no
             success criterion.
     """
     corrupted = [one for one in conditions if one.name != "clean"]
@@ -366,7 +366,7 @@ def scores(
         drawn: unit that the bootstrap resamples, "episode" or "scene".
 
     Raises:
-        ValueError: A loss or ``against`` is invalid, or no column has results at severity 1.
+        ValueError: If a loss or ``against`` is invalid, or no column has results at severity 1.
     """
     chosen, rows = tuple(check_losses(losses)), list(rows)
     first = references(rows, against)

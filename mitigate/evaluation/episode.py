@@ -79,7 +79,7 @@ def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
     If ``space`` is None, actions are integers.
 
     Raises:
-        ValueError: The answer is not an action of the space.
+        ValueError: If the answer is not an action of the space.
     """
     if space is not None:
         try:

@@ -35,8 +35,8 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
     If ``count`` is None, all episodes are returned.
 
     Raises:
-        ValueError: The split is unknown, the count is below 1, or the list is empty, contains an id
-            twice or has an episode without an instruction.
+        ValueError: If the split is unknown, the count is below 1, or the list is empty, contains an
+            id twice or has an episode without an instruction.
     """
     from mitigate.worlds.episodes import read_episodes
 

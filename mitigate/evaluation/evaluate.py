@@ -39,7 +39,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             precedence over the settings of the weights and become part of the column name.
 
     Raises:
-        ValueError: The split or a condition is unknown, no weights are given, the agent lacks
+        ValueError: If the split or a condition is unknown, no weights are given, the agent lacks
             ``reset`` or ``act``, or the world lacks a sensor.
         FileNotFoundError: Weights are missing.
     """
@@ -136,8 +136,8 @@ def load(
         overrides: options of the command line, which take precedence.
 
     Raises:
-        FileNotFoundError: The weights are missing.
-        ValueError: The weights do not match the agent, or the agent needs weights.
+        FileNotFoundError: If the weights are missing.
+        ValueError: If the weights do not match the agent, or the agent needs weights.
     """
     from mitigate.agents import building
     from mitigate.agents.agent import as_agent

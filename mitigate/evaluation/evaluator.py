@@ -178,8 +178,8 @@ def evaluate(
         known: the agent's fingerprint, if it was computed earlier.
 
     Raises:
-        ValueError: ``out`` already holds rows of this fingerprint, but the agent's state cannot be
-            read completely.
+        ValueError: If ``out`` already holds rows of this fingerprint, but the agent's state cannot
+            be read completely.
         WorkersDied: Worker processes died more than once; ``out`` holds the finished rows.
     """
     conditions = _applicable(agent, conditions, name)

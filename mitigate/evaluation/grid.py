@@ -331,8 +331,8 @@ def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
         drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
 
     Raises:
-        ValueError: There are no rows, or the bootstrap resamples scenes but rows do not name their
-            scene.
+        ValueError: If there are no rows, or the bootstrap resamples scenes but rows do not name
+            their scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in upsert(rows):

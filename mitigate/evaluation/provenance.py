@@ -109,7 +109,7 @@ class Known:
         Return ``self``.
 
         Raises:
-            ValueError: ``file`` already holds rows of this agent, but its state cannot be read
+            ValueError: If ``file`` already holds rows of this agent, but its state cannot be read
                 completely.
         """
         rows = read(file) if file.exists() else []
@@ -165,8 +165,8 @@ def keep(
         The files that were written.
 
     Raises:
-        ValueError: The folder contains rows of a different world or different episodes; the message
-            names the difference.
+        ValueError: If the folder contains rows of a different world or different episodes; the
+            message names the difference.
     """
     if source is not None:
         keep_list_hash(folder, split, source)
@@ -204,7 +204,7 @@ def _report_unreadable(
     """Print a message that rows of an agent or a world cannot be reused.
 
     Raises:
-        ValueError: ``place`` already holds rows of this agent or world.
+        ValueError: If ``place`` already holds rows of this agent or world.
     """
     if earlier:
         raise ValueError(

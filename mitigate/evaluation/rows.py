@@ -92,7 +92,7 @@ def scene_of(row: Row) -> str:
     such entry, so the scene is read from the episode id.
 
     Raises:
-        ValueError: The row names no scene.
+        ValueError: If the row names no scene.
     """
     match = _OF_A_SCENE.fullmatch(row["episode_id"])
     scene = row.get(SCENE) or (match and (match[1] or match[2]))
@@ -209,7 +209,7 @@ def gather(paths: Iterable[Path | str]) -> list[Row]:
     Files in a folder that contain other JSON lines are ignored.
 
     Raises:
-        FileNotFoundError: A path does not exist, or a folder contains no rows.
+        FileNotFoundError: If a path does not exist, or a folder contains no rows.
     """
     return unique(row for path in paths for file in files(path) for row in read(file))
 
@@ -242,7 +242,7 @@ def files(path: Path | str) -> list[Path]:
     """Return all row files in and below the folder ``path``, or ``path`` itself if it is a file.
 
     Raises:
-        FileNotFoundError: The folder contains no row files.
+        FileNotFoundError: If the folder contains no row files.
     """
     path = Path(path)
     if not path.is_dir():

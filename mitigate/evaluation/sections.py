@@ -251,7 +251,7 @@ def references(rows: Iterable[Row], against: str | None) -> Sequence[str]:
     The result is ``against``, or :data:`REFERENCES` if ``against`` is None.
 
     Raises:
-        ValueError: The rows contain no column with the name ``against``.
+        ValueError: If the rows contain no column with the name ``against``.
     """
     names = sorted({row["name"] for row in rows})
     if against is not None and against not in names:
@@ -273,7 +273,7 @@ def sections(
         drawn: unit that the bootstrap resamples, as in :func:`grids`.
 
     Raises:
-        ValueError: The rows contain no column with the name ``against``.
+        ValueError: If the rows contain no column with the name ``against``.
     """
     rows = list(rows)
     if any(row["rule"] == RETURN for row in rows):

@@ -45,7 +45,7 @@ def run(
             severities and areas under the retention curve (``critical.py``).
 
     Raises:
-        FileNotFoundError: A path contains no rows.
+        FileNotFoundError: If a path contains no rows.
         ValueError: Rows are damaged, a seed or the column does not exist, or ``critical`` is
             invalid or needs rows that are missing.
     """

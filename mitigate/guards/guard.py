@@ -126,7 +126,7 @@ class Guard:
         and ``version``.
 
         Raises:
-            ValueError: A part of the guard cannot be read, and ``version`` is None.
+            ValueError: If a part of the guard cannot be read, and ``version`` is None.
         """
         from mitigate.agents.fingerprint import contents, hash_of
 

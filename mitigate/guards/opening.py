@@ -99,8 +99,8 @@ def open_restorer(choice: str | None, sensors: Collection[str] = SENSORS) -> Gua
     """Build the guard of ``restore=`` (``frames/choices.py``), or return None for None and "none".
 
     Raises:
-        FileNotFoundError: The folder contains no restorer.
-        ValueError: The restorer is damaged, the callable does not exist, or the guard changes no
+        FileNotFoundError: If the folder contains no restorer.
+        ValueError: If the restorer is damaged, the callable does not exist, or the guard changes no
             sensor in ``sensors``.
     """
     if choice in NONE:
@@ -128,7 +128,7 @@ def open_adaptations(choice: str | Guard | None) -> list[Guard]:
     """Return the guards that ``adapt=`` names.
 
     Raises:
-        ValueError: A method or a reset in ``choice`` does not exist.
+        ValueError: If a method or a reset in ``choice`` does not exist.
     """
     if isinstance(choice, Guard):
         return [choice]

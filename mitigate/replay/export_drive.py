@@ -117,7 +117,7 @@ def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
     by "-".
 
     Raises:
-        ValueError: Two episodes have the same path, or a path already exists.
+        ValueError: If two episodes have the same path, or a path already exists.
     """
     suffix = ".bag" if form == "bag" else ""
     safe_names = [_NOT_IN_NAMES.sub("-", name).strip("-") or "unnamed" for name in names]

@@ -31,8 +31,8 @@ def load_agents(agents: Any) -> dict[str, Any]:
             an agent. Several agents are given as a list, or as a mapping from names to agents.
 
     Raises:
-        FileNotFoundError: There are no weights at a path.
-        ValueError: Two agents have the same name, or an object is not an agent.
+        FileNotFoundError: If there are no weights at a path.
+        ValueError: If two agents have the same name, or an object is not an agent.
     """
     if not isinstance(agents, Mapping):
         listed = list(agents) if isinstance(agents, (list, tuple)) else [agents]
@@ -93,8 +93,8 @@ def open_drives(config: ReplayConfig, paths: Iterable[str | Path]) -> list[Sourc
     """Open every drive at ``paths`` without reading its frames.
 
     Raises:
-        FileNotFoundError: A drive does not exist.
-        ValueError: A drive is damaged, or two drives have the same name.
+        FileNotFoundError: If a drive does not exist.
+        ValueError: If a drive is damaged, or two drives have the same name.
     """
     from mitigate.worlds.recorded import open_recording
 
@@ -123,7 +123,7 @@ def check_drives(
     """Check that each drive has an instruction and the frames that the agents and guards need.
 
     Raises:
-        ValueError: A drive has no instruction, or lacks frames.
+        ValueError: If a drive has no instruction, or lacks frames.
     """
     from mitigate.agents.agent import as_agent
     from mitigate.worlds.recorded import kinds

@@ -120,8 +120,8 @@ def replay_recordings(
         The folder of the report, with ``table.md`` and ``decisions.jsonl``.
 
     Raises:
-        FileNotFoundError: A drive or an agent's folder does not exist.
-        ValueError: An option is invalid, or a drive is damaged or lacks inputs of an agent.
+        FileNotFoundError: If a drive or an agent's folder does not exist.
+        ValueError: If an option is invalid, or a drive is damaged or lacks inputs of an agent.
     """
     loaded = load_agents(agents)
     paths = [recordings] if isinstance(recordings, (str, Path)) else recordings
@@ -150,8 +150,8 @@ def run(
         The folder of the report, which is not written if ``config.check`` is set.
 
     Raises:
-        FileNotFoundError: A drive or an agent's folder does not exist.
-        ValueError: An option is invalid, or a drive is damaged or lacks inputs of an agent.
+        FileNotFoundError: If a drive or an agent's folder does not exist.
+        ValueError: If an option is invalid, or a drive is damaged or lacks inputs of an agent.
     """
     from mitigate.guards.opening import open_guards
 

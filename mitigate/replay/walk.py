@@ -82,7 +82,7 @@ def walk(
         The decisions of the agent.
 
     Raises:
-        ValueError: The drive lacks a sensor that the agent reads.
+        ValueError: If the drive lacks a sensor that the agent reads.
     """
     world = RecordedWorld(recording)
     corrupted_world = guarded(Corrupted(world, corruption, seed), guards)
@@ -129,7 +129,7 @@ def _decision(answer: Any, agent: Agent) -> int | np.ndarray:
     A discrete action is a whole number, and a continuous action is an array float [A].
 
     Raises:
-        ValueError: The answer is neither.
+        ValueError: If the answer is neither.
     """
     if isinstance(answer, (list, tuple)) or read(answer, "shape"):
         values = np.asarray(answer)

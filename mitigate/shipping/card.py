@@ -44,8 +44,8 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     The entries come from the resolved config ``cfg`` of the run and from this checkout.
 
     Raises:
-        FileNotFoundError: The base or a teacher of the run is missing.
-        ValueError: ``cfg`` has an entry with a value that training never writes.
+        FileNotFoundError: If the base or a teacher of the run is missing.
+        ValueError: If ``cfg`` has an entry with a value that training never writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})

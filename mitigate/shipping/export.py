@@ -106,7 +106,7 @@ def export(
             contain no programs.
 
     Raises:
-        FileNotFoundError: ``run`` contains no finished run.
+        FileNotFoundError: If ``run`` contains no finished run.
         ValueError: The run cannot be exported, ``rows`` has no rows of this agent, or the agent
             loaded from the new folder gives different outputs. Also raised if ``out/name`` exists,
             unless ``overwrite`` is true and it is a hardened folder. Nothing is written.
@@ -131,8 +131,8 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     """Return the config and the agent of the finished run in the folder ``run``.
 
     Raises:
-        FileNotFoundError: There is no finished run.
-        ValueError: The run cannot be exported, its kind of agent needs ``walks``, or its weights
+        FileNotFoundError: If there is no finished run.
+        ValueError: If the run cannot be exported, its kind of agent needs ``walks``, or its weights
             overflow in float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
@@ -173,8 +173,8 @@ def add_programs(folder: Path) -> Path:
         The path of the file.
 
     Raises:
-        FileNotFoundError: ``folder`` is not a complete hardened folder.
-        ValueError: The folder is damaged, its agent has no programs, or the outputs differ.
+        FileNotFoundError: If ``folder`` is not a complete hardened folder.
+        ValueError: If the folder is damaged, its agent has no programs, or the outputs differ.
     """
     folders.repair_folder(folder.resolve())
     card = loading.check_hardened(folder)

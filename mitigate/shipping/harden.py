@@ -158,8 +158,8 @@ def harden(
             :class:`~mitigate.recipes.ppo.Ppo`.
 
     Raises:
-        TypeError: The policy has an unsupported type.
-        ValueError: An argument is invalid, or the folder contains a different run.
+        TypeError: If the policy has an unsupported type.
+        ValueError: If an argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
     for argument, value, allowed in (

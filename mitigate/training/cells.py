@@ -69,7 +69,7 @@ def read_options(cfg: DictConfig) -> TablesConfig:
     """Return the composed options of a table as typed data.
 
     Raises:
-        ValueError: An entry refers to a missing entry.
+        ValueError: If an entry refers to a missing entry.
     """
     config: TablesConfig = conf.typed(cfg, "table2")
     config.suite = open_entries(SuiteConfig, config.suite)
@@ -242,7 +242,7 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
     Raises:
-        ValueError: A seed is repeated; an option, a split or a condition does not exist; or the
+        ValueError: If a seed is repeated; an option, a split or a condition does not exist; or the
             folder of a cell contains rows of a different agent.
     """
     from mitigate.training import plan  # brings torch

@@ -161,7 +161,7 @@ def read(cfg: DictConfig) -> TrainConfig:
     """Return the composed options of a training run as typed data, including its folder.
 
     Raises:
-        ValueError: An entry refers to a missing entry.
+        ValueError: If an entry refers to a missing entry.
     """
     cfg = cfg.copy()
     # the folder is set first, because other entries refer to it

@@ -297,8 +297,8 @@ class ObjectiveSpec:
         """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
         Raises:
-            ValueError: Neither constructor declares an argument, the class is not an objective, or
-                it accepts no agent.
+            ValueError: If neither constructor declares an argument, the class is not an objective,
+                or it accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -321,7 +321,7 @@ class ObjectiveSpec:
         The objective chooses which parameters are trained.
 
         Raises:
-            ValueError: The target does not build an objective, or its constructor raises
+            ValueError: If the target does not build an objective, or its constructor raises
                 ValueError.
         """
         for parameter in agent.parameters():

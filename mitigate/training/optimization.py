@@ -28,7 +28,7 @@ def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: floa
         weight_decay: weight decay of groups that do not set ``weight_decay``.
 
     Raises:
-        ValueError: Every parameter is frozen.
+        ValueError: If every parameter is frozen.
     """
     trained = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
     trained = [group for group in trained if group["params"]]

@@ -46,7 +46,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
             None selects all parts.
 
     Raises:
-        ValueError: A part is unknown, a parameter belongs to no part, adapters that are to be
+        ValueError: If a part is unknown, a parameter belongs to no part, adapters that are to be
             trained have gates (gates cannot be trained on episodes), or the agent is not trainable.
     """
     if not isinstance(agent, Trainable):
@@ -130,8 +130,8 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
             weights.
 
     Raises:
-        ValueError: The weights contain only adapters, or do not match the agent.
-        FileNotFoundError: The weights do not exist.
+        ValueError: If the weights contain only adapters, or do not match the agent.
+        FileNotFoundError: If the weights do not exist.
     """
     if weights is None:
         raise ValueError(

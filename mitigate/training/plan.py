@@ -131,8 +131,8 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     Print a line for each decision that a user may not expect.
 
     Raises:
-        ValueError: The options, the recipe, the agent, the world and the folder are not compatible
-            with each other.
+        ValueError: If the options, the recipe, the agent, the world and the folder are not
+            compatible with each other.
         FileNotFoundError: Weights are missing.
     """
     config = copy.deepcopy(config)
@@ -278,7 +278,7 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
     Such corruptions would leave the agent's frames clean. The removed corruptions are printed.
 
     Raises:
-        ValueError: A schedule would contain no corruptions after the removal.
+        ValueError: If a schedule would contain no corruptions after the removal.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
@@ -311,7 +311,8 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
     """Return the stages that will run.
 
     Raises:
-        ValueError: A stage cannot train ``agent``, or :meth:`ObjectiveSpec.of` raised this error.
+        ValueError: If a stage cannot train ``agent``, or :meth:`ObjectiveSpec.of` raised this
+            error.
     """
     _check_settings(config.agent, agent)
     stages = []
@@ -355,8 +356,8 @@ def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ra
     """Check before the first step that the world, the folder and the stages fit the agent.
 
     Raises:
-        ValueError: The number of views differs between the world and the agent, the folder contains
-            a different run, or there are more ``ranks`` than pieces of work per step.
+        ValueError: If the number of views differs between the world and the agent, the folder
+            contains a different run, or there are more ``ranks`` than pieces of work per step.
     """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
@@ -395,9 +396,9 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
     objective that a user wrote, because it is unknown how such an objective changes the agent.
 
     Raises:
-        ValueError: There are more ``ranks`` than pieces of work per step, or an objective raised
+        ValueError: If there are more ``ranks`` than pieces of work per step, or an objective raised
             this error.
-        FileNotFoundError: An objective raised this error.
+        FileNotFoundError: If an objective raised this error.
     """
     if len(stages) < 2 and ranks.count == 1:  # a single stage is built immediately after this check
         return

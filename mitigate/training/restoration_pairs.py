@@ -134,7 +134,7 @@ def pairs_of(
     A folder of frames has no ``training`` episodes. From a folder, ``frames`` frames are read once.
 
     Raises:
-        ValueError: The schedule samples corruptions by success rate.
+        ValueError: If the schedule samples corruptions by success rate.
     """
     success.refuse(schedule)
     if training is None:

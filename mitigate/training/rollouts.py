@@ -47,7 +47,7 @@ class Rollouts(DrawsBySuccess):
         refresh_episodes: number of training episodes per corruption in each measurement.
 
     Raises:
-        ValueError: There are no episodes, a fraction is invalid, or ``prior_rates`` raised this
+        ValueError: If there are no episodes, a fraction is invalid, or ``prior_rates`` raised this
             error.
     """
 

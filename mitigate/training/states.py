@@ -61,9 +61,9 @@ def load(path: Path) -> dict[str, Any]:
     """Return the state that is stored in ``path``, with tensors on the CPU.
 
     Raises:
-        FileNotFoundError: The file is missing.
+        FileNotFoundError: If the file is missing.
         Damaged: The file is cut short or its bytes have changed.
-        ValueError: The file is not a checkpoint of this trainer, or it is intact but cannot be
+        ValueError: If the file is not a checkpoint of this trainer, or it is intact but cannot be
             read.
     """
     path = Path(path)

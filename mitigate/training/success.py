@@ -122,8 +122,9 @@ def prior_rates(path: Path | str) -> dict[str, float]:
     evaluated on other episodes.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or its rows belong to several agents, splits or severities.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or its rows belong to several agents, splits or
+            severities.
     """
     rows = read(path)
     kinds = {

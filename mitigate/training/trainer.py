@@ -75,7 +75,7 @@ class Trainer:
             rejected.
 
     Raises:
-        ValueError: A setting is out of its range.
+        ValueError: If a setting is out of its range.
     """
 
     objective: Objective
@@ -128,8 +128,8 @@ class Trainer:
         one.
 
         Raises:
-            LossNotFinite: The loss, its gradient or the weights are not finite.
-            ValueError: The checkpoint cannot be resumed.
+            LossNotFinite: If the loss, its gradient or the weights are not finite.
+            ValueError: If the checkpoint cannot be resumed.
         """
         start = self._resume()
         if self._finished:

@@ -255,7 +255,7 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         The episodes.
 
     Raises:
-        FileNotFoundError: The file does not exist.
+        FileNotFoundError: If the file does not exist.
         ValueError: An episode is invalid. The message contains the file, the episode and the key.
     """
     has_episodes = False
@@ -306,7 +306,7 @@ class ListedEpisodes:
         path: An episode file.
 
     Raises:
-        ValueError: The file contains no episode, or :func:`read_episodes` raised this error.
+        ValueError: If the file contains no episode, or :func:`read_episodes` raised this error.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -365,7 +365,7 @@ def write_episodes(
         The path.
 
     Raises:
-        ValueError: A value cannot be written as JSON, such as NaN or infinity.
+        ValueError: If a value cannot be written as JSON, such as NaN or infinity.
     """
     path = Path(path)
     with atomic_text(path) as file:

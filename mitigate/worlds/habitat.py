@@ -61,9 +61,9 @@ def corrupt_habitat(
         not corrupted are not copied.
 
     Raises:
-        ValueError: No camera has the modality, the yaw of a camera is not a multiple of 30 degrees
-            below 360, the cameras of a modality differ in size, the corruption is a fault, or
-            ``corrupt_normalised`` raised this error.
+        ValueError: If no camera has the modality, the yaw of a camera is not a multiple of 30
+            degrees below 360, the cameras of a modality differ in size, the corruption is a fault,
+            or ``corrupt_normalised`` raised this error.
     """
     check_turn(turn)
     if fault := family(check_corruption(corruption).name):

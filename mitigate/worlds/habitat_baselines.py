@@ -82,7 +82,7 @@ class CorruptObservation(ObservationTransformer):
         contains some of its entries.
 
         Raises:
-            ValueError: The mapping has an unknown entry.
+            ValueError: If the mapping has an unknown entry.
         """
         entries = dict(config) if isinstance(config, Mapping) else dict(vars(config))
         known = [field.name for field in fields(CorruptObservationConfig)]

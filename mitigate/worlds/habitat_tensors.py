@@ -50,9 +50,9 @@ def corrupt_habitat_tensors(
         if no row corrupts it.
 
     Raises:
-        ValueError: No camera has the modality, the yaw of a camera is not a multiple of 30 degrees
-            below 360, the cameras of a modality differ in size, or ``corrupt_observations`` raised
-            this error.
+        ValueError: If no camera has the modality, the yaw of a camera is not a multiple of 30
+            degrees below 360, the cameras of a modality differ in size, or ``corrupt_observations``
+            raised this error.
     """
     check_turn(turn)
     parts = [part for corruption in corruptions for part in corruption.parts]

@@ -109,8 +109,8 @@ class HabitatWorld(World):
         """Start an episode.
 
         Raises:
-            FileNotFoundError: The scene does not exist.
-            ValueError: The start or a goal is not on the navmesh.
+            FileNotFoundError: If the scene does not exist.
+            ValueError: If the start or a goal is not on the navmesh.
         """
         self._load_scene(episode.scene_id)
         self.episode = episode
@@ -130,8 +130,8 @@ class HabitatWorld(World):
         """Take a low-level action.
 
         Raises:
-            ValueError: The action does not exist.
-            RuntimeError: The episode is over.
+            ValueError: If the action does not exist.
+            RuntimeError: If the episode is over.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
@@ -151,7 +151,7 @@ class HabitatWorld(World):
         """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
         Raises:
-            RuntimeError: The episode is over.
+            RuntimeError: If the episode is over.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")

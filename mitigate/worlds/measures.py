@@ -59,7 +59,7 @@ class Rule:
         An infinite distance means that the goal is unreachable, and counts as a failure.
 
         Raises:
-            ValueError: The distance is NaN.
+            ValueError: If the distance is NaN.
         """
         if math.isnan(distance):
             raise ValueError(
@@ -102,7 +102,7 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
         length: L, length of the agent's path in metres.
 
     Raises:
-        ValueError: A length is negative or not finite.
+        ValueError: If a length is negative or not finite.
     """
     for name, metres in (("geodesic distance", geodesic_distance), ("path length", length)):
         if not 0 <= metres < math.inf:

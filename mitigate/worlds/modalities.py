@@ -21,7 +21,7 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
             the modality.
 
     Raises:
-        ValueError: A modality is missing.
+        ValueError: If a modality is missing.
     """
     names = list(names)
     missing = [name for name in names if not any(m in available for m in record(name).modalities)]

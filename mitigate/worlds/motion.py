@@ -46,7 +46,7 @@ class FaultyMotion(WorldWrapper):
         seed: Corruption seed.
 
     Raises:
-        ValueError: The fault is not possible with the actions of the world.
+        ValueError: If the fault is not possible with the actions of the world.
     """
 
     def __init__(self, world: World, fault: Corruption, seed: int) -> None:

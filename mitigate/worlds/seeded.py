@@ -27,7 +27,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     list to ``mitigate.benchmark(listed=...)``.
 
     Raises:
-        ValueError: A seed is not an integer from 0 to 2147483647.
+        ValueError: If a seed is not an integer from 0 to 2147483647.
     """
     seeds = [int(seed) if isinstance(seed, np.integer) else seed for seed in seeds]
     for seed in seeds:
@@ -233,8 +233,8 @@ class SeededWorld(World):
         """Take an action.
 
         Raises:
-            RuntimeError: The episode is over.
-            ValueError: The action does not exist, the environment ended the episode without
+            RuntimeError: If the episode is over.
+            ValueError: If the action does not exist, the environment ended the episode without
                 reporting success, or the reward is NaN although the score depends on it.
         """
         if self.done:
@@ -267,7 +267,7 @@ class SeededWorld(World):
         observations.
 
         Raises:
-            ValueError: The actions are not supported (``core/spaces.py``).
+            ValueError: If the actions are not supported (``core/spaces.py``).
         """
         raise NotImplementedError(f"{type(self).__name__} defines no _spaces(env)")
 
@@ -385,7 +385,7 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
     """Return whether a value, or at least one of its elements, is true. None counts as false.
 
     Raises:
-        ValueError: An element is something other than a boolean, 0 or 1.
+        ValueError: If an element is something other than a boolean, 0 or 1.
     """
     try:
         parts = np.asarray(value).ravel().tolist()

@@ -48,8 +48,8 @@ class WorldEnv(EnvBase):
             they run the same episodes as a single environment would.
 
     Raises:
-        ValueError: The list of episodes is empty, or ``worker`` is not between 0 and ``workers`` -
-            1.
+        ValueError: If the list of episodes is empty, or ``worker`` is not between 0 and ``workers``
+            - 1.
     """
 
     key = "world env"  # name of the random stream from which episodes are sampled
@@ -195,8 +195,8 @@ def _space_of(spec: Any) -> ActionSpace:
     """Return the action space that corresponds to a torchrl spec.
 
     Raises:
-        ValueError: The spec is not Categorical, OneHot, MultiCategorical, or a bounded or unbounded
-            array.
+        ValueError: If the spec is not Categorical, OneHot, MultiCategorical, or a bounded or
+            unbounded array.
     """
     kind = type(spec).__name__
     if kind == "Categorical" and spec.shape.numel() == 1:

@@ -56,9 +56,9 @@ class CorruptObservation(Transform):
             None, torch is used for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
-        ValueError: The data have no episode or frame number, the schedule corrupts a missing entry,
-            a temporal fault is applied to a replay buffer, or ``corrupt_observation`` raised this
-            error.
+        ValueError: If the data have no episode or frame number, the schedule corrupts a missing
+            entry, a temporal fault is applied to a replay buffer, or ``corrupt_observation`` raised
+            this error.
     """
 
     def __init__(
@@ -118,7 +118,7 @@ class CorruptObservation(Transform):
         Entries other than frames are shared with the input.
 
         Raises:
-            ValueError: The corruption is a temporal fault, or the depth may be normalised.
+            ValueError: If the corruption is a temporal fault, or the depth may be normalised.
         """
         if isinstance(self.schedule, Corruption) and is_timed(self.schedule):
             raise ValueError(
@@ -241,7 +241,7 @@ class EpisodeCounter(Transform):
             corruptions.
 
     Raises:
-        ValueError: ``worker`` is not between 0 and ``workers`` - 1.
+        ValueError: If ``worker`` is not between 0 and ``workers`` - 1.
     """
 
     def __init__(self, worker: int = 0, workers: int | None = None) -> None:

@@ -57,7 +57,7 @@ class CorruptVectorObservation(VectorWrapper):
         backend: As in ``mitigate.corruptions.tensors.corrupt_tensors``.
 
     Raises:
-        ValueError: ``autoreset_mode`` is missing, the observation lacks the frames that a
+        ValueError: If ``autoreset_mode`` is missing, the observation lacks the frames that a
             corruption changes, or ``corrupt_observations`` raised this error.
     """
 

@@ -102,7 +102,7 @@ class World:
         The world may reuse the arrays of the observation, so copy them if you keep them.
 
         Raises:
-            ValueError: The episode does not belong to this world.
+            ValueError: If the episode does not belong to this world.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no reset(episode)")
 
@@ -367,7 +367,7 @@ def expert_of(world: World) -> Expert:
     """Return the expert of a world for the current episode.
 
     Raises:
-        ValueError: The world has no expert.
+        ValueError: If the world has no expert.
     """
     expert = as_world(world).expert()
     if expert is None:
@@ -410,7 +410,7 @@ def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
         fix: Last part of the error message, which contains advice for the user.
 
     Raises:
-        ValueError: The median depth is above ``MAX_MEDIAN_DEPTH``.
+        ValueError: If the median depth is above ``MAX_MEDIAN_DEPTH``.
     """
     readings = depth[depth > 0]
     median = float(np.median(readings)) if len(readings) else 0.0

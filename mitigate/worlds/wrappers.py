@@ -66,8 +66,9 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         key: Random key of the last frame.
 
     Raises:
-        ValueError: The observation space has no such frames, or lacks the modality of a corruption
-            in the schedule, or its bounds are smaller than the range of the depth sensor.
+        ValueError: If the observation space has no such frames, or lacks the modality of a
+            corruption in the schedule, or its bounds are smaller than the range of the depth
+            sensor.
     """
 
     def __init__(
@@ -130,7 +131,7 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         itself.
 
         Raises:
-            gymnasium.error.ResetNeeded: ``reset`` was never called.
+            gymnasium.error.ResetNeeded: If ``reset`` was never called.
         """
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:

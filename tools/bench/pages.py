@@ -11,7 +11,7 @@ def put(text: str, page: Path, begin: str, end: str) -> None:
     """Replace the text between the lines ``begin`` and ``end`` of ``page``.
 
     Raises:
-        ValueError: The page does not contain these lines.
+        ValueError: If the page does not contain these lines.
     """
     before, first_marker, rest = page.read_text(encoding="utf-8").partition(begin)
     _, last_marker, after = rest.partition(end)

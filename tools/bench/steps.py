@@ -48,8 +48,8 @@ def step_costs(run: Path) -> dict[str, float]:
     TensorBoard files.
 
     Raises:
-        FileNotFoundError: The folder contains no stages.
-        ValueError: A stage has fewer than ``MIN_STEPS`` steps.
+        FileNotFoundError: If the folder contains no stages.
+        ValueError: If a stage has fewer than ``MIN_STEPS`` steps.
     """
     stages = sorted({file.parent for file in run.glob("*/events.out.tfevents.*")})
     if not stages:
@@ -64,7 +64,7 @@ def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, fl
     """Return, by stage, the seconds per step of ``other`` divided by the seconds of ``reference``.
 
     Raises:
-        ValueError: The runs have different stages.
+        ValueError: If the runs have different stages.
     """
     if reference.keys() != other.keys():
         raise ValueError(

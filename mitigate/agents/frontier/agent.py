@@ -91,7 +91,7 @@ class FrontierAgent(SideBySide, nn.Module):
         eye: height of the camera above the floor in metres.
 
     Raises:
-        ValueError: A name in ``blind`` is unknown.
+        ValueError: If a name in ``blind`` is unknown.
     """
 
     # this name is part of published fingerprints, so it must not change
@@ -148,7 +148,7 @@ class FrontierAgent(SideBySide, nn.Module):
         """Start an episode; warn if ``instruction`` names no object that the agent knows.
 
         Raises:
-            TypeError: ``instruction`` is not a string.
+            TypeError: If ``instruction`` is not a string.
         """
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")

@@ -52,7 +52,7 @@ class Joint(Distribution):
         """Return the entropy of each action's distribution, [B].
 
         Raises:
-            ValueError: The distribution of a part has no known entropy.
+            ValueError: If the distribution of a part has no known entropy.
         """
         try:
             return sum(_per_action(part.entropy()) for part in self.parts)  # type: ignore[return-value]
@@ -79,7 +79,7 @@ class ActorCritic(nn.Module):
         module: name of the module of the network whose output a new critic reads.
 
     Raises:
-        ValueError: The policy has a memory, or returns no distribution of its actions.
+        ValueError: If the policy has a memory, or returns no distribution of its actions.
     """
 
     def __init__(self, policy: Policy, frames: Mapping[str, np.ndarray], module: str) -> None:

@@ -139,7 +139,7 @@ class Policy(Agent, nn.Module):
         """Return the entropy of the last action's distribution (``agents/agent.py``).
 
         Raises:
-            ValueError: The policy returns no distribution of actions.
+            ValueError: If the policy returns no distribution of actions.
         """
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]
@@ -184,7 +184,7 @@ def copied(policy: Policy) -> Policy:
     """Return a copy of a policy that shares no weights with the original.
 
     Raises:
-        ValueError: The network cannot be copied.
+        ValueError: If the network cannot be copied.
     """
     policy.forget()
     try:
@@ -202,7 +202,7 @@ def last_convolution(policy: Policy) -> str:
     """Return the name of the last convolution, or of the first layer if there is no convolution.
 
     Raises:
-        ValueError: The network has neither a convolution nor a linear layer.
+        ValueError: If the network has neither a convolution nor a linear layer.
     """
     layers = [
         (name, isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d)))

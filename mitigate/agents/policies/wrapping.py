@@ -38,9 +38,9 @@ def as_policy(
         recurrent: whether ``forward`` takes and returns a memory.
 
     Raises:
-        TypeError: The policy is of an unsupported type.
-        ValueError: The world lacks ``action_space`` or ``native``, or the policy reads entries that
-            are missing in the world's ``entries``.
+        TypeError: If the policy is of an unsupported type.
+        ValueError: If the world lacks ``action_space`` or ``native``, or the policy reads entries
+            that are missing in the world's ``entries``.
     """
     if isinstance(policy, Policy):
         return policy

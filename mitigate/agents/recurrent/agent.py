@@ -87,7 +87,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         vocabulary: the words that the agent knows, or None for the words of the shipped agents.
 
     Raises:
-        ValueError: ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
+        ValueError: If ``sensors`` is empty, or a name in ``sensors`` or ``blind`` is unknown.
     """
 
     # this name is part of published fingerprints, so it must not change
@@ -294,7 +294,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         """Return the memory of a new episode; warn if all words of ``instruction`` are unknown.
 
         Raises:
-            TypeError: ``instruction`` is not a string.
+            TypeError: If ``instruction`` is not a string.
         """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])

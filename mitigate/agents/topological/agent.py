@@ -97,7 +97,7 @@ class TopologicalAgent(Agent, nn.Module):
             With that encoder, ``size`` applies only to RGB, and depth stays at 64 pixels.
 
     Raises:
-        ValueError: A name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
+        ValueError: If a name in ``blind`` is unknown, or ``size`` is not a multiple of 16.
     """
 
     # this name is part of published fingerprints, so it must not change
@@ -354,7 +354,7 @@ class TopologicalAgent(Agent, nn.Module):
         """Start an episode; warn if the agent knows no word of ``instruction``.
 
         Raises:
-            TypeError: ``instruction`` is not a string.
+            TypeError: If ``instruction`` is not a string.
         """
         checked.instruction(instruction, self.vocabulary)
         self.map, self.controller = TopologicalMap(), Controller()
@@ -371,7 +371,7 @@ class TopologicalAgent(Agent, nn.Module):
         """Return one low-level action; read frames only when a decision is due.
 
         Raises:
-            RuntimeError: ``reset`` was not called.
+            RuntimeError: If ``reset`` was not called.
             KeyError, TypeError, ValueError: An entry of the observation is missing or has a wrong
                 dtype, shape or unit.
         """

@@ -86,7 +86,7 @@ class ImageNetEncoder(RGBEncoder):
     """An RGB encoder whose stem and stages come from EfficientNet-Lite0.
 
     Raises:
-        ValueError: ``size`` is not a multiple of 32, or the package is not installed.
+        ValueError: If ``size`` is not a multiple of 32, or the package is not installed.
     """
 
     widths = (320,)  # number of channels of the last feature map

@@ -89,7 +89,7 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
     """Return the decision with the oracle's answer, which is based on shortest paths.
 
     Raises:
-        ValueError: The world's expert does not provide distances.
+        ValueError: If the world's expert does not provide distances.
     """
     nodes = [walk.expert.distance(p) for p in graph.positions]
     ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
@@ -123,7 +123,7 @@ class LiveWalk:
         clean: also keep the frames before corruption.
 
     Raises:
-        ValueError: The world has no expert.
+        ValueError: If the world has no expert.
     """
 
     def __init__(

@@ -276,7 +276,7 @@ class Store:
         seed: corruption seed.
 
     Raises:
-        ValueError: The number of variants is above 0, but no schedule samples corruptions.
+        ValueError: If the number of variants is above 0, but no schedule samples corruptions.
     """
 
     def __init__(

@@ -76,8 +76,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
         adapters: must be None; recipes that insert adapters into encoders do not fit this agent.
 
     Raises:
-        ValueError: A setting is invalid, a package is missing, or the model cannot be loaded.
-        FileNotFoundError: The folder of the model does not exist.
+        ValueError: If a setting is invalid, a package is missing, or the model cannot be loaded.
+        FileNotFoundError: If the folder of the model does not exist.
     """
 
     frozen = ("network",)

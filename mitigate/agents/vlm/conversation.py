@@ -73,7 +73,7 @@ class AnsweringAgent(Agent):
         system_prompt: text of the system, or None to send none.
 
     Raises:
-        ValueError: ``answers`` is unknown, ``history`` is out of range, or ``task`` lacks
+        ValueError: If ``answers`` is unknown, ``history`` is out of range, or ``task`` lacks
             "{instruction}".
     """
 

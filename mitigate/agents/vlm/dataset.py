@@ -48,7 +48,7 @@ def write_conversations(
         The number of lines.
 
     Raises:
-        ValueError: The world has no expert, or ``answers`` is unknown.
+        ValueError: If the world has no expert, or ``answers`` is unknown.
     """
     allowed, count = answers_of(answers), 0
     with atomic_text(make_folder(folder) / CONVERSATIONS) as file:

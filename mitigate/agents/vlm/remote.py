@@ -46,7 +46,7 @@ class RemoteAgent(AnsweringAgent):
         options: additional fields of the request.
 
     Raises:
-        ValueError: A setting is invalid.
+        ValueError: If a setting is invalid.
     """
 
     def __init__(

@@ -71,8 +71,8 @@ def send(channel, message):
     """Send a dict of plain data; convert numpy numbers and arrays to Python's types.
 
     Raises:
-        ValueError: The message is too large.
-        TypeError: A value is not plain data.
+        ValueError: If the message is too large.
+        TypeError: If a value is not plain data.
     """
     body = json.dumps(message, default=_as_python).encode("utf-8")
     if len(body) > MAX_MESSAGE:
@@ -1027,7 +1027,7 @@ class Episode:
             **metrics: Other measures, such as ``distance_to_goal``.
 
         Raises:
-            ValueError: A value is outside its range.
+            ValueError: If a value is outside its range.
         """
         self._check()
         report = dict(metrics, success=_check_flag(success, "success"))
@@ -1172,8 +1172,8 @@ def wanted(episodes):
         a hash of their names.
 
     Raises:
-        RuntimeError: The program does not run under ``mitigate run``.
-        ValueError: An entry of ``episodes`` is not a pair.
+        RuntimeError: If the program does not run under ``mitigate run``.
+        ValueError: If an entry of ``episodes`` is not a pair.
     """
     _check_run()
     episodes = list(episodes)
@@ -1208,7 +1208,7 @@ def connect(episode, scene="", instruction=None):
         instruction: Text for the agent.
 
     Raises:
-        RuntimeError: The program does not run under ``mitigate run``.
+        RuntimeError: If the program does not run under ``mitigate run``.
     """
     _check_run()
     if _thread.session is None:

@@ -44,7 +44,7 @@ class Rewriter:
         seed: a number in the cache key, which separates different answers of the same model.
 
     Raises:
-        ValueError: ``cache`` is a folder.
+        ValueError: If ``cache`` is a folder.
     """
 
     def __init__(

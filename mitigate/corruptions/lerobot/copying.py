@@ -109,10 +109,10 @@ def run(
         The summary, which is also written to ``out/corrupt.json``.
 
     Raises:
-        FileNotFoundError: The folder or a file of the dataset is missing.
-        ValueError: The dataset is damaged, an option does not apply, or ``out`` contains other
+        FileNotFoundError: If the folder or a file of the dataset is missing.
+        ValueError: If the dataset is damaged, an option does not apply, or ``out`` contains other
             files.
-        OSError: ``out`` cannot be written.
+        OSError: If ``out`` cannot be written.
     """
     source, out = Path(source), Path(out)
     check_folders(source, out)

@@ -97,7 +97,7 @@ class Dataset:
         ``names``.
 
         Raises:
-            ValueError: A name is unknown, or its camera cannot be used.
+            ValueError: If a name is unknown, or its camera cannot be used.
         """
         for name in names or ():
             if name in self.other_cameras:
@@ -127,8 +127,8 @@ class Dataset:
         """Read the rows of a file in data/.
 
         Raises:
-            FileNotFoundError: The file is missing.
-            ValueError: The file is damaged, or the rows of an episode are incomplete or not in
+            FileNotFoundError: If the file is missing.
+            ValueError: If the file is damaged, or the rows of an episode are incomplete or not in
                 order.
         """
         path = self.path / data
@@ -161,8 +161,8 @@ class Dataset:
             For each feature of ``signals``, an array float64 [N, size].
 
         Raises:
-            FileNotFoundError: The file is missing.
-            ValueError: The file is damaged, or a feature has a different shape.
+            FileNotFoundError: If the file is missing.
+            ValueError: If the file is damaged, or a feature has a different shape.
         """
         path = self.path / data
         table = read_columns(path, (), list(self.signals))
@@ -188,8 +188,8 @@ def open_dataset(folder: Path | str) -> Dataset:
         The dataset.
 
     Raises:
-        FileNotFoundError: A file of the metadata is missing.
-        ValueError: The dataset has another version, is damaged or incomplete, or ``pyarrow`` is
+        FileNotFoundError: If a file of the metadata is missing.
+        ValueError: If the dataset has another version, is damaged or incomplete, or ``pyarrow`` is
             not installed.
     """
     path = Path(folder)

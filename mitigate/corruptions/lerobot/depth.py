@@ -43,7 +43,7 @@ class DepthCode:
         """Return the depth encoding that the ``info`` of a feature describes.
 
         Raises:
-            ValueError: A parameter is invalid; the message begins with ``place``.
+            ValueError: If a parameter is invalid; the message begins with ``place``.
         """
         names = ("depth_min", "depth_max", "shift")
         defaults = (cls.near, cls.far, cls.shift)

@@ -37,8 +37,8 @@ def read_frames(
         no reading.
 
     Raises:
-        FileNotFoundError: A file is missing.
-        ValueError: A file is damaged, or a video has no frame near one of the times.
+        FileNotFoundError: If a file is missing.
+        ValueError: If a file is damaged, or a video has no frame near one of the times.
     """
     streams = [
         _video_frames(dataset, episode, camera, times, tolerance)
@@ -118,7 +118,7 @@ def stored_image(
     """Return an image in a table without conversion, and the format of its file.
 
     Raises:
-        ValueError: The image is damaged, or its type or size differs from the camera's.
+        ValueError: If the image is damaged, or its type or size differs from the camera's.
     """
     value = table.column(camera.name)[row].as_py()
     try:

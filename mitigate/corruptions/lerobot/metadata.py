@@ -241,7 +241,7 @@ def _template(file: Path, key: str, template: object) -> str:
     """Return a path template of meta/info.json after checking it.
 
     Raises:
-        ValueError: The template is not a relative path, leads outside of the dataset, or has a
+        ValueError: If the template is not a relative path, leads outside of the dataset, or has a
             field other than chunk_index, file_index and (for videos) video_key.
     """
     is_video = key == "video_path"
@@ -277,7 +277,7 @@ def _place(
         video: Name of the camera.
 
     Raises:
-        ValueError: The index of a chunk or file is out of range.
+        ValueError: If the index of a chunk or file is out of range.
     """
     values = {name: columns[f"{prefix}/{name}"][row] for name in ("chunk_index", "file_index")}
     if not all(0 <= value < MAX_INDEX for value in values.values()):

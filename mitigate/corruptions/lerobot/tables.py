@@ -32,8 +32,8 @@ def check_file(path: Path) -> None:
     """Check that a file of a dataset exists.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The path is a Git LFS pointer, a FIFO or a device.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the path is a Git LFS pointer, a FIFO or a device.
     """
     if not is_regular(path):
         raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
@@ -49,8 +49,8 @@ def open_table(path: Path) -> Iterator[Any]:
         A ``pyarrow.parquet.ParquetFile``.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or expands to too many rows or bytes.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or expands to too many rows or bytes.
     """
     pq = parquet()
     import pyarrow
@@ -102,8 +102,8 @@ def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = (
         A ``pyarrow.Table``.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged or lacks a column.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged or lacks a column.
     """
     with open_table(path) as file:
         names = file.schema_arrow.names

@@ -85,8 +85,8 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
         The container and its video stream.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or its frames have a different size than ``camera``.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or its frames have a different size than ``camera``.
     """
     av = video_library()
     check_file(path)
@@ -142,8 +142,8 @@ def decode(
         uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
 
     Raises:
-        FileNotFoundError: The file is missing.
-        ValueError: The file is damaged, or has no frame near one of the times.
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or has no frame near one of the times.
     """
     if not times:
         return
@@ -246,7 +246,7 @@ def corrupt_video(
             float32 metres [H, W]), the time in seconds, and the frame number in the video.
 
     Raises:
-        ValueError: The original is damaged.
+        ValueError: If the original is damaged.
     """
     av = video_library()
     with (

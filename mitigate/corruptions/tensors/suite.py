@@ -75,9 +75,9 @@ def corrupt_tensors(
         A new tensor of the same shape and dtype on the same device, without gradient.
 
     Raises:
-        ValueError: An argument is invalid, or the corruption is a fault, or more than nine tenths
-            of the depth values of a row exceed three times the sensor's z_max (and are probably in
-            millimetres).
+        ValueError: If an argument is invalid, or the corruption is a fault, or more than nine
+            tenths of the depth values of a row exceed three times the sensor's z_max (and are
+            probably in millimetres).
     """
     if fault := registry.family(name):
         raise ValueError(

@@ -112,7 +112,7 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
     """Return the rows of the entry's agents, seeds and conditions.
 
     Raises:
-        ValueError: There are no rows of the entry's agents.
+        ValueError: If there are no rows of the entry's agents.
     """
     agents = {(one["agent"], one["seed"]) for one in entry.agents}
     matching = [row for row in rows if (row["agent"], row["seed"]) in agents]

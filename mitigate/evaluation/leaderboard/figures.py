@@ -38,7 +38,7 @@ def entry_of(
         **texts: sensors, training_data and link of the entry.
 
     Raises:
-        ValueError: No rows match; the rows mix several splits, episode lists, suites, rules, or
+        ValueError: If no rows match; the rows mix several splits, episode lists, suites, rules, or
             agents that are not training seeds of one column; or a condition lacks episodes.
     """
     chosen = _chosen(rows, name, severity, split)
@@ -101,7 +101,7 @@ def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) 
     """Return the clean rows of the agent ``name`` and its rows at ``severity``.
 
     Raises:
-        ValueError: The agent has no rows at ``severity``.
+        ValueError: If the agent has no rows at ``severity``.
     """
     rows = list(rows)
     if name not in (names := {row["name"] for row in rows}):

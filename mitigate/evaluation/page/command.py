@@ -47,7 +47,7 @@ def run(
         options: options of ``mitigate evaluate``, such as "split=val_seen".
 
     Raises:
-        FileNotFoundError: A path contains no rows.
+        FileNotFoundError: If a path contains no rows.
         ValueError: Rows are damaged, a name does not occur in them, ``options`` are given without
             ``walk``, or ``out`` does not end in .html.
     """

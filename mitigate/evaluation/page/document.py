@@ -109,7 +109,7 @@ def report(
         most: maximum number of episodes on the page, summed over all cells of its tables.
 
     Raises:
-        ValueError: There are no rows, or the page would be too large.
+        ValueError: If there are no rows, or the page would be too large.
     """
     rows = list(rows)
     parts, packed = sections(rows), Packed(most)

@@ -105,7 +105,7 @@ def walk_again(
         seed: corruption seed.
 
     Raises:
-        ValueError: An agent has no rows, no episode can be chosen, or the world has no poses.
+        ValueError: If an agent has no rows, no episode can be chosen, or the world has no poses.
     """
     if POSE not in world.sensors:
         raise ValueError(
@@ -150,7 +150,7 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     """Return the rows of the agents in ``hashes`` (by name).
 
     Raises:
-        ValueError: All rows with the name of an agent belong to agents with different hashes.
+        ValueError: If all rows with the name of an agent belong to agents with different hashes.
     """
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})

@@ -13,7 +13,7 @@ def parsed(choice: str) -> list[tuple[str, str]]:
     """Return the pairs (method, reset) that ``choice`` lists.
 
     Raises:
-        ValueError: A method or a value of reset is unknown.
+        ValueError: If a method or a value of reset is unknown.
     """
     parts = []
     for part in str(choice).split("+"):

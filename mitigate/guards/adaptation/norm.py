@@ -27,7 +27,7 @@ class Norm(Adaptation):
         reset: see :class:`Adaptation`.
 
     Raises:
-        ValueError: ``momentum`` or ``reset`` is invalid.
+        ValueError: If ``momentum`` or ``reset`` is invalid.
     """
 
     kind = "norm"

@@ -45,7 +45,7 @@ class Recentre(Adaptation):
             means.
 
     Raises:
-        ValueError: ``prior`` or ``reset`` is invalid.
+        ValueError: If ``prior`` or ``reset`` is invalid.
     """
 
     kind = "recentre"
@@ -154,7 +154,7 @@ def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
     If ``names`` is None, return the image encoders of the agent.
 
     Raises:
-        ValueError: A module does not exist, or the agent declares no encoders.
+        ValueError: If a module does not exist, or the agent declares no encoders.
     """
     root: Any = agent.network if isinstance(agent, Policy) else agent
     if names is None and isinstance(agent, Policy):

@@ -35,7 +35,7 @@ class Tent(Adaptation):
         reset: see :class:`Adaptation`.
 
     Raises:
-        ValueError: ``lr`` or ``reset`` is invalid.
+        ValueError: If ``lr`` or ``reset`` is invalid.
     """
 
     kind = "tent"

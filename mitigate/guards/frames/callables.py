@@ -132,7 +132,7 @@ def open_callable(choice: str) -> Guard:
     """Build the guard for ``restore=module:callable``.
 
     Raises:
-        ValueError: The module or the callable does not exist, or the object cannot be called.
+        ValueError: If the module or the callable does not exist, or the object cannot be called.
     """
     named = callable_of(choice)
     assert named is not None, f"{choice} is no module:callable"

@@ -43,8 +43,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     """Return the checked content of ``card.json``.
 
     Raises:
-        FileNotFoundError: A file of the folder is missing.
-        ValueError: The card is damaged or has an unknown format.
+        FileNotFoundError: If a file of the folder is missing.
+        ValueError: If the card is damaged or has an unknown format.
     """
     folder = Path(folder)
     missing = [n for n in (CARD, checkpoint.WEIGHTS) if not (folder / n).is_file()]

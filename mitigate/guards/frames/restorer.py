@@ -35,7 +35,7 @@ class Restorer(nn.Module, Guard):
         far: maximum depth in metres.
 
     Raises:
-        ValueError: A sensor is unknown, or a size is out of range.
+        ValueError: If a sensor is unknown, or a size is out of range.
     """
 
     def __init__(
@@ -129,7 +129,7 @@ class Restorer(nn.Module, Guard):
                 Depth is in metres, floating point with shape [H, W], [H, W, 1] or [V, H, W, 1].
 
         Raises:
-            KeyError: The restorer has no network for ``sensor``.
+            KeyError: If the restorer has no network for ``sensor``.
             TypeError, ValueError: ``frame`` has the wrong type, dtype or shape, or its depth is not
                 in metres.
         """
@@ -183,8 +183,8 @@ def load_restorer(folder: str | Path) -> Restorer:
     """Load the restorer in ``folder`` in eval mode; it can be called with an observation.
 
     Raises:
-        FileNotFoundError: The folder contains no restorer.
-        ValueError: A file is damaged or differs from the card.
+        FileNotFoundError: If the folder contains no restorer.
+        ValueError: If a file is damaged or differs from the card.
     """
     path = find(str(folder))
     restorer = Restorer(**folders.card(path)["settings"])

@@ -93,8 +93,8 @@ class Simulator:
         """Execute one low-level action.
 
         Raises:
-            RuntimeError: The episode is over.
-            ValueError: The action does not exist.
+            RuntimeError: If the episode is over.
+            ValueError: If the action does not exist.
         """
         if action != STOP and action not in MOVES:
             raise ValueError(
@@ -107,7 +107,7 @@ class Simulator:
         """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
         Raises:
-            RuntimeError: The episode is over.
+            RuntimeError: If the episode is over.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")

@@ -46,7 +46,8 @@ class ApartmentsWorld(World):
         rule: name of the success rule in ``RULES``.
 
     Raises:
-        ValueError: The size or the number of views is not allowed, or the success rule is unknown.
+        ValueError: If the size or the number of views is not allowed, or the success rule is
+            unknown.
     """
 
     def __init__(

@@ -71,8 +71,8 @@ def open_recording(
         The drives.
 
     Raises:
-        FileNotFoundError: ``path`` does not exist or contains no drive.
-        ValueError: A drive is damaged, or an option does not apply to it.
+        FileNotFoundError: If ``path`` does not exist or contains no drive.
+        ValueError: If a drive is damaged, or an option does not apply to it.
     """
     path = Path(path)
     allowed = [field.name for field in fields(Topics)]

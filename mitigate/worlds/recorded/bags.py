@@ -66,7 +66,7 @@ class Bag(Source):
         options: Options for opening it.
 
     Raises:
-        ValueError: The bag is damaged or lacks a topic, or ``rosbags`` is not installed.
+        ValueError: If the bag is damaged or lacks a topic, or ``rosbags`` is not installed.
     """
 
     def __init__(self, path: Path, options: Options) -> None:

@@ -62,8 +62,8 @@ def read_run(path: Path, options: Options) -> list[Frames]:
     """Read all episodes of a recording that ``mitigate run`` wrote.
 
     Raises:
-        FileNotFoundError: A file is missing.
-        ValueError: The recording is damaged, or an option does not apply to it.
+        FileNotFoundError: If a file is missing.
+        ValueError: If the recording is damaged, or an option does not apply to it.
     """
     # hidden folders are skipped: they hold episodes that are still being recorded or were
     # interrupted
@@ -162,7 +162,7 @@ def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | 
     """Return the number under a key of a JSON object, or None if it is missing or null.
 
     Raises:
-        ValueError: The value is not a number, or it is too large.
+        ValueError: If the value is not a number, or it is too large.
     """
     value = values.get(key)
     if value is None:
@@ -205,7 +205,7 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
     """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``. Each frame file is one step.
 
     Raises:
-        ValueError: The folder is damaged.
+        ValueError: If the folder is damaged.
     """
     if (path / TRAJECTORY).is_file():
         raise ValueError(

@@ -64,9 +64,9 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
     """Open the episodes of a dataset. Their frames are read later.
 
     Raises:
-        FileNotFoundError: A file is missing.
-        ValueError: The dataset is damaged, several cameras are possible, an episode is too long or
-            has an unknown task, or the name of a camera or the number of an episode is unknown.
+        FileNotFoundError: If a file is missing.
+        ValueError: If the dataset is damaged, several cameras are possible, an episode is too long
+            or has an unknown task, or the name of a camera or the number of an episode is unknown.
     """
     dataset = open_dataset(path)
     chosen = []

@@ -138,8 +138,8 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
         unit: Metres per integer step of depth. If None, :func:`depth_unit` determines it.
 
     Raises:
-        DamagedImage: The image cannot be decoded.
-        ValueError: The encoding is unknown or wrong for this ``kind``.
+        DamagedImage: If the image cannot be decoded.
+        ValueError: If the encoding is unknown or wrong for this ``kind``.
     """
     if unit is None:
         unit = depth_unit(encoding_of(message))

@@ -30,7 +30,7 @@ class Options:
     """Options of :func:`mitigate.worlds.recorded.open_recording`. See there for their meaning.
 
     Raises:
-        ValueError: A value is out of range.
+        ValueError: If a value is out of range.
     """
 
     topics: Topics = Topics()

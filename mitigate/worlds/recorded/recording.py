@@ -114,7 +114,7 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         The drive with its frames in memory. Steps with a damaged image are left out.
 
     Raises:
-        ValueError: The source lacks a camera, is too large, or most of its images are damaged.
+        ValueError: If the source lacks a camera, is too large, or most of its images are damaged.
     """
     if source.stepped and step != Step():
         raise ValueError(
@@ -220,7 +220,7 @@ def kinds(source: Source, views: int) -> list[str]:
     """Return which kinds of frames ("rgb", "depth") :func:`load` would read.
 
     Raises:
-        ValueError: The source lacks a camera.
+        ValueError: If the source lacks a camera.
     """
     return sorted({kind for kind, _ in _assign_cameras(source, views)}, reverse=True)
 
@@ -308,7 +308,7 @@ class RecordedWorld(World):
         again.
 
         Raises:
-            RuntimeError: The episode is over.
+            RuntimeError: If the episode is over.
         """
         if self.done:
             raise RuntimeError("The recording is over. Call reset() before step().")
@@ -344,7 +344,7 @@ class Step:
         seconds: Time in seconds between two observations; used only if poses are unknown.
 
     Raises:
-        ValueError: A value is not above 0.
+        ValueError: If a value is not above 0.
     """
 
     metres: float = FORWARD_METRES

@@ -52,7 +52,7 @@ class Lens:
             view.
 
     Raises:
-        ValueError: The field of view or the principal point is out of range.
+        ValueError: If the field of view or the principal point is out of range.
     """
 
     kind: str
@@ -84,7 +84,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels for an image of this size.
 
         Raises:
-            ValueError: The aspect ratio of the image differs from the aspect ratio of ``size``.
+            ValueError: If the aspect ratio of the image differs from the aspect ratio of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
@@ -160,7 +160,7 @@ class Source:
         image.
 
         Raises:
-            ValueError: A frame is damaged in a kind of recording that must not contain damaged
+            ValueError: If a frame is damaged in a kind of recording that must not contain damaged
                 frames.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
@@ -272,7 +272,7 @@ def match_times(
         names: Displayed names of the cameras and of "pose". The default is their keys.
 
     Raises:
-        ValueError: No time step is complete.
+        ValueError: If no time step is complete.
     """
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
@@ -310,7 +310,7 @@ def read_instruction(file: Path) -> str:
     """Read the instruction from a text file, or return "" if the file does not exist.
 
     Raises:
-        ValueError: The text is too long or not UTF-8.
+        ValueError: If the text is too long or not UTF-8.
     """
     instruction = read_text(file, MAX_INSTRUCTION_BYTES).strip() if file.is_file() else ""
     if "\N{REPLACEMENT CHARACTER}" in instruction or "\0" in instruction:
@@ -322,7 +322,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
     """Read a text file.
 
     Raises:
-        ValueError: The file is larger than ``max_bytes``.
+        ValueError: If the file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
         # read() allocates memory for the maximum that it is given, so the maximum is at most the

@@ -46,7 +46,7 @@ def read_tum(path: Path, options: Options) -> list[Frames]:
     in time. The heading is the direction of the camera's optical axis.
 
     Raises:
-        ValueError: A file is damaged, or the times of RGB images, depth images and poses are too
+        ValueError: If a file is damaged, or the times of RGB images, depth images and poses are too
             far apart.
     """
     if any((path / name).is_file() for name in LISTS):
@@ -86,7 +86,7 @@ def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
     column contains RGB and which depth.
 
     Raises:
-        ValueError: A file lies outside the folder, or both files have the same kind.
+        ValueError: If a file lies outside the folder, or both files have the same kind.
     """
     rows = list(read_rows(path / ASSOCIATIONS, 4))
     pairs = [

@@ -89,7 +89,7 @@ def check_tables(file: Path) -> None:
     """Check that a query of a database cannot run code that is stored in the database.
 
     Raises:
-        ValueError: The database has views, triggers, virtual tables or computed columns.
+        ValueError: If the database has views, triggers, virtual tables or computed columns.
     """
     try:
         with closing(sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)) as base:
@@ -134,7 +134,7 @@ def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
 
     Raises:
         Bomb: The budget is exceeded.
-        EOFError: The data are incomplete.
+        EOFError: If the data are incomplete.
     """
     blocks = []
     left = bytes(data)

@@ -23,7 +23,7 @@ def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
         cameras: The lens of each camera, and the height and width of its images.
 
     Raises:
-        ValueError: The field of view would be narrower than ``MIN_HFOV``.
+        ValueError: If the field of view would be narrower than ``MIN_HFOV``.
     """
     tangent = 1.0
     for lens, (height, width) in cameras:
