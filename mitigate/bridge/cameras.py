@@ -99,7 +99,7 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
         sensor: Depth range to use if the description has none.
 
     Raises:
-        ValueError: Frames of the camera cannot be corrupted.
+        ValueError: If frames of the camera cannot be corrupted.
     """
     name, kind = description.get("name"), description.get("type")
     if not isinstance(name, str):

@@ -65,7 +65,7 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     that wrote it was killed.
 
     Raises:
-        ValueError: Any other line is not a JSON object with a text ``event``.
+        ValueError: If any other line is not a JSON object with a text ``event``.
     """
     file = folder / EVENTS
     if not is_regular(file):

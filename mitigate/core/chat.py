@@ -55,7 +55,7 @@ class ChatClient:
         options: additional fields of the request, such as ``{"temperature": 0}``.
 
     Raises:
-        ValueError: the URL is invalid, or it contains a password or a key.
+        ValueError: If the URL is invalid, or it contains a password or a key.
     """
 
     def __init__(
@@ -128,9 +128,9 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     Redirects are not followed, because they would send the text and the key to a different host.
 
     Raises:
-        TimeoutError: no complete answer arrived in time.
-        ValueError: the answer has more than ``most`` bytes.
-        _Refused: the HTTP status is not 2xx.
+        TimeoutError: If no complete answer arrived in time.
+        ValueError: If the answer has more than ``most`` bytes.
+        _Refused: If the HTTP status is not 2xx.
     """
     answers: SimpleQueue[bytes | Exception] = SimpleQueue()
 

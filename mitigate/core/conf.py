@@ -84,7 +84,7 @@ def typed(cfg: DictConfig, primary: str) -> Any:
     type become dicts.
 
     Raises:
-        ValueError: an entry refers to a missing entry, or a mandatory entry is not set.
+        ValueError: If an entry refers to a missing entry, or a mandatory entry is not set.
     """
     try:
         return OmegaConf.to_object(cfg)

@@ -158,8 +158,8 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         z_max: Maximum depth of the camera in metres.
 
     Raises:
-        ValueError: Most PNG depth values are at least ``z_max``, or no NPY depth value exceeds 1,
-            so the values may be normalised depth.
+        ValueError: If most PNG depth values are at least ``z_max``, or no NPY depth value exceeds
+            1, so the values may be normalised depth.
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:

@@ -74,7 +74,7 @@ class Key:
         frame: Number of the frame in the episode.
 
     Raises:
-        ValueError: Seed or frame is not an integer.
+        ValueError: If seed or frame is not an integer.
     """
 
     seed: int

@@ -39,7 +39,7 @@ def corrupt_normalised(
         A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
     Raises:
-        ValueError: Depth is above 1 (so probably in metres), ``sensor.missing`` is negative, or
+        ValueError: If depth is above 1 (so probably in metres), ``sensor.missing`` is negative, or
             ``corrupt_observation`` raises an error.
     """
     check_sensor(sensor)

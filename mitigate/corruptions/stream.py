@@ -111,7 +111,7 @@ class FrameStream:
             A new dict; entries that are not corrupted are the same objects as in ``obs``.
 
         Raises:
-            ValueError: As in ``corrupt_observation``.
+            ValueError: For the same reasons as in ``corrupt_observation``.
         """
         key = as_key(key)
         parts = check_gate(check_corruption(corruption)).parts

@@ -128,7 +128,7 @@ def benchmark(
     Raises:
         ValueError: If the agent, an option or a text for the entry is invalid, or ``out`` contains
             rows of a different world.
-        FileNotFoundError: Weights are missing.
+        FileNotFoundError: If weights are missing.
     """
     config, met = _conditions(agent, suite, severity, seed, options)
     losses = None if critical is None else check_losses(critical)

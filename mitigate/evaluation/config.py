@@ -149,7 +149,7 @@ def read(cfg: DictConfig) -> EvaluateConfig:
     """Convert the composed config of an evaluation to typed options.
 
     Raises:
-        ValueError: an entry refers to a missing entry.
+        ValueError: If an entry refers to a missing entry.
     """
     config: EvaluateConfig = conf.typed(cfg, "evaluate")
     config.env = open_entries(EnvConfig, config.env)

@@ -41,7 +41,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     Raises:
         ValueError: If the split or a condition is unknown, no weights are given, the agent lacks
             ``reset`` or ``act``, or the world lacks a sensor.
-        FileNotFoundError: Weights are missing.
+        FileNotFoundError: If weights are missing.
     """
     config = options.read(cfg)
     options.check(config, overrides)

@@ -180,7 +180,7 @@ def evaluate(
     Raises:
         ValueError: If ``out`` already holds rows of this fingerprint, but the agent's state cannot
             be read completely.
-        WorkersDied: Worker processes died more than once; ``out`` holds the finished rows.
+        WorkersDied: If worker processes died more than once; ``out`` holds the finished rows.
     """
     conditions = _applicable(agent, conditions, name)
     if isinstance(agent, torch.nn.Module):
@@ -335,7 +335,7 @@ def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
     other identities keep their places.
 
     Raises:
-        FolderLostError: Rows are missing.
+        FolderLostError: If rows are missing.
     """
     order = {identity: number for number, identity in enumerate(identities)}
     stored = rows.read(out) if output.is_regular(out) else []

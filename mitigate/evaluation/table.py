@@ -46,7 +46,7 @@ def run(
 
     Raises:
         FileNotFoundError: If a path contains no rows.
-        ValueError: Rows are damaged, a seed or the column does not exist, or ``critical`` is
+        ValueError: If rows are damaged, a seed or the column does not exist, or ``critical`` is
             invalid or needs rows that are missing.
     """
     from mitigate.evaluation import critical_report, report, rows

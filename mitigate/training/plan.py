@@ -133,7 +133,7 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     Raises:
         ValueError: If the options, the recipe, the agent, the world and the folder are not
             compatible with each other.
-        FileNotFoundError: Weights are missing.
+        FileNotFoundError: If weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")

@@ -52,7 +52,7 @@ def make_table(config: TablesConfig) -> Path:
         ValueError: Settings are invalid, or a cell failed. Invalid settings are reported before any
             cell runs. A failed cell is reported after the others are finished; the message contains
             the end of its log.
-        FileNotFoundError: Rows are missing.
+        FileNotFoundError: If rows are missing.
     """
     out = Path(config.out)
     if config.rows:

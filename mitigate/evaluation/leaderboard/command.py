@@ -36,8 +36,8 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
     """Return all rows in the file that ``entry`` names, including rows of other agents.
 
     Raises:
-        FileNotFoundError: the file is not available.
-        ValueError: the file is damaged, or it is not a regular file.
+        FileNotFoundError: If the file is not available.
+        ValueError: If the file is damaged, or it is not a regular file.
     """
     file = entry.rows["file"]
     path = find(file)
@@ -174,7 +174,7 @@ def add(
         **values: severity, split, sensors, training_data and link, as in ``entry_of``.
 
     Raises:
-        ValueError: the file exists already, or ``entry_of`` rejects the rows.
+        ValueError: If the file exists already, or ``entry_of`` rejects the rows.
     """
     stem = re.sub(r"[^\w.-]+", "-", name).strip(".-")
     file = Path(folder) / f"{stem or 'entry'}.json"

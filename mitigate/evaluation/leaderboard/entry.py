@@ -167,7 +167,7 @@ def load(path: Path | str) -> LeaderboardEntry:
     """Return the entry in the untrusted JSON file ``path``.
 
     Raises:
-        FileNotFoundError: the file does not exist.
+        FileNotFoundError: If the file does not exist.
         ValueError: the file has more than :data:`LARGEST` bytes, a key is missing or unknown, or a
             value has a wrong type, length or range. The message names the file and the key.
     """

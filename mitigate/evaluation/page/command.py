@@ -48,8 +48,8 @@ def run(
 
     Raises:
         FileNotFoundError: If a path contains no rows.
-        ValueError: Rows are damaged, a name does not occur in them, ``options`` are given without
-            ``walk``, or ``out`` does not end in .html.
+        ValueError: If rows are damaged, a name does not occur in them, ``options`` are given
+            without ``walk``, or ``out`` does not end in .html.
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document

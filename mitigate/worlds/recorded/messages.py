@@ -105,7 +105,7 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
     """Return the lens that a CameraInfo describes.
 
     Raises:
-        ValueError: Focal lengths or sizes are invalid, or the lens is a fisheye lens.
+        ValueError: If focal lengths or sizes are invalid, or the lens is a fisheye lens.
     """
     matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):

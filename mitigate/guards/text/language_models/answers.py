@@ -23,7 +23,7 @@ class AnswerCache:
     another process writes slowly, no error is raised. The only effect is one more request.
 
     Raises:
-        ValueError: the file is not a cache of this kind.
+        ValueError: If the file is not a cache of this kind.
     """
 
     def __init__(self, path: Path) -> None:

@@ -31,7 +31,7 @@ class ChatEndpoint(ChatClient):
         request: remaining arguments of :class:`ChatClient`.
 
     Raises:
-        ValueError: the URL is invalid, or it contains a password or a key.
+        ValueError: If the URL is invalid, or it contains a password or a key.
     """
 
     def __init__(

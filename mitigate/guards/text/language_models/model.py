@@ -47,8 +47,8 @@ class LanguageModel(nn.Module):
         batch: number of texts that are rewritten at once.
 
     Raises:
-        ValueError: a setting is wrong, a package is missing, or access to the hub is denied.
-        FileNotFoundError: a folder or package does not exist.
+        ValueError: If a setting is wrong, a package is missing, or access to the hub is denied.
+        FileNotFoundError: If a folder or package does not exist.
     """
 
     def __init__(
