@@ -27,9 +27,11 @@ compose = conf.load_config
 composed: dict[tuple, DictConfig] = {}
 
 
-def load_config(primary: str, words: Iterable[str] = ()) -> DictConfig:
+def load_config(primary: str, words: Iterable[str] = (), with_hydra: bool = False) -> DictConfig:
     """Compose each set of options only once per process, because Hydra needs 0.2 s each time."""
     overrides = [*words]
+    if with_hydra:
+        return compose(primary, overrides, with_hydra=True)
     places = dict(match.groups() for match in map(PLACE.fullmatch, overrides) if match)
     rest = tuple(option for option in overrides if not PLACE.fullmatch(option))
     if primary not in conf.TYPES or any(option.startswith("-") for option in rest):

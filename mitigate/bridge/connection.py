@@ -24,6 +24,7 @@ from mitigate.bridge.events import EVENTS, read_end, read_events, read_start, wr
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.hook.mitigate_hook import BROKEN, MAX_TEXT, receive, send
 from mitigate.core.names import short, unknown
+from mitigate.core.output import UnsafePathError
 from mitigate.corruptions import FrameStream, registry
 from mitigate.guards.guard import Guards
 
@@ -38,7 +39,7 @@ def _describe_error(kind: str, error: Exception) -> str:
     """Return the text that the agent's process gets if answering a message of this ``kind``
     failed.
     """
-    if type(error) is ValueError:
+    if type(error) in (ValueError, UnsafePathError):
         return str(error)
     if isinstance(error, OSError):  # the server, not the agent's process, caused the error
         reason = f"the run cannot write {error.filename}: {error.strerror}."
@@ -332,7 +333,8 @@ class Connection:
         """
         chosen = self.condition.chosen
         self.names += [str(key) for key in message["keys"]]
-        count, least = int(message["count"]), int(message["least"])
+        count = int(message.get("count", len(self.names)))
+        least = int(message.get("least", 1))
         if chosen is not None and len(self.names) < count:
             return {"more": count - len(self.names)}
         names, self.names = self.names, []

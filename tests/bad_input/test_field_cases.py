@@ -225,7 +225,7 @@ def test_load_rejects_settings_larger_than_the_weights(tmp_path, monkeypatch):
     shipped = Path(__file__).parents[2] / "checkpoints/recurrent/base/config.yaml"
     write_text(tmp_path / "config.yaml", shipped.read_text())
     save_file({"x": torch.zeros(3)}, tmp_path / "model.safetensors")
-    with pytest.raises(ValueError, match="has only .* bytes. Do not use"):
+    with pytest.raises(ValueError, match="require .* weights, but .* has .* bytes"):
         loading.load(tmp_path)
 
 

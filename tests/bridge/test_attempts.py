@@ -124,7 +124,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
     with Listener(met, tmp_path / "told") as listener:
         python(listener, "import mitigate_hook; mitigate_hook.connect('a')")
     problem = read(tmp_path / "told").problems[0]
-    assert f"Cannot write {tmp_path}/recorded" in problem and "mitigate_hook.py" not in problem
+    assert f"{tmp_path}/recorded must be a folder" in problem and "mitigate_hook.py" not in problem
 
 
 def make_attempt(folder, *options):

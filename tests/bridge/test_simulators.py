@@ -105,7 +105,7 @@ def test_corrupt_stops_for_frames_of_habitat_sim(tmp_path, name):
         "episode.corrupt({'rgb': frames['color_sensor'].copy()})\nprint('went on')"
     )
     process, reports = run_loop(tmp_path, SIM + code, condition(name))
-    assert process.returncode == 97 and "connect() and finish() only" in reports.problems[0]
+    assert process.returncode == 97 and "would corrupt them twice" in reports.problems[0]
     process, reports = run_loop(
         tmp_path / "b", SIM + "sim.get_sensor_observations()\nepisode.finish(1)"
     )

@@ -38,6 +38,6 @@ def test_find_searches_cwd_package_checkout_then_variable(nowhere, monkeypatch):
 
 
 def test_find_names_the_places_without_weights(nowhere):
-    with pytest.raises(FileNotFoundError, match="not installed.*site-packages.*not set"):
+    with pytest.raises(FileNotFoundError, match="site-packages.*not installed.*not set"):
         files.find("checkpoints/base")
     assert files.find("other/base") == Path("other/base")

@@ -208,7 +208,7 @@ def test_blinded_agent_without_stages_is_evaluated(tmp_path, monkeypatch, capsys
 )
 def test_world_with_another_number_of_views_is_rejected(tmp_path, agent, views, record_action):
     message = refusal(tmp_path, f"agent={agent}", f"env.views={views}", OFF)
-    assert f"takes {record_action}" in message and f"env.views={record_action}" in message
+    assert f"needs {record_action}" in message and f"env.views={record_action}" in message
 
 
 def tiny(folder, name: str, *stages: str, width: int = 8):
@@ -322,7 +322,7 @@ def test_invalid_agent_setting_names_allowed_values(tmp_path):
 
 
 def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
-    with pytest.raises(FileNotFoundError, match="RECIPE=swap_encoder for topological_imagenet"):
+    with pytest.raises(FileNotFoundError, match="RECIPE=base.*other recipes are in docs/agents.md"):
         checkpoint.weights_file(tmp_path / "base")
 
 

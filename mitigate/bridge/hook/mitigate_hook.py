@@ -84,7 +84,7 @@ def _as_python(value):
     """Return a numpy value as plain Python data."""
     if isinstance(value, (np.generic, np.ndarray)):
         return value.tolist()
-    raise TypeError(f"{type(value).__name__} is not plain data")
+    raise TypeError(f"values must be numbers, text and lists, got a {type(value).__name__}")
 
 
 def receive(channel):

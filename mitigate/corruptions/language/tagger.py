@@ -60,7 +60,7 @@ def tag(text: str) -> list[Token]:
     """Return the tokens of ``text`` with the tags of the built-in tagger."""
     untagged = tokens(text)
     tagged = [NOTHING]
-    for token, after in zip(untagged, [*untagged[1:], NOTHING], strict=True):
+    for token, after in zip(untagged, [*untagged[1:], NOTHING], strict=False):  # empty text
         tagged.append(replace(token, tag=_tag(token, tagged[-1], after)))
     return tagged[1:]
 
