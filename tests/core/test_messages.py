@@ -130,7 +130,11 @@ def test_weights_cut_short(evaluation, weights, tmp_path):
 def test_weights_of_another_agent(evaluation, tmp_path):
     checkpoint.save_weights(torch.nn.Linear(2, 2), tmp_path)
     text = evaluation(f"checkpoint={tmp_path}")
-    for part in ("do not fit this TopologicalAgent", "bias", "config of these weights (config.yaml)"):
+    for part in (
+        "do not fit this TopologicalAgent",
+        "bias",
+        "config of these weights (config.yaml)",
+    ):
         assert part in text
 
 
