@@ -373,7 +373,7 @@ def read_card(folder: Path) -> dict[str, Any]:
     if not file.is_file():
         raise FileNotFoundError(
             f"{folder} is not a hardened checkpoint: {CARD} is missing. Name a folder that `make "
-            "export` wrote; mitigate.load also reads weights without a card."
+            "export` wrote. For weights without a card: mitigate.load(folder, agent=...)."
         )
     card = read_object(file, _AGAIN)
     manifest = folders.read_manifest(folder, _AGAIN)

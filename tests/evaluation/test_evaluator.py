@@ -86,9 +86,9 @@ def test_rows_behind_a_restorer_are_of_another_agent(tmp_path):
     seen = []
 
     class Noted(Restorer):
-        def forward(self, observation):
+        def observe(self, observation):
             seen.append(observation)
-            return super().forward(observation)
+            return super().observe(observation)
 
     alone = run(tmp_path, episodes=1, conditions=conditions)
     restorer = Noted(width=4, depth_width=4)
