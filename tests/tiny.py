@@ -58,7 +58,9 @@ class TinyRecipe(Objective):
 
 
 def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
-    """Build an objective and its data source from arguments that are split as in a recipe."""
+    """Build an objective and its data source; each gets its own part of the arguments, as in a
+    recipe.
+    """
     parameter = next((name for name in kind.sources if name not in arguments), "")
     own_value, others = split_arguments(kind, parameter, arguments, kind.__qualname__)
     if parameter:

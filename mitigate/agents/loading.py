@@ -196,7 +196,7 @@ def config_of(weights: Path) -> Path:
 
 
 def reject_other_models(run: Path) -> None:
-    """Raise ValueError if the model of a run (or in its folder ``agent``) is not a navigation
+    """Raise ValueError if the model of a run, or in the run's folder ``agent``, is not a navigation
     agent.
     """
     config = run / CONFIG

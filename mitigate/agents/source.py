@@ -90,7 +90,7 @@ def _file(module: str) -> str:
 def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
     """Return the source of a module without comments and layout, and the names that it imports.
 
-    The file is read only once, because a later edit does not change a loaded ``module``.
+    The file is not read again, because a later edit does not change the loaded ``module``.
     """
     try:
         tree = ast.parse(Path(file).read_bytes(), file)

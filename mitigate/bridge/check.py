@@ -224,7 +224,7 @@ def draw_sheet(
     Args:
         rig: The cameras.
         frames: The frames of the first call, named by :func:`entry_name`, and the heading.
-        corruptions: Corruptions that change frames of a kind that ``rig`` has.
+        corruptions: Corruptions that change at least one kind of frame in ``rig``.
         first: The event that began the first episode; random numbers depend on it.
         seed: The corruption seed.
     """

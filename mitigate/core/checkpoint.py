@@ -78,7 +78,9 @@ def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> 
 
 
 def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
-    """Write the tensors of ``module`` to a temporary ``file`` of :func:`save_weights`."""
+    """Write the tensors of ``module`` to ``file``, a temporary file that :func:`save_weights`
+    created.
+    """
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()
         for name, value in module.state_dict().items()

@@ -106,7 +106,9 @@ class Record:
         source: str = "heuristic",
         **fields: Any,
     ) -> Record:
-        """Return the record of a fault that has the name of its function ``draw``."""
+        """Return the record of a fault. The record is named after the function ``draw`` of the
+        fault.
+        """
         more = {"source": source, "version": "1", "family": family, "draw": draw, **fields}
         return cls(draw.__name__, modality, None, severity, **more)
 

@@ -148,8 +148,8 @@ class FolderFrames:
             the same for all frames.
         held_out: fraction of the scenes that are unseen. It has no effect if the paths of some
             scenes begin with "val" or "test": then exactly these scenes are unseen.
-        block: maximum frames per block if all frames are in one folder. Blocks are smaller if five
-            blocks could not be held out otherwise.
+        block: maximum frames per block if all frames are in one folder. Blocks are made smaller
+            where necessary, so that five of them can be held out.
         unit: metres per count of a 16-bit PNG.
 
     Raises:

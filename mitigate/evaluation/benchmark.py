@@ -285,8 +285,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: If there are no episodes, or the world has a different class than the world in
-            the config (``own``) but no episode list.
+        ValueError: If there are no episodes, or if no episode list is given for a world of another
+            class than the configured world (``own``).
     """
     split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:

@@ -187,7 +187,9 @@ def changed(overrides: Sequence[str]) -> list[str]:
 
 
 def column_of(name: str, seed: int, folder: Path) -> str:
-    """Return the column name of a training run: ``name`` and the options in the name of its folder.
+    """Return the column name of a training run.
+
+    It has ``name`` and the options that appear in the name of the run's folder.
 
     Without the options, runs with different settings would be treated as different seeds of one
     column.

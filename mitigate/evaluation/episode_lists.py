@@ -85,7 +85,8 @@ def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
     Lists are ordered by layout, so the first 40 episodes of ``val_unseen`` cover only 4 of its 30
     layouts. The chosen indices i are those for which i times the golden ratio has the smallest
     fractional part. These indices are spread evenly for any count. A smaller selection is always a
-    subset of a larger one, so an evaluation of 100 episodes can reuse the rows of 40.
+    subset of a larger one, so an evaluation of 100 episodes can reuse the rows of an earlier
+    evaluation of 40.
     """
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]

@@ -233,7 +233,7 @@ class Grid:
         return replace(self, cells=cells)
 
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that all columns ``labels`` have at ``severity``.
+        """Return the seeds that every column in ``labels`` has at ``severity``.
 
         With the same seed, columns met corruptions with the same random keys.
         """

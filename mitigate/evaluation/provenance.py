@@ -368,7 +368,8 @@ def _hash_of_classes(agent: Any, of_world: str) -> str:
 
 
 def _names_read(kinds: Sequence[type], version: str | None) -> tuple[str, str]:
-    """Return a hash of the user's classes among ``kinds``, and a text on unreadable state.
+    """Return a hash of the user's classes among ``kinds``, and a message that describes state that
+    could not be read.
 
     The hash covers the attributes of the classes, and the functions and global variables that their
     code names.

@@ -85,7 +85,7 @@ class Guard:
         """Return the guard for one episode.
 
         A guard that remembers earlier frames returns a new guard without memories. The method
-        ``observe`` of such a guard is called at every step, also if the agent does not read the
+        ``observe`` of such a guard is called at every step, even if the agent does not read the
         frames.
         """
         return self

@@ -162,7 +162,7 @@ class Objective(nn.Module):
         ]
 
     def identity(self) -> dict[str, str]:
-        """Return data other than settings that identifies the objective.
+        """Return the data that identifies the objective, apart from its settings.
 
         An example is the sha256 of a teacher. Checkpoints record this data. A run is not resumed if
         the data differs.

@@ -263,7 +263,7 @@ def test_corrupt_rejects_depth_outside_its_range(tmp_path, frame, words):
 
 @pytest.mark.parametrize("name", [0, ("left", 1)])
 def test_corrupt_rejects_a_camera_name_that_is_not_text(tmp_path, name):
-    """JSON converts such a name, so that without this check the frame would stay clean."""
+    """JSON converts such a name to a string; without this check, the frame would stay clean."""
     frame = f"{{{name!r}: rgb}}, cameras={{{name!r}: {{'type': 'rgb'}}}}"
     process, reports = run_loop(tmp_path, f"mitigate_hook.connect('a').corrupt({frame})")
     assert process.returncode == 97 and "the name of a camera must be text" in "".join(

@@ -230,8 +230,9 @@ def test_table_lists_values_seed_by_seed():
 
 
 def test_columns_are_compared_over_common_seeds():
-    """Two columns are compared only over seeds that both have, because these used the same
-    corruption keys."""
+    """Two columns are compared only over the seeds that both have, because runs with the same seed
+    use the same corruption keys.
+    """
     base = column(8, ALL) + column(2, dict.fromkeys(NAMES, 1), seed=1)
     matches = sections(base + column(6, ALL, **HARD))[0]
     alone = sections(column(8, ALL) + column(6, ALL, **HARD))[0]

@@ -36,7 +36,7 @@ import weakref
 np = None  # imported on demand: every Python process loads this file, and some have no numpy
 PROTOCOL = 3
 ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIENCE"
-# JSON with folder, file of plain_adapters.py, module, class and path
+# JSON object: folder, file (the path of plain_adapters.py), module, class, path
 ADAPTERS = "MITIGATE_ADAPTERS"
 HEADER = struct.Struct("!4sI")  # magic bytes, and the size of the JSON object that follows
 MAGIC = b"mtg1"

@@ -111,7 +111,8 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return the random words of each view for the random number ``name``.
+    """Return the random 32-bit words of each view from which the random number ``name`` is
+    computed.
 
     There is one word per counter; the result is int64 [B, V, *counters.shape].
     """

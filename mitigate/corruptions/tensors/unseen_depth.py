@@ -129,7 +129,7 @@ def mismatches(views: Tensor, rows: Rows) -> Tensor:
 
 
 def glossy_floor(views: Tensor, rows: Rows) -> Tensor:
-    """Set parts of the floor to the depth of the mirror image in the floor."""
+    """Give parts of the floor the depth of what they reflect, as if the floor were a mirror."""
     count, height, width = views.shape[1:]
     digests = rows.digests("glossy_floor")
     smooth, cells = fields(digests, height, width, returns.GLOSS_CORRELATION, views)

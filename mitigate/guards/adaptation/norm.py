@@ -59,7 +59,7 @@ class Norm(Adaptation):
             yield
 
     def _update(self, layer: Any, inputs: tuple[Tensor, ...]) -> None:
-        # another guard repeats the decision to compute gradients, so do not count its input twice
+        # a guard that computes gradients runs the decision again; that input is not counted twice
         if torch.is_grad_enabled():
             return
         values = inputs[0].detach().float().movedim(1, 0).flatten(1)

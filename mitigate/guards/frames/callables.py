@@ -176,7 +176,7 @@ def _form(frame: Any) -> str:
 def _source_sha(module: ModuleType) -> str:
     """Return the sha256 of a module's source file, or "" if there is no such file.
 
-    The file is read once, because a later edit does not change a loaded module.
+    The file is not read again, because a later edit does not change the loaded module.
     """
     try:
         file = inspect.getsourcefile(module)

@@ -87,8 +87,8 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
     """Yield each neighbour's values and weights, resampled into the view, and its depth scale.
 
-    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s]. The depth scale
-    [s, s] is ``ahead`` in :func:`neighbours`.
+    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s].
+    :func:`neighbours` gets the depth scale [s, s] as its argument ``ahead``.
     """
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]

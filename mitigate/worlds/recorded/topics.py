@@ -75,8 +75,8 @@ def choose_topics(
         The chosen topics by name. Names for which the bag has no topic are absent.
 
     Raises:
-        ValueError: If a topic that the user chose is missing or has a wrong type, several topics
-            are suitable, or the bag contains no images.
+        ValueError: If a chosen topic is missing or has the wrong type, if several topics are
+            suitable, or if the bag contains no images.
     """
     counts = counts or {}
     images = [n for n, kind in available.items() if kind in IMAGES and not _OTHER_IMAGES.search(n)]

@@ -51,8 +51,8 @@ def write_adapter(
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the card of an adapter folder, and the PEFT config.
 
-    The entries that ``ENTRIES`` names are checked. Raises FileNotFoundError for a missing file, and
-    ValueError for a damaged one.
+    Only the entries listed in ``ENTRIES`` are checked. Raises FileNotFoundError for a missing file,
+    and ValueError for a damaged one.
     """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:

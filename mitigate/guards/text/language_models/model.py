@@ -161,7 +161,7 @@ class LanguageModel(nn.Module):
             input_ids=inputs,
             attention_mask=mask,
             past_key_values=cache,
-            # enough tokens if an answer is about as long as its text
+            # enough tokens for an answer about as long as the input text
             max_new_tokens=16 + int(1.3 * text_length),
             max_time=seconds,
             do_sample=False,

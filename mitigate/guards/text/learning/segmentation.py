@@ -150,7 +150,7 @@ def _span_scores(clause: torch.Tensor, edge: torch.Tensor, lengths: torch.Tensor
 def _runs(attack: np.ndarray) -> list[tuple[int, int]]:
     """Return the first and the last clause of each attack.
 
-    The list is empty if the text contains no attack or nothing but an attack.
+    The list is empty if the text contains no attack, or if it consists only of an attack.
     """
     places = np.flatnonzero(attack)
     if not 0 < len(places) < len(attack):
