@@ -17,10 +17,10 @@ if TYPE_CHECKING:
     from mitigate.shipping.harden import harden
 
 # OpenMP reads this variable when torch is imported.
-# By default, a waiting OpenMP thread spins and occupies a core that other processes need,
-# such as a worker that prepares the next batch.
-# On 2 cores with one other busy process, a training step took 2000 ms with the default,
-# and 450 ms with this setting (200 ms without the other process, with either setting).
+# By default, a waiting OpenMP thread spins and occupies a core that other processes need.
+# Measured: a training step on 2 cores, while another process used one of them.
+# It took 2000 ms with the default and 450 ms with this setting.
+# Without the other process, it took 200 ms with either setting.
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 # ``commands/`` holds modules such as ``mitigate.train``, which torchrun starts with ``python -m``.

@@ -28,8 +28,8 @@ PAGE = (ROOT / "docs/bring-your-own.md").read_text(encoding="utf-8")
 CODE = re.search(r"```python\n(.*?)```", PAGE, re.DOTALL)[1]
 CONFIGS = dict(re.findall(r"`(mine/[\w/]+\.yaml)`[^\n]*\n\n```yaml\n(.*?)```", PAGE, re.DOTALL))
 COMMANDS = re.search(r"```bash\n(.*?)```", PAGE, re.DOTALL)[1].splitlines()
-# maximum number of lines in which a user can write a world and an agent that trains, evaluates and
-# exports
+# A user can write a world and an agent in at most this many lines.
+# They can be trained, evaluated and exported.
 LONGEST = 80
 
 

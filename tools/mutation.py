@@ -34,8 +34,7 @@ class Mutation(NamedTuple):
     new: str
 
 
-# in each line: name, source file, test file, the part of a source line to replace, and its
-# replacement
+# each line has: name, source file, test file, part of a source line to replace, replacement
 TABLE = """
 seeding mitigate/core/seeding.py tests/core/test_seeding.py
 - f"{type(part).__name__}:{part}" for part in key

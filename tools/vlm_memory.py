@@ -19,8 +19,8 @@ from mitigate.agents.vlm.agent import likelihoods
 
 # published sizes of the language models; the other weights (image encoder, projector) are rounded
 MODELS = {
-    # name: layers, hidden size, intermediate size, heads, key-value heads, vocabulary size, number
-    # of other weights
+    # Each model has: layers, hidden size, intermediate size, heads and key-value heads.
+    # The vocabulary size and the number of other weights follow.
     "SmolVLM-256M": (30, 576, 1536, 9, 3, 49280, 93e6 + 7e6),
     "LLaVA-OneVision-0.5B": (24, 896, 4864, 14, 2, 152000, 400e6),
     "Qwen2.5-VL-3B": (36, 2048, 11008, 16, 2, 151936, 668e6),

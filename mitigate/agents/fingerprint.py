@@ -34,8 +34,8 @@ KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # hooks of this module are known: its adapters are modules, so state_dict() holds them
 _OWN_HOOKS = "mitigate.agents.adapters"
-# attributes that are left out: the attributes of torch modules, of adapters (handle of the hook,
-# last output), and of adapters.py
+# These attributes are left out: those of torch modules, of adapters, and of adapters.py.
+# For adapters, these are the handle of the hook and the last output.
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))

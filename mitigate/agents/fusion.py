@@ -12,8 +12,7 @@ import torch
 from torch import Tensor, nn
 
 RATE = 4.0  # decay rate k of a view's weight with its relative deviation (chosen on val_seen)
-# largest exponent (heuristic); a view has at least exp(-3) = 0.05 times the weight of a typical
-# view
+# largest exponent (heuristic); the weight is at least exp(-3) = 0.05 times that of a typical view
 CAP = 3.0
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6

@@ -16,8 +16,7 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# distance in metres (heuristic): indoors, some pixel of twelve views is always nearer, such as one
-# on the floor
+# metres (heuristic): indoors, some pixel of twelve views is always nearer, such as the floor
 FARTHEST = 50.0
 NEAREST = 1.0  # metres (heuristic): in almost every room, some pixel is farther away
 

@@ -293,8 +293,7 @@ class Connection:
             self._leave(_one_line(message.get("fault")))
             return {}
         end = read_end(message, self.episode)
-        # a program may report a failure without any frame if the agent crashed before its first
-        # step
+        # a program may report a failure without a frame if the agent crashed before its first step
         failed = self.loop and not end.get("metrics", {}).get("success")
         if self.calls == 0 and not failed:
             raise ValueError(

@@ -220,8 +220,8 @@ def main() -> None:
     program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        # PARENT handles these signals; a handler is set because, unlike SIG_IGN, the program does
-        # not inherit it
+        # PARENT handles these signals.
+        # A handler is set because the program would inherit SIG_IGN.
         signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()

@@ -30,8 +30,8 @@ CUT_OFF = (
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-# the common rule of a task, by the entry of an episode that the task needs; these rules do not use
-# STOP, because some programs never report it
+# This is the common rule of each task, by the entry of an episode that the task needs.
+# These rules do not use STOP, because some programs never report it.
 COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 
@@ -114,8 +114,8 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
             _add(reports, event, began)
         except (KeyError, TypeError, AttributeError, ValueError) as error:
             raise damaged(folder, f"line {number} is not an event of this version") from error
-    # an evaluator with parallel Envs cuts off running episodes when it closes the Envs; a single
-    # Env, however, may be closed to end its episode
+    # An evaluator with parallel Envs cuts off running episodes when it closes the Envs.
+    # A single Env, however, may be closed to end its episode.
     if reports.parallel and not count_closed:
         closed = [name for name, end in reports.ends.items() if _how(end) == CLOSE]
         reports.dropped |= dict.fromkeys(closed, CUT_OFF)

@@ -155,8 +155,8 @@ def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, mo
     proxy = urllib.request.getproxies().get(parts.scheme)
     direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
     pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    # urllib3 applies the connect timeout to each address of the host, so time must remain for the
-    # next address
+    # urllib3 applies the connect timeout to each address of the host.
+    # Time must therefore remain for the next address.
     limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,

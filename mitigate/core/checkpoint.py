@@ -204,14 +204,13 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
         ValueError: If the file is damaged.
         PermissionError: If the user has no permission to read the file.
     """
-    # a missing permission raises PermissionError here, because it does not mean that the file is
-    # damaged
+    # raises PermissionError if a permission is missing; the file may be undamaged
     file.open("rb").close()
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     try:
-        # the header must fit the size of the file: computing the sha256 of a sparse file of
-        # several terabytes would take hours
+        # The header must fit the size of the file.
+        # Computing the sha256 of a sparse file of several terabytes would take hours.
         with safe_open(file, "pt"):
             problem = folders.problem(file)
         if not problem:
@@ -299,8 +298,8 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
 
 
 # Public weights inside a module of this project are never copied into its checkpoints.
-# Such a checkpoint contains only the other tensors, such as adapters, and the sha256 of the public
-# file.
+# Such a checkpoint contains only the other tensors, such as adapters.
+# It also contains the sha256 of the public file.
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:

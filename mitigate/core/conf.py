@@ -43,8 +43,8 @@ TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
 # maps conf/<name>.yaml and a group to the files of the group that the command rejects
 REJECTED: dict[str, Mapping[str, Sequence[str]]] = {}
 FULL = "HYDRA_FULL_ERROR"  # environment variable that makes Hydra show whole tracebacks
-# main sets this variable together with FULL, so that child programs know that the user did not set
-# FULL
+# main sets this variable together with FULL.
+# Child programs then know that the user did not set FULL.
 OURS = "MITIGATE_FULL_ERROR"
 # line that Hydra prints (hydra.core.utils, JobReturn.return_value)
 HYDRA_LINE = "Error executing job with overrides"

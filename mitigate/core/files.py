@@ -24,8 +24,8 @@ GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 LFS_START = b"version https://git-lfs.github.com/spec/"
 RECORDING = "recording.json"  # a recording of `mitigate run record=FOLDER` contains this file
 LONGEST_DRAFT = 200  # maximum bytes of the final name that are part of the temporary name
-# A gzip file may unpack to at most FREE + RATIO * (its size) bytes. This limit is a heuristic; our
-# files unpack to 15 to 31 times their size.
+# A gzip file may unpack to at most FREE + RATIO * (its size) bytes.
+# This limit is a heuristic; our files unpack to 15 to 31 times their size.
 RATIO = 128
 FREE = 1 << 24
 # number of final bytes of a program's output that are read for a message (heuristic)

@@ -23,8 +23,9 @@ from mitigate.core.output import writing
 NAME = ".lock"
 # Names of unfinished files, as mitigate/core/files.py writes them.
 _DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
-# Locks of this process. A record lock does not prevent the same process from locking again, and the
-# process loses the lock when it closes any file of that path.
+# These are the locks of this process.
+# A record lock does not prevent the same process from locking again.
+# The process loses the lock when it closes any file of that path.
 _locks: dict[Path, IO[str]] = {}
 
 

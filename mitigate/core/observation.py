@@ -25,8 +25,7 @@ DEPTH = "depth"
 POSE = "pose"
 CLEAN_RGB = "clean_rgb"  # entry of training batches: frames before the corruption
 CLEAN_DEPTH = "clean_depth"
-# entries of torchrl environments: the instruction, the name of the episode's run, and the number of
-# low-level steps
+# entries of torchrl environments: instruction, name of the episode's run, number of low-level steps
 INSTRUCTION = "instruction"
 EPISODE = "episode"
 FRAME = "frame"

@@ -275,8 +275,7 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
     _check_file(path)
 
     def no_link(name: str, flags: int) -> int:
-        # without O_NONBLOCK, opening a FIFO that was created after the check would wait for a
-        # reader
+        # without O_NONBLOCK, opening a FIFO that was created after the check would wait
         return os.open(name, flags | os.O_NOFOLLOW | os.O_NONBLOCK, 0o666)
 
     return open(path, mode, opener=no_link, **options)

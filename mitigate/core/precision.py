@@ -23,8 +23,8 @@ import torch.nn.functional as F
 CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # environment variable that limits the instructions that oneDNN uses
 _NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # limits that allow bf16 instructions
-# milliseconds of the test step on the machine where the costs of stages were measured (2 cores of
-# an AMD EPYC, limited to AVX2)
+# These are the milliseconds of the test step on the machine that measured the costs of stages.
+# It has 2 cores of an AMD EPYC, limited to AVX2.
 REFERENCE = 12.0
 
 

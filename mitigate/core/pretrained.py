@@ -35,8 +35,7 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     if precision in ("int8", "nf4"):
         from transformers import BitsAndBytesConfig
 
-        # hide the warning that products are computed in float16, which would be repeated for every
-        # product
+        # hide the warning that products are computed in float16; each product would repeat it
         logging.getLogger("bitsandbytes").setLevel(logging.ERROR)
         quantised: dict[str, Any] = {"load_in_8bit": True}
         if precision == "nf4":
@@ -46,8 +45,8 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     safe = {"use_safetensors": True, "trust_remote_code": False}
     network = auto.from_pretrained(place, dtype=dtype, **{**safe, **options})
     for module in network.modules():
-        # on CPUs with AVX512-BF16, bitsandbytes repacks 4-bit weights in eval mode, and the
-        # repacked layers then give no gradients in training
+        # On CPUs with AVX512-BF16, bitsandbytes repacks 4-bit weights in eval mode.
+        # The repacked layers then give no gradients in training.
         if "support_avx512bf16_for_cpu" in vars(module):
             module.support_avx512bf16_for_cpu = False
     return network

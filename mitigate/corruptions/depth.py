@@ -140,8 +140,8 @@ def multipath(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor)
 # the RMS error grows with z^2, as in a D435; severity 0.1 is similar to a Kinect
 NOISE_BASE, NOISE_SQUARE = 0.02, 0.02
 HOLE_CORRELATION = 0.025  # as a fraction of min(H, W)
-# fraction of missing pixels at severity 1; indoors, often more than half are missing (Zhang &
-# Funkhouser 2018)
+# This is the fraction of missing pixels at severity 1.
+# Indoors, often more than half of the pixels are missing (Zhang & Funkhouser 2018).
 HOLE_SHARE = 0.5
 FAR_SHARE = 0.25  # fraction of the holes that have the value z_max ("incorrectly large")
 HOLE_FRAMES = 5  # number of frames after which holes move

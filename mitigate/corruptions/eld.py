@@ -27,8 +27,8 @@ from mitigate.corruptions.masks import low_light_mask
 WHITE = 15583.0  # sensor units at full scale, which are 14 bits minus the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at severity 1; ELD trains with ratios of 100 to 300
 GAMMA = 2.2
-# Camera calibration from the paper: the range of the gain K, and (a, b) of ln(sigma) = a * ln(K) +
-# b for two noise components.
+# The camera calibration from the paper begins with the range of the gain K.
+# Two noise components then have (a, b) of ln(sigma) = a * ln(K) + b.
 GAINS = (0.0939, 6.011)
 READ = (0.4621, 0.5657)
 ROW = (0.5275, -0.5917)

@@ -219,8 +219,7 @@ def _decode(path: Path) -> np.ndarray:
 def _load(path: Path) -> np.ndarray:
     """Load floating-point depth from an NPY file."""
     try:
-        # the file is memory-mapped, because a wrong shape in its header could require too much
-        # memory
+        # memory-mapped, because a wrong shape in the header could require too much memory
         stored = np.load(path, mmap_mode="r", allow_pickle=False)
         if isinstance(stored, np.ndarray):
             if stored.size > MAX_PIXELS:

@@ -48,8 +48,8 @@ def cached(function: Callable[P, T]) -> Callable[P, T]:
 GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
-# log2 of the size of the table of normal quantiles, which covers +-3.7; its 16 KB fit into the L1
-# cache
+# This is log2 of the size of the table of normal quantiles, which covers +-3.7.
+# The table has 16 KB and fits into the L1 cache.
 NORMAL_BITS = 12
 FIELD_SIDE = 128  # number of cells along the shorter side of a random field, for all frame sizes
 # maximum number of cells along the longer side; for aspect ratios beyond 32:1, cells get longer

@@ -50,26 +50,28 @@ class Profile:
 
 
 # The Kinect for Xbox 360 uses structured light.
-# Sources: axial and lateral noise for surfaces that face the camera, with images that are 640
-# pixels wide (Nguyen, Izadi and Lovell 2012); steps of 1/8 pixel (Barron and Malik 2013); range
-# (datasheet).
+# Axial and lateral noise are from Nguyen, Izadi and Lovell 2012.
+# They hold for surfaces that face the camera, with images that are 640 pixels wide.
+# Steps of 1/8 pixel are from Barron and Malik 2013, and the range is from the datasheet.
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
 )
 # The camera uses active stereo.
-# The RMS error is z^2 * e / (f * B), with e = 0.08 pixels, the baseline B = 0.05 m, and the focal
-# length f of images that are 848 pixels and 90 degrees wide (Grunnet-Jepsen, Sweetser and Woodfill
-# 2018). Steps of 1/32 pixel and the range come from the datasheet.
+# The RMS error is z^2 * e / (f * B) (Grunnet-Jepsen, Sweetser and Woodfill 2018).
+# The error e is 0.08 pixels, and the baseline B is 0.05 m.
+# The focal length f is that of images that are 848 pixels and 90 degrees wide.
+# Steps of 1/32 pixel and the range come from the datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
 # The camera scans with a laser.
-# The datasheet gives, indoors, a standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m, and a mean
-# error of 5 mm and 14 mm.
+# Indoors, the datasheet gives a standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m.
+# It gives a mean error of 5 mm at 1 m and 14 mm at 9 m.
 REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
 # The camera uses time of flight.
-# The datasheet gives a standard deviation of up to 17 mm, a systematic error of up to 11 mm + 0.1
-# %, and the range of the narrow mode. Tolgyessy et al. 2021 confirm these values.
+# The datasheet gives a standard deviation of up to 17 mm and the range of the narrow mode.
+# It gives a systematic error of up to 11 mm + 0.1 %.
+# Tolgyessy et al. 2021 confirm these values.
 AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
 
 _U = np.uint64

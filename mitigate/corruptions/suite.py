@@ -22,8 +22,8 @@ from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
 from mitigate.corruptions.record import CAMERA, FRAMES, MODALITIES, MOTION, OF_NO_FRAME, TEMPORAL
 
-# maximum views per time step; R2R's discrete panoramas have 12 views at each of 3 elevations,
-# VLN-CE has 12 views
+# This is the maximum number of views per time step.
+# R2R's discrete panoramas have 12 views at each of 3 elevations, and VLN-CE has 12 views.
 MAX_VIEWS = 36
 
 
@@ -83,8 +83,8 @@ def _one_instant(views: np.ndarray) -> np.ndarray:
     return views
 
 
-# Increase this version when the result of any corruption changes in any pixel or word, for inputs
-# that follow docs/corruptions.md and docs/instructions.md.
+# Increase this version when the result of any corruption changes in any pixel or word.
+# Only inputs that follow docs/corruptions.md and docs/instructions.md count.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")

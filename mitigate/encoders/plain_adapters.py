@@ -22,8 +22,8 @@ WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 MANIFEST = "manifest.json"
 LONGEST = 1 << 24  # maximum size of a header in bytes (heuristic)
 LARGEST = 1 << 30  # maximum size of the weights in bytes (heuristic; usual sizes are 1e5 to 1e7)
-# maps safetensors types to numpy types; numpy lacks BF16, which is read as the upper half of a
-# float32
+# This table maps safetensors types to numpy types.
+# numpy lacks BF16, which is read as the upper half of a float32.
 TYPES = {"F64": "<f8", "F32": "<f4", "F16": "<f2", "BF16": "<u2", "I64": "<i8", "U8": "<u1"}
 NUMBERS = {"channels": 1 << 20, "reduction": 1 << 20, "middle": 1 << 20, "kernel": 99, "batch": 1}
 

@@ -30,8 +30,8 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-# minimum number of held-out blocks if all frames are in one folder (heuristic); the blocks replace
-# scenes in confidence intervals
+# This is the minimum number of held-out blocks if all frames are in one folder (heuristic).
+# The blocks replace scenes in confidence intervals.
 FEWEST_UNSEEN = 5
 # minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
 NEAR = 0.05

@@ -26,9 +26,9 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import references
 from mitigate.worlds.seeded import RETURN
 
-# The search stops when the two measured severities around a crossing are at most this far apart. In
-# a simulation with 100 episodes, the error was then similar to the error of a grid with step 0.05
-# (docs/results/critical-severity.md#simulation).
+# The search stops when the two measured severities around a crossing are at most this far apart.
+# In a simulation with 100 episodes, the error was then similar to that of a grid with step 0.05.
+# The simulation is in docs/results/critical-severity.md#simulation.
 WIDTH = 0.1
 
 Curve = dict[float, np.ndarray]  # maps each severity to the success of the N episodes of one seed

@@ -118,8 +118,8 @@ def label_columns(
     return columns
 
 
-# a PRS includes a corruption only if at least this fraction of the clean episodes was also measured
-# under that corruption (heuristic)
+# A PRS includes a corruption only if enough of the clean episodes were also measured under it.
+# This is the minimum fraction (heuristic).
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
 STEPS = "steps"  # number of steps, which the HTML page shows

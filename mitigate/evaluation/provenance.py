@@ -42,11 +42,13 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# For agents without settings(): maps the id() of an agent to a function that returns the agent, and
-# to two versions of its hashed parts: after its last run, and before its first run.
+# This table is for agents without settings(), by the id() of the agent.
+# Each value holds a function that returns the agent, and two versions of its hashed parts.
+# The first version is from after its last run, and the second from before its first run.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# Maps (classes of the world and its environments, user's version) to two hashes of the values that
-# the code of these classes refers to: before the first episode, and after the last one.
+# The key holds the classes of the world and its environments, and the user's version.
+# Each value holds two hashes of the values that the code of these classes refers to.
+# The first hash is from before the first episode, and the second from after the last one.
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
@@ -318,8 +320,7 @@ def _member(owner: Any, name: str) -> Any:
 
 MADE = "what makes it"  # keys and texts of stored notes, which must not change
 CHANGES = "changes while worlds are made"
-# maximum number of characters stored of a value; a longer value is cut and its hash is added
-# (heuristic)
+# maximum characters stored of a value (heuristic); a longer value is cut and its hash is added
 SHOWN = 100
 
 

@@ -21,8 +21,8 @@ from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
 
 NO_DIFFERENCE = Difference(None, None, {})
-# Limits for pictures (heuristic), because drawing time grows with panels and cells, and result rows
-# may be untrusted
+# These limits for pictures are heuristic.
+# Drawing time grows with panels and cells, and result rows may be untrusted.
 MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report

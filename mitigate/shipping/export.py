@@ -46,14 +46,13 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
-# Maximum absolute differences of outputs on the fixed probe inputs (heuristic; logits are about 1
-# to 10).
+# The next three limits are maximum absolute differences of outputs on the fixed probe inputs.
+# They are heuristic; logits are about 1 to 10.
 # limit for the agent loaded in a new process, compared with the agent in this process
 RELOADED = 1e-5
 EXPORTED = 1e-3  # limit for program.pt2 and the ONNX files, compared with the agent
 ROUNDED = 0.1  # limit for the float16 weights, compared with the float32 weights of the run
-# if a check fails, the message quotes at most this many characters of its last line of output
-# (heuristic)
+# maximum characters that a message quotes of a failed check's last line of output (heuristic)
 REASON_WIDTH = 400
 MOST_PIXELS = 4096  # maximum side of the frames that exported programs read, in pixels (heuristic)
 WALKS = 2  # agents of other classes are checked on this number of episodes (heuristic)

@@ -58,8 +58,8 @@ from mitigate.worlds.world import World
 OUT = Path("runs/harden")
 # default number of episodes of the comparison (heuristic); SR is then accurate to about 10 points
 EPISODES = 50
-# default learning rates; adapters start at zero and need a higher learning rate
-# (docs/results/third-party.md)
+# These are the default learning rates (docs/results/third-party.md).
+# Adapters start at zero and need a higher learning rate.
 TUNE = {"all": 3e-4, "adapters": 2e-3}
 SPLIT, VALIDATION = "compared", "validation"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}

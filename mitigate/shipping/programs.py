@@ -105,8 +105,8 @@ class Stored(nn.Module):
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
-        # the tuple hides the network from torch, so that only the buffers registered below are
-        # exported
+        # The tuple hides the network from torch.
+        # Only the buffers registered below are then exported.
         self._network = (network,)
         self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
         tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}

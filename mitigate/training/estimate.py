@@ -46,8 +46,8 @@ def estimate(config: TrainConfig, folder: Path) -> float:
     episode = times(EPISODE_COST / (config.evaluation.workers or cores()), config.cost.evaluation)
     costs.append((_episodes(config), episode))
     seconds = sum(count * (math.nan if cost is None else cost) for count, cost in costs if count)
-    # The speed factor is at least 1, because a machine with faster matrix products does not render
-    # faster. Without this limit, a bf16 run of 13 minutes was estimated at 6 minutes.
+    # The speed factor is at least 1: faster matrix products do not make rendering faster.
+    # Without this limit, a bf16 run of 13 minutes was estimated at 6 minutes.
     return seconds * max(1.0, precision.probe() / precision.REFERENCE)
 
 

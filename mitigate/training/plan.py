@@ -47,8 +47,8 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.workers import MOST
 from mitigate.worlds.world import Placeable
 
-# name of the file in a stage's folder that records which initial weights, settings, code and
-# teacher the stage uses
+# This is the name of a file in a stage's folder.
+# It records which initial weights, settings, code and teacher the stage uses.
 IDENTITY = "identity.json"
 NOT_IDENTITY = ("workers", "folder")  # arguments that do not affect the result of a stage
 OURS = "mitigate.recipes."

@@ -26,12 +26,11 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import DEATHS, STUCK, WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-# more workers do not help, because a step has only 2 to 4 jobs and few steps are computed in
-# advance
+# more do not help: a step has only 2 to 4 jobs, and few steps are computed in advance
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
-# number of jobs between two releases of memory; a release after every job costs 7 % of the time,
-# after every 8 jobs 1 %
+# This is the number of jobs between two releases of memory.
+# A release after every job costs 7 % of the time, and after every 8 jobs 1 %.
 TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
 

@@ -126,8 +126,8 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
         )
     rows, columns = len(a), len(b)
     cost = np.sqrt(((a[:, None] - b[None]) ** 2).sum(axis=2))[:, ::-1]
-    # costs of the anti-diagonals d - 2 and d - 1; entry [i + 1] is the cost of matrix element (i, d
-    # - i)
+    # These are the costs of the anti-diagonals d - 2 and d - 1.
+    # Entry [i + 1] is the cost of matrix element (i, d - i).
     before, last = np.full((2, rows + 1), np.inf)
     before[0] = 0.0
     for d in range(rows + columns - 1):

@@ -13,8 +13,8 @@ from mitigate.core.conf import load_config
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# An agent that runs two episodes. Under spatter, it kills its worker in the first episode, but only
-# once.
+# This agent runs two episodes.
+# Under spatter, it kills its worker in the first episode, but only once.
 AGENT = """
 import os, pathlib, signal, sys, time
 import mitigate_hook, numpy

@@ -19,8 +19,9 @@ from mitigate.core.signals import Ended, raise_ended
 
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
-# This program appends missing rows to a file. If the second file does not exist and is not called
-# "none", the program creates it and kills its worker after two rows.
+# This program appends missing rows to a file.
+# It creates the second file unless that file exists or is called "none".
+# If it creates the file, it kills its worker after two rows.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])

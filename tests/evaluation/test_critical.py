@@ -173,8 +173,7 @@ def test_intervals_cover_the_true_critical_severity(monkeypatch):
         part = only(measured(limits, severities, noise=noise))
         estimate = part.score(("base",), ("spatter",), LOSS).estimate
         covered += estimate.low <= 0.5048 <= estimate.high
-    # at a coverage of 0.95, 106 to 119 of the 120 intervals are correct with a probability above
-    # 0.99
+    # at a coverage of 0.95, 106 to 119 of 120 intervals are correct with a probability above 0.99
     assert 106 <= covered <= 119
 
 

@@ -12,8 +12,9 @@ from mitigate.evaluation.config import CostConfig
 from mitigate.training import estimate, plan
 from mitigate.training.config import TrainConfig, read
 
-# Measured minutes of training runs on 2 cores that are limited to AVX2. They include the evaluation
-# but not the set-up of the environment (recipes/README.md, "How long they take").
+# These are measured minutes of training runs on 2 cores that are limited to AVX2.
+# They include the evaluation but not the set-up of the environment.
+# See "How long they take" in recipes/README.md, where times include the set-up.
 TIMED = [
     ("da_per_episode", "topological", 8.5),
     ("conv_adapter", "topological", 8.5),

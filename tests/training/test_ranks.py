@@ -67,8 +67,8 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # bf16 may be faster on only one rank, so all ranks use the precision that the first rank
-        # chose
+        # Only one rank may find that bf16 is faster.
+        # All ranks therefore use the precision that the first rank chose.
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"

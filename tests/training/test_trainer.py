@@ -296,8 +296,7 @@ def test_wrong_forward_result_is_explained(tmp_path, returned, words):
 def test_weights_that_are_no_numbers_are_not_saved(tmp_path):
     class Poisoned(TinyRecipe):
         def forward(self, batch):
-            # this hook makes a weight infinite after the loss was computed, like an overflow in the
-            # update
+            # this hook makes a weight infinite after the loss, like an overflow in the update
             if self.count == 8:
                 self.agent.body[2].bias.register_hook(self._poison)
             return super().forward(batch)

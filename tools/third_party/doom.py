@@ -10,8 +10,8 @@ import vizdoom.gymnasium_wrapper  # noqa: F401 - registers the environments
 from gymnasium import spaces
 
 HEIGHT, WIDTH = 48, 64
-# metres per level of the depth buffer: one level is 7.35 map units (measured), and a metre is 32
-# map units
+# These are metres per level of the depth buffer.
+# One level is 7.35 map units (measured), and a metre is 32 map units.
 METRES = 7.35 / 32
 
 

@@ -52,20 +52,18 @@ TURNS = 18
 AGAIN = 8  # number of actions until the agent plans again
 LEG = 1.5  # distance in metres that the agent goes straight before it checks its route again
 STUCK = 0.05  # a forward step that moves less than this distance (metres) was blocked
-# a step that moves less than SLID metres slid along an obstacle; after BUMPS such steps the agent
-# gives up
+# A step that moves less than SLID metres slid along an obstacle.
+# After BUMPS such steps the agent gives up.
 SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
 WORTH = 6.0  # metres of path that outweigh a frontier value of 1 (chosen on val_seen_ogn)
-# minimum evidence with which the agent goes to the object: FOUND before LAST actions, MAYBE after
-# them
+# minimum evidence for going to the object: FOUND before LAST actions, MAYBE after them
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
 # the agent stops if the predicted probability that the object is near exceeds this
 NEAR_ENOUGH = 0.4
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-# a position may cost this many more metres of path per metre that it is closer to the object's
-# centre (heuristic)
+# extra metres of path allowed per metre nearer to the object's centre (heuristic)
 MIDDLE = 3.0
 # rooms in which each object is likely; L3MVN asks a language model for these
 LIKELY = {

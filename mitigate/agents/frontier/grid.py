@@ -26,8 +26,8 @@ REACH = 5.0  # maximum depth in metres that is used (as in VLFM)
 LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
 # surfaces between these heights in metres can belong to objects
 THINGS_LOW, THINGS_HIGH = 0.05, 2.3
-# log-odds that an observation of an occupied cell adds and that an observation of a free cell
-# subtracts; bound of their sum
+# Observing an occupied cell adds HIT to its log-odds, and observing a free cell subtracts MISS.
+# The absolute value of the sum is at most MOST.
 HIT, MISS, MOST = 0.9, 0.4, 3.5
 NEAR = 2.0  # distance in metres up to which training labels call an object near (agents/text.py)
 SLACK = 0.3  # tolerance in metres for the distance NEAR (heuristic)
@@ -39,8 +39,7 @@ TIGHT, WIDE = 3.0, 0.4
 # cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
 UNKNOWN = 4.0
 MARGIN = 12  # planning includes a margin of this many cells around the known area
-# cells whose evidence is above this fraction of the highest evidence belong to the object
-# (heuristic)
+# minimum evidence of the object's cells, as a fraction of the highest evidence (heuristic)
 SHARE = 0.7
 SMALLEST = 4  # minimum number of cells of a frontier
 

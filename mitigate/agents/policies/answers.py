@@ -17,8 +17,7 @@ from torch.distributions import (
     kl_divergence,
 )
 
-# either one distribution for each part of the action, or a tensor [B, ...] of actions or of action
-# values
+# one distribution per part of the action, or a tensor [B, ...] of actions or of action values
 Answer = Sequence[Distribution] | Tensor
 
 

@@ -58,9 +58,10 @@ if TYPE_CHECKING:
 
 MAX_DECISIONS = 15  # maximum number of decisions; ETPNav uses 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-# weights of the auxiliary losses, chosen for the shipped agents. The planner predicts the distance
-# to the goal, and the views that show the goal's landmark ("grounding"). Perception predicts the
-# concepts in each view, and where space is free ("waypoints").
+# These are the weights of the auxiliary losses, chosen for the shipped agents.
+# The planner predicts the distance to the goal.
+# It also predicts the views that show the goal's landmark ("grounding").
+# Perception predicts the concepts in each view, and where space is free ("waypoints").
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # unit of the planner's distance, in metres
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")

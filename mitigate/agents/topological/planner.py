@@ -127,8 +127,7 @@ class Planner(TextReader):
         self.stop = nn.Sequential(nn.Linear(width, width), nn.GELU(), nn.Linear(width, 1))
         self.distance = nn.Linear(width, 1)
         self.grounding = nn.Linear(width, 1)
-        # this module is created last, so that it does not change the initial values of other
-        # weights
+        # created last, so that the initial values of other weights do not change
         self.fusion = None if fusion is None else weigher(rgb_width + depth_width, **fusion)
         yaws = torch.arange(VIEWS) * math.radians(VIEW_STEP_DEGREES)
         self.register_buffer(

@@ -135,8 +135,8 @@ def stop(problem, reported=False):
                 "continue with frames that are not corrupted. The results so far are kept; see "
                 "the output of `mitigate run`.\n"
             )
-            # sys.stderr may be None; if sys.__stderr__ is also None, descriptor 2 may belong to any
-            # file
+            # sys.stderr may be None.
+            # If sys.__stderr__ is also None, descriptor 2 may belong to any file.
             if sys.__stderr__ is not None:
                 os.write(2, text.encode("utf-8", "replace"))
     finally:

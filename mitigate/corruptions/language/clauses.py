@@ -17,8 +17,8 @@ COMMANDS = (
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
 # maximum number of adverbs before a command (heuristic; people do not use longer sequences)
 MOST_ADVERBS = 8
-# The pattern matches a run of white space only from its start and in only one way, so that matching
-# takes linear time.
+# The pattern matches a run of white space only from its start and in only one way.
+# Matching therefore takes linear time.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"

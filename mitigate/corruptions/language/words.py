@@ -40,8 +40,8 @@ TAGS = {word: name for name, text in reversed(_CLASSES.items()) for word in text
 VERBS = bag(_CLASSES["VERB"])
 AMBIGUOUS_NOUNS = frozenset(word for word, pair in AMBIGUOUS.items() if "NOUN" in pair)
 POSSESSORS = listed("possessors")
-# words that general taggers often tag wrongly in instructions (turn, exit, left ...); they keep the
-# tag of the built-in tagger
+# General taggers often tag these words wrongly in instructions (turn, exit, left ...).
+# The words keep the tag of the built-in tagger.
 OVERRIDES = listed("overrides")
 
 # words that are never masked: words for places, directions, identity and negation

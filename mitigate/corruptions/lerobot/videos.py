@@ -42,8 +42,8 @@ class Encoding(NamedTuple):
     options: dict[str, str]
 
 
-# H.264 in RGB with quantiser 0 keeps every pixel. The fastest preset is used: noisy frames were
-# written four times as fast as with "veryfast", and files were 12 % larger.
+# H.264 in RGB with quantiser 0 keeps every pixel, and the fastest preset is used.
+# It wrote noisy frames four times as fast as "veryfast", in files that were 12 % larger.
 LOSSLESS = Encoding(
     "libx264rgb", "h264", "rgb24", "gbrp", {"qp": "0", "preset": "ultrafast", "g": GROUP}
 )
@@ -102,8 +102,8 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
                 stream.thread_type = "AUTO"
                 yield container, stream
         except (av.FFmpegError, OSError) as error:
-            # in a damaged file, FFmpeg may seek to a position before its start, which fails with
-            # EINVAL
+            # In a damaged file, FFmpeg may seek to a position before its start.
+            # This fails with EINVAL.
             if not isinstance(error, av.FFmpegError) and error.errno != errno.EINVAL:
                 raise
             cause = escaped(" ".join(str(error).split()))

@@ -19,8 +19,8 @@ from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 FATTENING = 0.08  # reach as a fraction of the shorter side, at severity 1
-# half the side of the square from which a flying pixel mixes depth, as a fraction of the shorter
-# side
+# A flying pixel mixes depth from a square around it.
+# This is half the side of that square, as a fraction of the shorter side of the frame.
 FOOTPRINT = 0.03
 # baseline in metres at severity 1; the baseline of a Kinect is 0.075, the baseline of a ZED 0.12
 BASELINE = 0.50

@@ -16,8 +16,7 @@ from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 GHOST = 0.5  # weight of the ghost image at severity 1
-# limits of the ghost image's offset: the first two are fractions of the width, the third of the
-# height
+# limits of the ghost image's offset, as fractions of the width, the width and the height
 GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04
 DROPS = 0.06  # correlation length of the wet surface as a fraction of the shorter side
 BEND = 0.045  # rms displacement as a fraction of the shorter side, at severity 1

@@ -34,8 +34,8 @@ SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image's s
 GLOSS_CORRELATION = 0.08  # correlation length as a fraction of the shorter side
 # a pixel is floor if it is farther below the camera than this fraction of the camera's height
 FLOOR = 0.92
-# ratio of the depth of the mirrored ceiling to the depth of the floor, if the ceiling is twice as
-# high as the camera
+# This is the ratio of the depth of the mirrored ceiling to the depth of the floor.
+# The ceiling is assumed to be twice as high as the camera.
 UPSIDE_DOWN = 3.0
 
 _U = np.uint64
@@ -108,8 +108,8 @@ def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSens
     _, height, width = views.shape
     smooth, cells = field(digest(key, "glossy_floor"), height, width, GLOSS_CORRELATION)
     gloss = smooth >= top_share(cells, severity)
-    # how far each pixel is below a level camera, in units of half the width that the image covers
-    # at a depth of one metre
+    # This is how far each pixel is below a level camera at a depth of one metre.
+    # The unit is half the width that the image covers at that depth.
     slope = ((np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)).astype(np.float32)
     depth = np.where(valid(views), views, 0) * slope[:, None]
     out = clip_valid(views, views, sensor)

@@ -18,8 +18,8 @@ from mitigate.corruptions.unseen.optics import displaced
 WOBBLE = 0.05  # maximum shift as a fraction of the image width, at severity 1
 WOBBLE_WAVES = (1.0, 2.5)  # limits of the number of waves per frame height
 FLICKER = 0.8  # maximum relative change of brightness at severity 1
-# limits of the number of bands per frame height, for light that flickers at 100 Hz and a sensor
-# that reads out a frame in 1/50 to 1/25 s
+# These are the limits of the number of bands per frame height.
+# The light flickers at 100 Hz, and the sensor reads out a frame in 1/50 to 1/25 s.
 BANDS = (2.0, 4.0)
 IMPULSES = 0.3  # fraction of the pixels that change at severity 1
 

@@ -19,8 +19,8 @@ from mitigate.core.progress import Progress
 
 OUT = Path("runs/report.html")
 ROWS = "docs/results"
-# maximum number of episodes with trajectories per page (heuristic); each adds a picture of about
-# 100 KB
+# This is the maximum number of episodes with trajectories per page (heuristic).
+# Each trajectory adds a picture of about 100 KB.
 MOST_WALKS = 200
 
 

@@ -25,24 +25,26 @@ from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of the range (heuristic)
-# Margins as fractions of the range. About 99 % of clean pixels differ from the other views by less
-# than the margin (98.6 % for RGB and 99.2 % for depth on 20 panoramas of val_seen).
+# These margins are fractions of the range.
+# About 99 % of clean pixels differ from the other views by less than the margin.
+# On 20 panoramas of val_seen, the share was 98.6 % for RGB and 99.2 % for depth.
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
 # initial amount by which the trust logit decreases per margin outside [low, high] (heuristic)
 ALONE = 2.0
 LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
 SUREST = 6.0
-# Heuristic limits for depth. Depth frames of the apartments stay far below both limits. In 600
-# panoramas, at most 1.3 % of a view was farther away than 10 m, the maximum depth of the
-# apartments. Restoring changed the depth of half of the pixels of a corrupted time step by at most
-# 0.4 m (400 single views and 200 panoramas, all depth corruptions). The only exceptions were single
-# views in which all pixels have exactly 10 m.
+# The limits for depth are heuristic, and depth frames of the apartments stay far below both.
+# The maximum depth of the apartments is 10 m.
+# In 600 panoramas, at most 1.3 % of a view was farther away.
+# Restoring moved half of the pixels of a corrupted time step by at most 0.4 m in depth.
+# This was measured on 400 single views and 200 panoramas with all depth corruptions.
+# The only exceptions were single views in which all pixels have exactly 10 m.
 BEYOND = 0.1  # maximum fraction of pixels beyond ``far``; training contained no such pixels
 # a frame is not changed if over half of its pixels would move more than this fraction of the range
 MOVED = 0.1
-# limits of the log gain; the gain is then 0.14 to 37 (heuristic: low light reduces brightness to
-# 0.03)
+# These are limits of the log gain, so the gain is 0.14 to 37.
+# They are heuristic: low light reduces brightness to 0.03.
 GAINS = (-2.0, 3.6)
 
 

@@ -22,8 +22,8 @@ _ALIKE = str.maketrans(
 _LEET = str.maketrans("0134578@$!|€", "oieastbasiie")
 _SPELLED = re.compile(r"(?<![^\W_])(?:[A-Za-z](?:[.\-_*/|~]|\s+)){3,}[A-Za-z](?![^\W_])")
 _MIXED = re.compile(r"(?<!\w)(?=[\w@$!|€]*[A-Za-z@$!|€])(?=[\w@$!|€]*[0-9@$!|€])[\w@$!|€]{2,}")
-# words with digits or signs that are not leetspeak: numbers with a unit or a letter, room names
-# such as "A12", and words that end in "!" or "|"
+# These words with digits or signs are not leetspeak.
+# They are numbers with a unit or letter, room names such as "A12", and words ending in "!" or "|".
 _MEASURE = re.compile(
     r"\d+(?:st|nd|rd|th|m|cm|ft|feet|in|deg|am|pm|[a-zA-Z])?[!|]*$|(?:[A-Z]{1,3}|[a-z])\d+[!|]*$|"
     r"[A-Za-z]+[!|]+$"
@@ -43,8 +43,8 @@ _MORSE_CODES = (
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
 _JOINERS = "\u200c\u200d"  # invisible joiners, which are needed in Indic scripts and in Persian
-# minimum fraction of letters in known words for a decoded text, and maximum fraction for a text to
-# be deciphered
+# These are fractions of the letters that are in known words.
+# A decoded text needs at least ENGLISH, and a text to be deciphered has at most HIDDEN.
 ENGLISH, HIDDEN = 0.6, 0.45
 
 

@@ -20,13 +20,13 @@ from mitigate.guards.text.pieces import Piece, without
 FOREIGN = 0.3
 ROUTE = -1.0  # English text whose log odds of an attack are below this is certainly a route
 ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
-# If the regression gives the detected span lower log odds than this, the difference is subtracted
-# from the networks' score. Without this second opinion, three times as many R2R-CE routes were
-# harmed.
+# The regression may give the detected span lower log odds than this.
+# The difference is then subtracted from the networks' score.
+# Without this second opinion, three times as many R2R-CE routes were harmed.
 SURE = 1.0
 LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remained in the text
-# a clause next to an attack that says nothing about the route is also removed if its log odds are
-# above this
+# A clause next to an attack may say nothing about the route.
+# It is also removed if its log odds are above this.
 BESIDE = -2.0
 GOAL = 17  # a text of one sentence with fewer words is often only the name of a goal object
 # ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words

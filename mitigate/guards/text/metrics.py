@@ -11,8 +11,8 @@ from mitigate.core.markdown import markdown_table
 from mitigate.corruptions.language.fidelity import check, facts
 
 CLEAN = "clean"  # name of the family that contains the instructions without corruption
-# an injected sentence counts as removed if less than this fraction of its word pairs remains
-# (heuristic)
+# An injected sentence counts as removed if few of its word pairs remain.
+# The fraction that remains must be less than this (heuristic).
 REMAINS = 0.5
 _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 

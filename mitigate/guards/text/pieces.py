@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.language.words import bag
 
-# Blocks between delimiters that no route needs; each block is one piece. The text between most
-# delimiters is limited to 4,000 characters (heuristic), because a search from each opening
-# delimiter to the end of the text would take quadratic time.
+# These are blocks between delimiters that no route needs; each block is one piece.
+# The text between most delimiters is limited to 4,000 characters (heuristic).
+# Searches from each opening delimiter to the end of the text would take quadratic time.
 _BLOCK = re.compile(
     r"<!--.*?(?:-->|$)|/\*.*?(?:\*/|$)|```.*?(?:```|$)|\{\{.{0,4000}?\}\}"
     r"|<(?P<tag>[a-zA-Z][\w:-]*)[^<>]*>.{0,4000}?</\s*(?P=tag)\s*>"
@@ -29,8 +29,9 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# Words that begin a sentence. If one of them has a capital letter but no full stop precedes it, an
-# attack may begin or end there. "I" is not listed, because it is always a capital letter.
+# These words begin a sentence.
+# If one has a capital letter without a full stop before it, an attack may begin or end there.
+# "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
     "Follow|Veer|Step|Wait|Come|Get|Keep|Look|Cross|Face|Do|Don't|Never|Always|Ignore|Forget|Bring|Let|Let's|"
@@ -46,8 +47,8 @@ _CLAUSE = re.compile(
     r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
     r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
 )
-# _CALL: words that begin a sentence in speech. _LINKS: after these words, a capital letter begins a
-# name and not a sentence.
+# The words of _CALL begin a sentence in speech.
+# After the words of _LINKS, a capital letter begins a name and not a sentence.
 _CALL = re.compile(r"(?:um+|uh|okay|ok|yo|hey|arr+|please|kindly)\b")
 _LINKS = bag(
     "the a an of to at in by on is my your our its and or for from with past this that into near"

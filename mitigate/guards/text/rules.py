@@ -15,9 +15,9 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Words in capitals are converted to lower case only if the text has at least SHOUTS known words in
-# capitals, and if these are at least a fraction SHOUTED of all words. Fewer words in capitals may
-# be the text of a sign.
+# Words in capitals are converted to lower case only if the text has enough known ones.
+# There must be at least SHOUTS, and they must be at least a fraction SHOUTED of all words.
+# Fewer words in capitals may be the text of a sign.
 SHOUTS, SHOUTED = 2, 0.15
 # number of generated routes whose words are counted; this takes about one second per process
 ROUTES = 4000
@@ -36,8 +36,8 @@ _BEHIND = SMALL | bag(
     "inside outside over against off beyond within during since because if while about after my "
     "his her our their these those any each every no both all he she they we i me him them us"
 )
-# Masks that a function word cannot replace, because they hide part of a word or the direction of a
-# turn.
+# A function word cannot replace these masks.
+# They hide part of a word or the direction of a turn.
 _STAYS = re.compile(
     r"(?<=[a-z])\[mask\]|\[mask\](?=[a-z])|"
     r"(?<!\ba )(?<!\bthe )\b(?:turn|turning|bear|veer|rotate|swing)\s+\[mask\](?:\s*\[mask\])*"

@@ -26,8 +26,8 @@ FEATURES = 22  # number of features of a clause
 EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
 # maximum distance at which the last character before a clause is searched
 GAP = 80
-# added to the score of each boundary inside the text, because few training texts have an attack
-# inside a route
+# This is added to the score of each boundary inside the text.
+# The reason is that few training texts have an attack inside a route.
 INSIDE = 0.75
 CLIP = 6.0  # largest absolute value of a feature
 SCALE = 0.5  # factor by which features that are log odds are multiplied

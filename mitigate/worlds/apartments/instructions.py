@@ -22,11 +22,10 @@ if TYPE_CHECKING:
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-# fraction of turns just after a doorway that training instructions mention before the doorway
-# (heuristic)
+# Some turns come just after a doorway.
+# Training instructions mention this fraction of them before the doorway (heuristic).
 SAID_BEFORE = 0.25
-# maximum distance in metres between a doorway and a turn that is described together with it
-# (heuristic)
+# maximum metres between a doorway and a turn that is described together with it (heuristic)
 _BESIDE = 1.6
 _NEAR_PATH = 1.3  # maximum distance in metres from the path to a mentioned landmark
 

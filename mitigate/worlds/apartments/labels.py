@@ -20,8 +20,7 @@ from mitigate.worlds.apartments.layout import CATEGORIES, ROOM_KINDS
 from mitigate.worlds.apartments.navigation import FreeSpace
 from mitigate.worlds.apartments.palette import COLOUR_NAMES
 
-# concepts: visible furniture, furniture nearer than 2 m, colours of furniture, kinds of visible
-# rooms
+# concepts: visible furniture, furniture nearer than 2 m, its colours, kinds of visible rooms
 NEAR = tuple(f"near {name}" for name in CATEGORIES)
 CONCEPTS = (*CATEGORIES, *NEAR, *COLOUR_NAMES, *ROOM_KINDS)
 _HALF_ANGLE = np.radians(18.0)

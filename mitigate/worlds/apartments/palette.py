@@ -20,8 +20,7 @@ SEED_RANGES = {
 }
 _VARIANTS = {"train": 24, "val_seen": 8, "val_unseen": 8}
 
-# maps a colour name to (hue centre, hue spread, saturation range, value range); HSV values are in
-# [0, 1]
+# maps a colour name to (hue centre, hue spread, saturation range, value range), all in [0, 1]
 COLOURS = {
     "red": (0.99, 0.02, (0.70, 0.95), (0.55, 0.85)),
     "orange": (0.075, 0.012, (0.80, 1.00), (0.85, 1.00)),

@@ -43,14 +43,13 @@ framebuffer-srgb 0
 load-display {PIPE}
 """
 _COLUMNS, _ROWS = 4, 3  # the 12 views are arranged as tiles in the buffer
-# distance of the near clipping plane in metres; in a 90-degree view, a wall has a depth of at least
-# 0.127 m because of the agent's radius
+# This is the distance of the near clipping plane in metres.
+# In a 90-degree view, the agent's radius keeps walls at a depth of at least 0.127 m.
 _NEAR = 0.1
 
 
 def _panda() -> Any:
-    # the first import must not be interrupted, because an error in it would end the process
-    # (panda3d 1.10.16)
+    # an error in the first import would end the process, so it is not interrupted (panda3d 1.10.16)
     with uninterrupted():
         from panda3d import core
 

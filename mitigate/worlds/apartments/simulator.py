@@ -15,8 +15,8 @@ from mitigate.worlds.episodes import Episode, Vector, from_vlnce, heading_of
 from mitigate.worlds.measures import Rule
 from mitigate.worlds.world import MOVES, Expert, greedy_action
 
-# maximum distance in metres from a start or goal to a free cell (heuristic); it is not 0 because a
-# goal may be a piece of furniture
+# This is the maximum distance in metres from a start or goal to a free cell (heuristic).
+# It is not 0 because a goal may be a piece of furniture.
 NEAR = 0.5
 
 

@@ -29,13 +29,13 @@ from mitigate.worlds.episodes import (
     share_of,
 )
 
-# R2R-CE uses 3.0 m for paths of 10 m; this value is scaled to the shorter paths in apartments
-# (docs/base-agent.md)
+# R2R-CE uses 3.0 m for paths of 10 m.
+# This value is scaled to the shorter paths in apartments (docs/base-agent.md).
 SUCCESS_METRES = 2.0
 SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance from start to goal, in metres
 TASKS = ("vln", "ogn")
-# version of the episode lists and texts; it is part of every episode id, so that results of
-# different versions are never mixed
+# This is the version of the episode lists and texts, which is part of every episode id.
+# Results of different versions are therefore never mixed.
 EDITION = 2
 OGN_SHARE = 0.15  # fraction of OGN episodes in training (heuristic)
 _TRIES = 60

@@ -30,8 +30,8 @@ from mitigate.worlds.world import World
 
 MEMORY_BYTES = 1 << 26  # maximum bytes of rendered frames that ``remembering`` caches (heuristic)
 LARGEST = 2048  # maximum size of a view in pixels (heuristic)
-# minimum difference in metres between the recorded and the measured distance that causes a warning
-# (heuristic)
+# A warning is logged if the recorded and the measured distance differ by more than this.
+# The limit is in metres and is heuristic.
 MAX_DIFFERENCE = 0.5
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 

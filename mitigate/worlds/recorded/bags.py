@@ -51,8 +51,8 @@ FORMATS = {
 }
 
 KINDS = (RGB, DEPTH)
-# Heuristic limits. maximum number of poses per drive, which allows poses at 500 Hz with images at
-# 30 Hz
+# The limits below are heuristic.
+# maximum number of poses per drive, which allows poses at 500 Hz with images at 30 Hz
 MAX_POSES = 16 * MAX_INSTANTS
 # maximum bytes of buffered images that wait for an image of another topic
 MAX_BUFFER_BYTES = 1 << 30
@@ -79,8 +79,7 @@ class Bag(Source):
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
-            # error messages list the names of topics, so topics whose names need escaping are
-            # ignored
+            # topics whose names need escaping are ignored, because error messages list the names
             listed = {n: info for n, info in reader.topics.items() if n == escaped(n)}
             available = {name: info.msgtype for name, info in listed.items()}
             counts = {name: info.msgcount for name, info in listed.items()}

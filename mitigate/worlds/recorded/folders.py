@@ -65,8 +65,7 @@ def read_run(path: Path, options: Options) -> list[Frames]:
         FileNotFoundError: If a file is missing.
         ValueError: If the recording is damaged, or an option does not apply to it.
     """
-    # hidden folders are skipped: they hold episodes that are still being recorded or were
-    # interrupted
+    # hidden folders are skipped: they hold episodes that are being recorded or were interrupted
     episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
     drives = (_read_episode(folder, path, options.hfov, options.cameras) for folder in episodes)
     return [drive for drive in drives if drive is not None]

@@ -37,14 +37,14 @@ from mitigate.worlds.recorded.summary import Camera, describe, warn_about
 from mitigate.worlds.recorded.views import border_fraction, covered_tangent, square_view
 from mitigate.worlds.world import World, check_metres
 
-# action number of a motion that no action of an agent describes, such as driving backwards or
-# sideways
+# action number of a motion that no action describes, such as driving backwards or sideways
 NO_ACTION = -1
 
 OBSERVED = "observation."  # prefix of the names of signals that an agent may read
 
-# Heuristic limits. minimum motion of a new step, as a fraction of a step; below 1, so that rounding
-# does not lose a motion of exactly one step
+# The limits below are heuristic.
+# This is the minimum motion of a new step, as a fraction of a step.
+# It is below 1, so that rounding does not lose a motion of exactly one step.
 STEP_TOLERANCE = 0.98
 MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies by less
 # as a fraction of a step; a last step that is shorter is merged into the previous step

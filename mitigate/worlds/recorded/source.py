@@ -27,11 +27,10 @@ MAX_INSTRUCTION_BYTES = 1 << 16
 MIN_HFOV = 10.0  # limits of the horizontal field of view in degrees
 MAX_HFOV = 179.0
 MIN_VFOV = 1.0  # minimum vertical field of view in degrees
-# maximum distance of the principal point from the image centre, as a fraction of the image width or
-# height
+# maximum offset of the principal point from the centre, as a fraction of the width or height
 MAX_CENTRE_OFFSET = 4.0
-# minimum horizontal component of a direction (a unit vector) for which a heading is defined; the
-# direction then points at most 73 degrees up or down
+# A heading is defined if the horizontal component of a unit direction is at least this.
+# The direction then points at most 73 degrees up or down.
 MIN_LEVEL = 0.3
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02
@@ -325,8 +324,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         ValueError: If the file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
-        # read() allocates memory for the maximum that it is given, so the maximum is at most the
-        # size of the file
+        # read() allocates memory for its maximum, so the maximum is at most the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
         raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")

@@ -29,8 +29,8 @@ class Page:
         self.requests: dict[str, str] = {}
         self.errors: list[str] = []
         self._number, self._text = 0, b""
-        # one pipe for commands to Chromium and one for its messages; each is a pair (read end,
-        # write end)
+        # One pipe is for commands to Chromium, and one is for its messages.
+        # Each pipe is a pair (read end, write end).
         ours, theirs = os.pipe(), os.pipe()
         options = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-pipe"]
         options += [f"--user-data-dir={profile}", "--window-size=1300,1000", "--no-first-run"]

@@ -74,8 +74,8 @@ def test_depth_and_ids_equal_ray_casting(renderer, seed):
         drawn, seen = ids[view].ravel(), depth[view].ravel()
         same = drawn == hit
         assert np.abs(seen - metres)[same].max() < 1e-5
-        # the renderer rounds edges to the nearest pixel, and may confuse distant faces that are 1
-        # cm apart
+        # The renderer rounds edges to the nearest pixel.
+        # It may confuse distant faces that are 1 cm apart.
         assert same.mean() > 0.8
         assert same[inner(hit)].mean() > 0.98
 

@@ -27,9 +27,8 @@ def load_base(base: str, precision: str) -> tuple[Any, nn.Module]:
     except ImportError as error:
         raise ValueError(f"transformers is not installed ({error}): run {INSTALL}.") from error
     place, gguf = _source(base)
-    # Eager attention is used for two reasons. On CPUs, it trains on these short texts faster than
-    # the fused kernel. On a GPU (H200, torch 2.11), the fused kernel gave NaN gradients for padded
-    # texts in bf16.
+    # On CPUs, eager attention trains on these short texts faster than the fused kernel.
+    # On a GPU, the fused kernel gave NaN gradients for padded texts in bf16 (H200, torch 2.11).
     how: dict[str, Any] = {"attn_implementation": "eager"}
     dense: dict[str, Any] = {}
     if gguf:
