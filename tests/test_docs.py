@@ -75,6 +75,7 @@ def test_readme_has_at_most_900_words():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 900
 
 
+@pytest.mark.slow
 def test_readme_python_examples_run(monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "checkpoints").symlink_to(ROOT / "checkpoints")
@@ -101,12 +102,14 @@ def mitigate(monkeypatch, capsys):
     return run
 
 
+@pytest.mark.slow
 def test_readme_evaluation_runs(mitigate, tmp_path):
     line = next(line for line in shell_lines(ROOT / "README.md") if " evaluate " in line)
     options = line.removeprefix("mitigate ").replace("episodes=10", "episodes=1").split()
     assert "PRS-SR (Depth)" in mitigate(*options, f"out={tmp_path}")
 
 
+@pytest.mark.slow
 def test_readme_program_runs_and_loses_success(mitigate, tmp_path):
     line = next(line for line in shell_lines(ROOT / "README.md") if " run " in line)
     options = [f"out={tmp_path}", *shlex.split(line.removeprefix("mitigate run "))]

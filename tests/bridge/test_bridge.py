@@ -33,6 +33,7 @@ def clean_frames(tmp_path):
     return [dict(np.load(tmp_path / f"{number}.npz")) for number in range(2)]
 
 
+@pytest.mark.slow
 def test_hook_gives_the_pixels_of_corrupt_habitat(command, tmp_path):
     clean = clean_frames(tmp_path)
     for name in ("spatter", "flare", "missing_data", "spatter+gaussian_noise", "haze+flare"):

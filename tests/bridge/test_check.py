@@ -15,6 +15,7 @@ from mitigate.corruptions import Corruption
 from .conftest import AGENT, LAB, config
 
 
+@pytest.mark.slow
 def test_check_describes_and_draws_a_program(tmp_path, monkeypatch, capsys):
     monkeypatch.setenv("PYTHONPATH", str(LAB))
     typed = config(f"out={tmp_path}", "conditions=[spatter,multipath,white_box]")

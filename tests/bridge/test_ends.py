@@ -128,6 +128,7 @@ def test_run_names_the_exception_that_ended_an_episode(run, tmp_path):
     )
 
 
+@pytest.mark.slow
 def test_run_explains_closed_episodes(run, tmp_path):
     file, out = tmp_path / "nav.py", tmp_path / "o"
     file.write_text(BEGIN + STOPS)

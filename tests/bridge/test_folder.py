@@ -55,6 +55,7 @@ def measured(out):
     return {(row["corruption"], row["severity"]) for row in rows.read(out / "rows.jsonl")}
 
 
+@pytest.mark.slow
 def test_run_reports_unfinished_episodes(run, program, tmp_path):
     out = tmp_path / "o"
     result = run(out, "conditions=[low_light]", f"{program} a c")
@@ -168,6 +169,7 @@ def test_table_starts_with_the_requested_rule(run, tmp_path):
     assert first == str(RULES["objectnav"]) > second and "![severity" not in text
 
 
+@pytest.mark.slow
 def test_run_names_a_changed_program(run, program, tmp_path):
     out = tmp_path / "o"
     first = run(out, "conditions=[spatter]", program)
@@ -287,6 +289,7 @@ def test_run_notices_a_lost_folder(run, tmp_path, lost):
     assert not (tmp_path / "o" / "table.md").exists()
 
 
+@pytest.mark.slow
 def test_run_notices_a_finished_condition_that_is_lost(run, program, tmp_path, monkeypatch):
     run_here = bridge_run._run_here
 

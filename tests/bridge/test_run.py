@@ -70,6 +70,7 @@ def test_run_chooses_equal_episodes_in_every_condition(run, tmp_path):
     assert json.loads((tmp_path / "o" / "episodes.json").read_text())["of"] == 24
 
 
+@pytest.mark.slow
 def test_run_reports_the_randomness_of_repeated_clean_runs(run, tmp_path):
     result = run(tmp_path / "o", "conditions=[clean] repeats=2")
     assert result.returncode == 0, result.stdout + result.stderr
@@ -166,6 +167,7 @@ def test_run_ends_a_command_when_interrupted_at_its_start(run, tmp_path, monkeyp
     assert started[0].poll() is not None
 
 
+@pytest.mark.slow
 def test_run_accepts_separate_calls_for_rgb_and_depth(run, tmp_path):
     program = tmp_path / "nav.py"
     program.write_text(
@@ -205,6 +207,7 @@ def test_run_chooses_episodes_again_after_a_failed_run(run, tmp_path, monkeypatc
     assert json.loads((out / "episodes.json").read_text())["of"] == 90
 
 
+@pytest.mark.slow
 def test_run_does_not_finish_condition_that_lost_an_episode(run, tmp_path):
     """The agent's command ends with status 0, although one of its workers was killed."""
     out = tmp_path / "o"
@@ -235,6 +238,7 @@ def test_run_rejects_invalid_options(run, tmp_path, options, words):
     assert words in run(tmp_path / "o", options).stderr
 
 
+@pytest.mark.slow
 def test_run_skips_instruction_conditions_without_a_tokenizer(run, tmp_path):
     result = run(tmp_path / "o", "conditions=[capitalize,low_light,mask]", f"{AGENT} --tokens")
     assert result.returncode == 1 and "Without a tokenizer" in result.stderr
@@ -300,6 +304,7 @@ def test_command_name_names_script_or_module(command, name):
     assert command_name(command.split()) == name
 
 
+@pytest.mark.slow
 def test_run_says_how_to_resume_after_a_signal(tmp_path):
     agent = [sys.executable, str(LAB / "agent.py"), str(tmp_path / "seen"), "--pause", "5"]
     process = subprocess.Popen(

@@ -55,6 +55,7 @@ def test_severity_zero_changes_nothing_and_any_unicode_passes(text, name, episod
         assert changed.encode("utf-8", "surrogatepass")
 
 
+@pytest.mark.slow
 @given(
     chosen=st.lists(st.sampled_from(PIECES), min_size=1, max_size=25).filter(
         lambda chosen: any(piece[-1].isalnum() for piece in chosen)

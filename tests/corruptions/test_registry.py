@@ -29,6 +29,7 @@ def suite(name: str) -> list[str]:
     return list(conf.load_config("evaluate", [f"suite={name}"]).suite.conditions)
 
 
+@pytest.mark.slow
 def test_suites_match_the_records():
     assert suite("full") == ["clean", *NAMES]
     assert suite("rgb") == ["clean", *registry.names("rgb")]

@@ -104,6 +104,7 @@ def test_micro_batches_equal_one_batch(pictures):
     assert values[0] == pytest.approx(values[1], abs=1e-5)
 
 
+@pytest.mark.slow
 def test_training_writes_a_folder_for_plain_torch(tmp_path, pictures, capsys):
     cfg = config(tmp_path, pictures, *TINY)
     out = train.run(cfg)

@@ -81,6 +81,7 @@ def test_evaluate_accepts_an_agent_without_weights(policies, tmp_path):
         evaluate.run(policies(straight, f"checkpoint={weights}", settings=", steps: 2"))
 
 
+@pytest.mark.slow
 def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
     records = evaluate.run(policies("tests.evaluation.straight.Straight", settings=", steps: 2"))
     arguments = [str(records / "rows.jsonl"), "--config-dir", str(tmp_path / "mine"), "agent=own"]

@@ -282,6 +282,7 @@ def test_white_box_changes_the_prompt_for_one_episode():
         run_episode(Listener(), world, episode, Corruption("white_box", 0.5), 7)
 
 
+@pytest.mark.slow
 def test_evaluate_warns_about_white_box_without_prompt(tmp_path):
     conditions = [CLEAN, Corruption("black_box", 0.5), Corruption("white_box", 0.5)]
     with pytest.warns(UserWarning, match="white_box is not applicable to test"):

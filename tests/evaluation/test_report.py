@@ -415,6 +415,7 @@ def test_pairs_have_a_table_of_their_own():
 HOSTILE = "a|b`c`<script>x</script>[y](http://z)![p](q)$\\frac$*#"
 
 
+@pytest.mark.slow
 def test_names_are_escaped_in_tables_and_pictures(tmp_path):
     mine = {"name": HOSTILE, "agent": "ffff00000000", "rule": f"{HOSTILE} |", "split": HOSTILE}
     records = [r | {"split": HOSTILE, "rule": mine["rule"]} for r in column(8, ALL)]

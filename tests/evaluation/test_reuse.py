@@ -136,6 +136,7 @@ def run(agent, out, count):
     )
 
 
+@pytest.mark.slow
 def test_killed_worker_does_not_change_rows(tmp_path, capsys):
     alone = run(Mortal(tmp_path, deaths=0), tmp_path / "alone.jsonl", 1)
     assert run(Mortal(tmp_path), tmp_path / "killed.jsonl", 2) == alone

@@ -389,6 +389,7 @@ def test_frozen_views_are_no_part_of_the_loss(teacher):
     assert losses[0] == losses[1]
 
 
+@pytest.mark.slow
 def test_run_is_not_resumed_under_another_teacher(tmp_path):
     sources = []
     for seed in (1, 2):

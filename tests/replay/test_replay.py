@@ -208,6 +208,7 @@ def mitigate(monkeypatch, capsys):
     return run
 
 
+@pytest.mark.slow
 def test_replay_writes_decisions_tables_and_pictures(tmp_path, mitigate, monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 12)  # a short drive
     drives = str(tmp_path / "drives")
@@ -278,6 +279,7 @@ def test_interrupted_command_prints_how_to_repeat_it(
     assert status == 130 and f"SIGINT: stopped. {advice}: {command}\n" in errors
 
 
+@pytest.mark.slow
 def test_export_drive_writes_a_lerobot_dataset(tmp_path):
     pytest.importorskip("pyarrow", reason="needs pyarrow: pip install -e '.[lerobot]'")
     pytest.importorskip("av", reason="needs av: pip install -e '.[lerobot]'")

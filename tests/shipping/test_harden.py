@@ -185,6 +185,7 @@ def test_harden_with_ppo_and_adapters_leaves_the_policy_frozen(tmp_path):
     assert len(result.policy.state_dict()) > len(net.state_dict())
 
 
+@pytest.mark.slow
 def test_harden_continuous_policy_reports_the_return(tmp_path):
     result = mitigate.harden(trained(True), continuous_world, listed=FEW, out=tmp_path, **SHORT)
     assert result.report.line("Return: Clean").values["before"].value == 5.0

@@ -21,6 +21,7 @@ def config(*options: str) -> HardenConfig:
     return conf.typed(conf.composed("harden", [*NAMES, *options]), "harden")
 
 
+@pytest.mark.slow
 def test_harden_command_prints_the_comparison_and_writes_the_weights(tmp_path, capsys):
     options = ["test_episodes=4", "conditions=[low_light,spatter]", "validation=0"]
     with pytest.raises(SystemExit) as exit_info:

@@ -84,6 +84,7 @@ def test_evaluate_takes_world_needs_from_the_checkpoint(monkeypatch):
     assert usual.split == "val_unseen"
 
 
+@pytest.mark.slow
 def test_benchmark_takes_the_kind_of_agent_from_the_weights(tmp_path, monkeypatch):
     monkeypatch.setattr(simulator, "MAX_STEPS", 40)
     entry = mitigate.benchmark(

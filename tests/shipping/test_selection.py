@@ -55,6 +55,7 @@ def test_choose_keeps_the_given_weights_if_training_broke_the_policy(tmp_path):
     assert same(network, trained())
 
 
+@pytest.mark.slow
 def test_choose_takes_the_trained_weights_if_they_are_better_or_equal(tmp_path):
     name, network = chosen(tmp_path / "better", broken(), trained())
     assert name == "trained"

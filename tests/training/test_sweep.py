@@ -69,6 +69,7 @@ def test_shared_folder_for_all_runs_is_rejected(tmp_path, fake, command, option)
     assert not fake
 
 
+@pytest.mark.slow
 def test_options_to_combine_are_run(monkeypatch, fake, tmp_path):
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", f"runs={tmp_path}", "seed=0,2"])
     assert sweep.main() == 0
@@ -118,6 +119,7 @@ def test_combinations_with_equal_names_get_a_digest(tmp_path):
     assert len({sweep.chain(cfg, one, output).log for one in output}) == 2
 
 
+@pytest.mark.slow
 def test_sweep_continues_after_a_failed_run(tmp_path, fake):
     options = ["severity=0.3,0.6", "seed=0,1"]
     with pytest.raises(ValueError, match="2 of 4 runs failed.*Run the same command again"):
@@ -144,6 +146,7 @@ def test_impossible_options_are_reported_before_any_run(
     assert not fake
 
 
+@pytest.mark.slow
 def test_sweep_infers_the_agent_from_weights(tmp_path, fake):
     """The recurrent agent has the setting ``rgb_width``, and the default agent does not."""
     cfg = config(tmp_path, "command=evaluate")

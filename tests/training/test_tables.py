@@ -169,6 +169,7 @@ def test_walks_of_what_is_no_column_are_told(tmp_path, capsys):
     assert "no pictures of episodes: stacked in walks= is not a column" in capsys.readouterr().out
 
 
+@pytest.mark.slow
 def test_undefined_or_partial_score_is_marked(tmp_path, quick):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
@@ -216,6 +217,7 @@ def test_report_has_pooled_seeds_and_paper_figures(tmp_path, quick):
     assert lines["Clean SR"] == "| Clean SR | 70.0 | 70.0 |"  # 80 and 60
 
 
+@pytest.mark.slow
 def test_report_can_be_rebuilt_from_rows_only(tmp_path, quick):
     cfg = config(tmp_path / "all")
     finished(cfg)
@@ -288,6 +290,7 @@ def test_cell_is_trained_once_and_measured_per_evaluation(tmp_path):
     assert kinds == [["evaluate", "evaluate pairs"], ["train", "evaluate", "evaluate pairs"]]
 
 
+@pytest.mark.slow
 def test_failed_cell_does_not_lose_the_others(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path)
     finished(cfg)
@@ -405,6 +408,7 @@ def test_column_may_have_user_configs(tmp_path):
     assert all("--config-dir=mine" in words for _, words in commands)
 
 
+@pytest.mark.slow
 def test_cell_without_a_whole_row_shows_its_error(tmp_path, quick, monkeypatch):
     cfg = config(tmp_path, seeds=[0])
     finished(cfg)
@@ -422,6 +426,7 @@ def test_cell_without_a_whole_row_shows_its_error(tmp_path, quick, monkeypatch):
             tables.make_table(cfg)
 
 
+@pytest.mark.slow
 def test_run_names_cells_whose_rows_are_lost(tmp_path, quick):
     cfg = config(tmp_path)
     finished(cfg)

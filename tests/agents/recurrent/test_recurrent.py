@@ -97,6 +97,7 @@ def test_collect_never_takes_the_agents_stop():
     assert piece["answer"][-1] == STOP  # the expert's STOP ends the rollout
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("short_episodes")
 def test_collect_stores_features_of_frozen_encoders():
     new_agent = agent()
@@ -134,6 +135,7 @@ def test_collect_weights_changes_of_action():
     assert piece["weight"][0] == pytest.approx(INFLECTION)
 
 
+@pytest.mark.slow
 def test_rgb_agent_ignores_depth(monkeypatch):
     # the untrained agent does not stop before this limit
     monkeypatch.setattr(simulator, "MAX_STEPS", 60)

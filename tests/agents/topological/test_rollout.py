@@ -123,6 +123,7 @@ def test_roll_out_ends_with_the_episode(monkeypatch):
         assert len(trace.views) == len(trace.steps) > 0
 
 
+@pytest.mark.slow
 def test_roll_out_depends_only_on_its_generator():
     def walked(seed):
         return [world.xy.tolist() for world in traces_of(0.2, seed)[1]]

@@ -55,6 +55,7 @@ def test_act_stops_at_the_limit_of_decisions(simulator, monkeypatch):
     assert actions[-1] == STOP and actions.count(STOP) == 1 and len(actions) < MAX_STEPS
 
 
+@pytest.mark.slow
 def test_act_returns_to_the_best_node_at_the_limit(simulator, monkeypatch):
     monkeypatch.setattr(topological, "MAX_DECISIONS", 6)
     agent = wanderer()

@@ -78,6 +78,7 @@ def test_open_safeguard_explains_folders_without_a_safeguard(tmp_path):
         open_safeguard(str(tmp_path))
 
 
+@pytest.mark.slow
 def test_open_safeguard_needs_no_torch_by_default():
     code = (
         "import sys; from mitigate.guards.text.guard import open_safeguard; "

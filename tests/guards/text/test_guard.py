@@ -170,6 +170,7 @@ def test_clause_pieces_cuts_where_text_without_an_end_mark_meets_other_text(text
     assert others == ([second] if second else [])
 
 
+@pytest.mark.slow
 def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
     decision = safeguard.canonicalise("WALK past the SOFA. TURN left AT the TV.")
     assert decision.text == "Walk past the sofa. Turn left at the TV."

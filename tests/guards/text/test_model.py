@@ -44,6 +44,7 @@ def test_model_trains_and_saves_only_the_adapter(model, tmp_path):
     assert saved and all("lora_" in name for name in saved)
 
 
+@pytest.mark.slow
 def test_training_resumes_to_the_same_weights(tiny_base, tmp_path):
     def fresh():
         torch.manual_seed(1)
