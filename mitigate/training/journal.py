@@ -5,6 +5,7 @@ from __future__ import annotations
 import sys
 import time
 from collections import defaultdict
+from contextlib import nullcontext, suppress
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,9 @@ class Journal:
 
     def __exit__(self, kind: type[BaseException] | None, *_: Any) -> None:
         self._progress.__exit__(kind)
-        self._writer.close()
+        # The writer may fail for the same reason. Its error must not replace the first one.
+        with nullcontext() if kind is None else suppress(OSError):
+            self._writer.close()
         try:
             if kind is None:
                 self._root.check()

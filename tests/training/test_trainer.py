@@ -17,6 +17,7 @@ from mitigate.core import seeding
 from mitigate.core.output import FolderLostError, UnsafePathError
 from mitigate.core.precision import to_device
 from mitigate.training import states
+from mitigate.training.journal import Journal
 from mitigate.training.states import differences
 from mitigate.training.trainer import LossNotFinite, Trainer
 from tests.core.test_checksums import FLIPS, flipped
@@ -59,6 +60,18 @@ def test_trainer_notices_a_lost_folder(tmp_path, monkeypatch):
     with pytest.raises(FolderLostError, match="run was removed or replaced"):
         trained(tmp_path / "run", log_every=1)
     assert not (tmp_path / "run").exists()
+
+
+def test_journal_keeps_the_first_error_if_its_writer_also_fails(tmp_path, monkeypatch):
+    def close(self):
+        raise FileNotFoundError("events.out.tfevents")
+
+    with (
+        pytest.raises(ValueError, match="the first error"),
+        Journal(tmp_path, total=1, start=0, name="run") as journal,
+    ):
+        monkeypatch.setattr(type(journal._writer), "close", close)
+        raise ValueError("the first error")
 
 
 def test_trainer_rejects_a_link_at_an_event_file(tmp_path):
