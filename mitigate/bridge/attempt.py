@@ -153,7 +153,7 @@ class Attempt:
             (cell.clean / DONE).unlink(missing_ok=True)
         if not problem:
             named = map(str, files_in(cell.command))
-            own = {
+            entries = {
                 "condition": cell.corruption.name,
                 "severity": cell.corruption.severity,
                 "repeat": cell.repeat,
@@ -161,7 +161,7 @@ class Attempt:
                 "created": [file for file in named if file not in self.files],  # its outputs
                 "episodes_told": len(cell.reports().ends),
             }
-            write_done(cell.folder, cell.settings | own)
+            write_done(cell.folder, cell.settings | entries)
         return problem
 
     def _advice(self) -> str:

@@ -214,8 +214,8 @@ def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = No
     if task is None:
         return requested
     ends = [*reports.ends.values()]
-    own = [end for end in ends if "success" in end.get("metrics", {})]
-    partial = any(_missing(end, COMMON[task]) for end in own)
+    with_success = [end for end in ends if "success" in end.get("metrics", {})]
+    partial = any(_missing(end, COMMON[task]) for end in with_success)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
     return requested + ([] if partial or no_distance else [COMMON[task]])

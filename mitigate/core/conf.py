@@ -280,18 +280,18 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
     if not added:
         return []
     folder_words, overrides = without_config_folder(options)
-    kept = [word for word in overrides if re.match(r"[^-+].*=|~", word)]
+    understood = [word for word in overrides if re.match(r"[^-+].*=|~", word)]
     try:
-        cfg = load_config(primary, [*folder_words, *kept])
+        cfg = load_config(primary, [*folder_words, *understood])
     except (HydraException, OmegaConfBaseException):  # the program itself explains this error
         return []
     folders = (CONF, config_folder(options) or CONF)
-    found = [
+    notices = [
         _notice(key, whole, cfg)
         for key, whole in added.items()
         if not any((folder / key.partition("@")[0]).is_dir() for folder in folders)
     ]
-    return [notice for notice in found if notice]
+    return [notice for notice in notices if notice]
 
 
 def _notice(key: str, whole: bool, cfg: DictConfig) -> str:

@@ -8,7 +8,6 @@ clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 from __future__ import annotations
 
 import math
-from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -198,9 +197,14 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
     return np.tile(holes.astype(np.uint8) + far, 2)
 
 
+@lru_cache(maxsize=64)  # several frames have the same holes
+def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
+    return view_streams(Key(seed, episode, placement), "missing_offset", views)
+
+
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
-    return view_streams(replace(key, frame=int(key.frame) // HOLE_FRAMES), "missing_offset", views)
+    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
 
 
 @njit(cache=True)

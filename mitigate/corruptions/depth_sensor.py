@@ -69,15 +69,28 @@ def is_valid(z):
     return (z > np.float32(0)) & (z < np.float32(np.inf))
 
 
+@njit(cache=True)
+def _is_near(pixels, limit):
+    """Return whether enough of the sampled valid pixels are nearer than ``limit``.
+
+    The loop usually ends after a few pixels, so it costs nearly nothing per frame.
+    """
+    near = valid = 0
+    step = pixels.size // UNIT_SAMPLES + 1
+    for i in range(0, pixels.size, step):
+        valid += is_valid(pixels[i])
+        near += is_valid(pixels[i]) & (pixels[i] <= limit)
+        if MIN_NEAR * near * step >= pixels.size:
+            return True
+    return MIN_NEAR * near >= valid
+
+
 def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
     """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max: then it is not in metres.
 
     Clipping such depth to the sensor's range would give a flat wall.
     """
-    sample = views.reshape(-1)[:: views.size // UNIT_SAMPLES + 1]
-    valid = (sample > 0) & (sample < np.inf)
-    near = valid & (sample <= np.float32(MAX_RANGES * sensor.z_max))
-    if MIN_NEAR * near.sum() < valid.sum():
+    if not _is_near(views.reshape(-1), np.float32(MAX_RANGES * sensor.z_max)):
         median = float(np.median(views[(views > 0) & (views < np.inf)]))
         raise ValueError(
             f"Depth must be in metres, but nearly all of it is far beyond the sensor's z_max of "

@@ -150,11 +150,12 @@ def benchmark(
     name = "+".join([name or usual, *labels(safeguard, restore, adapt)])
     check_texts(name=name, **texts)
     check_fits(agent, first.sensors, type(first).__name__)
-    own = world is not None and _is_own(first, config)
-    split, chosen = _episodes(first, config, split, episodes, listed, own)
+    own_world = world is not None and _is_own(first, config)
+    split, chosen = _episodes(first, config, split, episodes, listed, own_world)
     file = Path(out or OUT / f"{file_name(name)}-{split}-s{severity:g}") / ROWS
     guards = open_guards(safeguard, restore, first.sensors, adapt=adapt)
-    guards.calibrate(agent, first, training_episodes(first, None if own else config.env.training))
+    training = None if own_world else config.env.training
+    guards.calibrate(agent, first, training_episodes(first, training))
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     measure = partial(evaluate, world=make_world, episodes=chosen, out=file, split=split, seed=seed)
     with known:

@@ -69,8 +69,9 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
         if training is None:
             raise ValueError(
                 f"adapt=recentre needs training episodes, but those of {type(world).__name__} are "
-                "unknown. Give it yours: guard = Recentre() (mitigate.guards.adaptation.recentre), "
-                "guard.calibrate(agent, world, lambda number: episodes[number]), adapt=guard."
+                "unknown. Calibrate the guard on your own episodes: guard = Recentre() "
+                "(mitigate.guards.adaptation.recentre), guard.calibrate(agent, world, lambda "
+                "number: episodes[number]), adapt=guard."
             )
         return build.maker(training)().draw(generator(0, "calibration", number), (0, 1))
 

@@ -207,8 +207,8 @@ def _notes(section: Section) -> str:
     if any(len(r.corruptions) < section.whole(part) for (_, part, _), r in retained):
         notes.append("† over k of the K corruptions: the others are not measured or not complete.")
     blocks = section.blocks.items()
-    wanted = [name for block, names in blocks for name in expected_corruptions(block, names)]
-    if absent := [name for name in wanted if name not in section.corruptions]:
+    expected = [name for block, names in blocks for name in expected_corruptions(block, names)]
+    if absent := [name for name in expected if name not in section.corruptions]:
         notes.append(f"Not measured: {', '.join(map(label, absent))}.")
     if any(_prompt_not_applicable(section, block) for block in section.blocks):
         notes.append(

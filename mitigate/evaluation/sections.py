@@ -104,7 +104,8 @@ class Section:
         of_half = [(half, {n for n in UNSEEN if UNSEEN[n].half == half}) for half in HALVES]
         by_block = {
             block: {
-                f"{block}, {half}": tuple(n for n in names if n in own) for half, own in of_half
+                f"{block}, {half}": tuple(n for n in names if n in members)
+                for half, members in of_half
             }
             for block, names in self.blocks.items()
         }

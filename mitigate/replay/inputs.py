@@ -111,9 +111,9 @@ def open_drives(config: ReplayConfig, paths: Iterable[str | Path]) -> list[Sourc
             episodes=config.episodes,
             tolerance=config.tolerance,
         )
-    name, count = Counter(source.name for source in sources).most_common(1)[0]
-    if count > 1:
-        raise ValueError(f"Two drives have the name {name!r}. Rename one.")
+    names = Counter(source.name for source in sources)
+    if twice := [name for name, count in names.items() if count > 1]:
+        raise ValueError(f"Two drives have the name {twice[0]!r}. Rename one.")
     return sources
 
 

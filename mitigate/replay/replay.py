@@ -295,8 +295,8 @@ def replay(
                     lines = walk.decision_lines(labels, drive, before or answer, answer)
                     file.writelines(json.dumps(line) + "\n" for line in lines)
                     progress.advance(note=f"{name}, {corruption.name}")
-                rare = walk.neglected_actions(drives, answers["clean"])
-                if rare and corruption.name == "clean":
+                is_clean = corruption.name == "clean"
+                if is_clean and (rare := walk.neglected_actions(drives, corrupted)):
                     notes.append(
                         f"{name} rarely chooses {' or '.join(rare)} on clean frames, but the "
                         "driver often does. The agent may not fit this camera or drive: few "

@@ -67,10 +67,10 @@ def table(
             "longer drive, or several drives.",
             "",
         ]
-    found = {name: [changes[a].get(name) for a in agents] for name in conditions}
+    by_condition = {name: [changes[a].get(name) for a in agents] for name in conditions}
     rows = [
         [name, *(change.changed.text(".1f", 100) if change else "–" for change in row)]
-        for name, row in found.items()
+        for name, row in by_condition.items()
     ]
     means = []
     for agent in agents:

@@ -254,11 +254,11 @@ def _use(card: dict[str, Any]) -> str:
     listed = "card.json" if "files" in card else "manifest.json"
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     whole = card.get("program", True)
-    own = not whole and not loading.is_ours(card.get("class", ""))
+    of_user = not whole and not loading.is_ours(card.get("class", ""))
     start = (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
-        f"{', agent=Mine(...)' if own else ''})\n```\n\n"
-        f"{'Build the agent with the settings in `config.yaml`; it is filled in place. ' * own}"
+        f"{', agent=Mine(...)' if of_user else ''})\n```\n\n"
+        f"{'Build the agent with the settings in `config.yaml`; it is filled in place. ' * of_user}"
         f"Files are compared with the sha256 in `{listed}` first. "
     )
     if not whole:

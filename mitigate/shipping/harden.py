@@ -199,8 +199,8 @@ def harden(
         "steps": steps,
         "seed": seed,
     }
-    own: dict[str, Any] = {name: available[name] for name in OWN if name in parameters}
-    objective = METHODS[method](**own, **settings)
+    arguments: dict[str, Any] = {name: available[name] for name in OWN if name in parameters}
+    objective = METHODS[method](**arguments, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
         "losses": 2,  # version of the losses; version 1 had no imitation loss

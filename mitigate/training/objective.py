@@ -415,7 +415,7 @@ def check_counts(**counts: int) -> None:
     """Raise ValueError for a count below 1."""
     for name, value in counts.items():
         if value < 1:
-            raise ValueError(f"recipe.{name} must be a whole number >= 1, got {value}.")
+            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
 
 
 def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:

@@ -273,7 +273,8 @@ def _options(words: Mapping[str, str]) -> dict[str, Any]:
         users = [user for user, used in USES.items() if name in used]
         if users and corruption not in users:
             raise ValueError(
-                f"{name}= has no effect on {corruption}, only on {' and '.join(users)}."
+                f"{name}= has no effect on {corruption}, only on {' and '.join(users)}. Leave it "
+                "out."
             )
     return options
 

@@ -265,7 +265,8 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         has_episodes = True
         if not isinstance(items, Iterator):
             raise ValueError(
-                f"{path}: 'episodes' must be a list, got {short(items)}. Correct the file."
+                f"{path}: 'episodes' must be a list, got {short(items)}. Correct the file, or "
+                "download it again."
             )
         for index, raw in enumerate(items):
             yield _read_episode(raw, path, index, hidden_goals)

@@ -421,7 +421,8 @@ def _check_format(name: str, entry: str, shape: tuple[int, ...], dtype: str) -> 
     """Raise ValueError for frames that ``corruptions/suite.py`` does not support."""
     if name == RGB and dtype != "uint8":
         raise ValueError(
-            f"RGB must be uint8 in 0-255, got {dtype}. Remove wrappers that scale frames."
+            f"RGB must be uint8 in 0-255, got {dtype}. Remove wrappers that scale or transpose "
+            "frames."
         )
     channels = 3 if name == RGB else 1
     flat = name == DEPTH and len(shape) == 2

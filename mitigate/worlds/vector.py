@@ -16,7 +16,7 @@ try:
     from gymnasium.vector import AutoresetMode, VectorEnv, VectorWrapper
 except ImportError as error:
     raise ImportError(
-        "Vector environments need gymnasium 1.1 or newer: pip install 'gymnasium>=1.1'."
+        "Vector environments need gymnasium 1.1 or newer. Run: pip install 'gymnasium>=1.1'."
     ) from error
 
 from mitigate.core.observation import DEPTH, RGB

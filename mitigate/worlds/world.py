@@ -10,7 +10,6 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
-from operator import attrgetter
 from typing import Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -237,15 +236,32 @@ class WorldWrapper(World):
         """Take a step by calling ``move`` of the inner world (see ``worlds/motion.py``)."""
         return self._observe(self._inner.move(metres, degrees))  # type: ignore[attr-defined]
 
-    # The class World defines defaults of these members, so __getattr__ does not find them.
-    measures: Any = property(attrgetter("_inner.measures"))
-    expert: Any = property(attrgetter("_inner.expert"))
-    truth: Any = property(attrgetter("_inner.truth"))
-    displaced: Any = property(attrgetter("_inner.displaced"))
-    remembering: Any = property(attrgetter("_inner.remembering"))
-    action_space: Any = property(attrgetter("_inner.action_space"))
-    native: Any = property(attrgetter("_inner.native"))
-    draw: Any = property(attrgetter("_inner.draw"))
+    def measures(self) -> dict[str, float]:
+        return self._inner.measures()
+
+    def expert(self) -> Any:
+        return self._inner.expert()
+
+    def truth(self) -> Mapping[str, np.ndarray]:
+        return self._inner.truth()
+
+    def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
+        return self._inner.displaced(mount)
+
+    def remembering(self) -> AbstractContextManager:
+        return self._inner.remembering()
+
+    @property
+    def action_space(self) -> ActionSpace | None:  # type: ignore[override]
+        return self._inner.action_space
+
+    @property
+    def native(self) -> Callable[[Mapping[str, Any]], Any] | None:  # type: ignore[override]
+        return self._inner.native
+
+    @property
+    def draw(self) -> Callable[[Any], None] | None:  # type: ignore[override]
+        return self._inner.draw
 
     def _observe(self, observation: Observation) -> Observation:
         """Convert an observation of the inner world to the observation that the agent receives."""

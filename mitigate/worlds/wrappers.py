@@ -136,7 +136,8 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         observation, reward, terminated, truncated, info = self.env.step(action)
         if self._resets == 0:
             raise gymnasium.error.ResetNeeded(
-                "reset() must be called before step(), because it names the episode."
+                "Call reset() before step(): it names the episode, which determines the random "
+                "numbers."
             )
         self._frame += 1
         if self._over:
@@ -189,7 +190,10 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         high = float(np.max(box.high))
         largest = max(self.sensor.z_max, self.sensor.missing)
         if normalised and high > 1.0:
-            raise ValueError(f"The depth space must end at 1 if normalised=True, got {high:g}.")
+            raise ValueError(
+                f"The depth space must end at 1 if normalised=True, got {high:g}. For depth in "
+                "metres, leave normalised out."
+            )
         if not normalised and largest > high:
             raise ValueError(
                 f"{self.sensor} writes depth up to {largest:g} metres, but the depth space ends at "

@@ -431,7 +431,7 @@ def test_invalid_weights_are_rejected_by_name(options, words):
     ("options", "words"),
     [
         ({"w_feat": -1.0}, "recipe.w_feat must be .* got -1"),
-        ({"panoramas": 0}, "recipe.panoramas must be a whole number >= 1, got 0"),
+        ({"panoramas": 0}, "panoramas must be a whole number >= 1, got 0"),
     ],
 )
 def test_distil_views_rejects_invalid_numbers(options, words):

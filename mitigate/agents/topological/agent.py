@@ -320,7 +320,11 @@ class TopologicalAgent(Agent, nn.Module):
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
             # the objective keeps them if its constructor calls rollouts.keep_clean()
-            assert seen.clean_rgb is not None and seen.clean_depth is not None
+            if seen.clean_rgb is None or seen.clean_depth is None:
+                raise ValueError(
+                    "The batch contains no clean frames. Call rollouts.keep_clean() in the "
+                    "constructor of the objective."
+                )
             return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
         if seen.views is not None:
             return seen.views, {}, {}

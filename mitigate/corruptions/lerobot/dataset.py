@@ -202,13 +202,13 @@ def open_dataset(folder: Path | str) -> Dataset:
     if isinstance(fps, bool) or not isinstance(fps, (int, float)) or not 0 < fps <= MAX_FPS:
         raise ValueError(f"{file}: fps must be above 0 and at most {MAX_FPS:g}, got {short(fps)}.")
     features = check_features(file, info)
-    found = {
+    read = {
         name: read_camera(file, name, feature)
         for name, feature in features.items()
         if feature["dtype"] in (IMAGE, VIDEO)
     }
-    cameras = {name: camera for name, camera in found.items() if isinstance(camera, Camera)}
-    other = {name: reason for name, reason in found.items() if isinstance(reason, str)}
+    cameras = {name: camera for name, camera in read.items() if isinstance(camera, Camera)}
+    other = {name: reason for name, reason in read.items() if isinstance(reason, str)}
     videos = [name for name in features if features[name]["dtype"] == VIDEO]
     episodes = read_episodes(path, info, videos)
     return Dataset(path, info, float(fps), cameras, other, episodes, read_tasks(path / TASKS))

@@ -43,9 +43,9 @@ class HoldLast(Guard):
             if name in observation:
                 frame = observation[name]
                 views = frame if frame.ndim == 4 else frame[None]
-                held = self._hold(name, views)
-                if held is not views:
-                    changed[name] = held.reshape(frame.shape)
+                repeated = self._hold(name, views)
+                if repeated is not views:
+                    changed[name] = repeated.reshape(frame.shape)
         return {**observation, **changed} if changed else observation
 
     def _hold(self, name: str, views: np.ndarray) -> np.ndarray:

@@ -219,7 +219,8 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
     if len(set(counts.values())) != 1 or not files:
         listed = ", ".join(f"{count} in {name}" for name, count in counts.items()) or "no frame"
         raise ValueError(
-            f"{path} must have as many of each, one per step, got {listed}. Correct the files."
+            f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
+            "files that do not match."
         )
     if options.unit is None and DEPTH in files:
         try:

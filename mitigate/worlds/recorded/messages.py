@@ -189,7 +189,8 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
     if kind == DEPTH:
         if pixels.dtype != np.uint16 or pixels.ndim != 2 or encoding.startswith("32FC1"):
             raise ValueError(
-                f"{path}: compressed depth must be 16-bit PNG, got the format {encoding[:40]!r}."
+                f"{path}: compressed depth must be 16-bit PNG, got the format "
+                f"{encoding[:40]!r}. Record the raw images."
             )
         return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
     if pixels.dtype != np.uint8:

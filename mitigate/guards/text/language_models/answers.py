@@ -43,6 +43,8 @@ class AnswerCache:
             if "locked" in str(error):
                 what = f"{path} is in use by another process: wait for it, or name another file."
                 raise ValueError(what) from error
+            if isinstance(error, sqlite3.OperationalError):  # such as a missing folder
+                raise ValueError(f"{path} cannot be opened ({error}). {_OTHER}") from error
             raise ValueError(f"{path} {_NO_CACHE} ({error}). {_OTHER}") from error
         others = [name for kind, name in objects if (kind, name) not in _OURS]
         if others:  # SQLite would run a view or trigger in the file as part of our queries

@@ -191,18 +191,18 @@ def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None
     The index is None for a sentence without a command. If the commands cannot be assigned to
     sentences, the result is None.
     """
-    found: list[tuple[str, int | None]] = []
+    pairs: list[tuple[str, int | None]] = []
     at = 0
     for sentence in source:
         fits = at < len(commands) and len(sentence.split()) > 1
         fits = fits and not check(commands[at], sentence)
-        frames = not found and len(source) != len(commands)
+        frames = not pairs and len(source) != len(commands)
         if fits and not (frames and not _tells(sentence, commands[0])):
-            found.append((sentence, at))
+            pairs.append((sentence, at))
             at += 1
         else:
-            found.append((sentence, None))
-    return found if at == len(commands) else None
+            pairs.append((sentence, None))
+    return pairs if at == len(commands) else None
 
 
 def _tells(sentence: str, command: str) -> bool:
@@ -245,10 +245,10 @@ def read_chats(path: str | Path) -> Iterator[Pair]:
 def _pair(line: str, where: str) -> Pair:
     try:
         chat = json.loads(line)
-        said = [(m["role"], m["content"]) for m in chat["messages"] if m["role"] != "system"]
-        problem = f"holds the roles {[role for role, _ in said]}, not one user and one assistant"
-        if [role for role, _ in said] == ["user", "assistant"]:
-            source, target = (content for _, content in said)
+        turns = [(m["role"], m["content"]) for m in chat["messages"] if m["role"] != "system"]
+        problem = f"holds the roles {[role for role, _ in turns]}, not one user and one assistant"
+        if [role for role, _ in turns] == ["user", "assistant"]:
+            source, target = (content for _, content in turns)
             if isinstance(source, str) and isinstance(target, str) and source.strip():
                 return Pair(source, target, str(chat.get("kind", "chat")))
             problem = "has an empty user text, or a content that is not text"

@@ -50,12 +50,12 @@ def _clauses(rng: np.random.Generator, longest: int) -> list[str]:
     if count > 1 and rng.random() < 0.85:
         kinds[-1] = "close"
     verbose = rng.random() < 0.2
-    found: list[str] = []
+    clauses: list[str] = []
     for kind in kinds:
-        found.append(_fill(_word(kind, rng), rng))
+        clauses.append(_fill(_word(kind, rng), rng))
         if verbose and rng.random() < 0.4:
-            found.append(_fill(_word("asides", rng), rng))
-    return found
+            clauses.append(_fill(_word("asides", rng), rng))
+    return clauses
 
 
 def _fill(template: str, rng: np.random.Generator) -> str:
