@@ -121,7 +121,7 @@ def test_wrapper_counts_automatic_resets():
 def test_step_requires_a_reset():
     room = Room(FRAME)
     room.time = 0
-    with pytest.raises(gymnasium.error.ResetNeeded, match=r"called before step\(\)"):
+    with pytest.raises(gymnasium.error.ResetNeeded, match=r"Call reset\(\) before step\(\)"):
         CorruptObservation(room, HURT_RGB).step(0)
     ordered = gymnasium.wrappers.OrderEnforcing(Room(FRAME))
     with pytest.raises(gymnasium.error.ResetNeeded, match="env.step"):  # the environment's own
