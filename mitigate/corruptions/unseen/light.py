@@ -130,8 +130,12 @@ def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     not change.
     """
     matrix = hue_matrix(hue_degrees(severity, key))
-    turned = (views.astype(np.int32) @ matrix.T + 2048) >> 12
-    return np.clip(turned, 0, 255).astype(np.uint8)
+    colours = [views[..., c].astype(np.int32) for c in range(3)]
+    out = np.empty_like(views)
+    for c, row in enumerate(matrix):  # faster than an integer matrix product
+        level = sum(colour * weight for colour, weight in zip(colours, row, strict=True))
+        out[..., c] = np.clip((level + 2048) >> 12, 0, 255)
+    return out
 
 
 _validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
