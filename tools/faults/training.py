@@ -287,14 +287,20 @@ def plant_link(training: Training) -> str:
     files = sorted(training.folder.glob("*/events.out.tfevents.*"))
     if not files:
         raise TooLate
-    file, outside = files[-1], training.folder.with_name("outside")
+    file = max(files, key=lambda path: path.stat().st_mtime)  # the log of the current stage
+    outside = training.folder.with_name("outside")
     os.replace(file, outside)
     file.symlink_to(outside)
     before = outside.read_bytes()
-    problem = training.start().message_problem("must be a regular file, got a symbolic link")
+    command = training.start()
+    problem = command.message_problem("must be a regular file, got a symbolic link")
     unchanged = outside.read_bytes() == before
     os.replace(outside, file)
-    return problem or ("" if unchanged else "the file behind the link was changed")
+    if not unchanged:
+        return "the file behind the link was changed"
+    if command.process.returncode == 0:  # no step was left, so nothing was to be logged
+        raise TooLate
+    return problem
 
 
 def close_stdout(training: Training) -> str:
