@@ -27,7 +27,8 @@ from mitigate.core.output import open_output
 from mitigate.core.signals import uninterrupted
 
 DISCONNECT_TIME = 5.0  # maximum seconds until the connections of an ended command close (heuristic)
-# if a command that lost an episode is silent for this many times ``patience``, it hangs (heuristic)
+# A command that left an episode unfinished may be silent for MAX_SILENCE * patience seconds.
+# After that time, the command counts as hanging (heuristic).
 MAX_SILENCE = 10
 MAX_NAMED = 3  # maximum number of processes that a message lists
 CRASH = (
@@ -107,7 +108,7 @@ class Attempt:
                 raise ValueError(f"{words[0]} cannot be started: {error.strerror}.") from error
 
     def _words(self) -> list[str]:
-        """Return the words of the command with all placeholders replaced."""
+        """Return the command and its arguments with all placeholders replaced."""
         cell = self.cell
         placeholders = {
             "{condition}": cell.name,
@@ -232,7 +233,7 @@ class Attempt:
         return None
 
     def _describe_problem(self, status: int) -> str:
-        """Describe the problem of a command that ended with ``status``, or return ""."""
+        """Return a description of the problem of a command that ended with ``status``, or ""."""
         reports = self.cell.reports()
         if reports.problems:
             return reports.problems[0]
@@ -259,7 +260,7 @@ class Attempt:
         )
 
     def _check_count(self, reports: Reports) -> str:
-        """Describe the problem if too few episodes ended, else return ""."""
+        """Return a description of the problem if too few episodes ended, or ""."""
         cell = self.cell
         subset = cell.condition.chosen
         least = max(reports.announced, 0 if subset is None else subset.least())
@@ -273,7 +274,7 @@ class Attempt:
         )
 
     def _check_interception(self, reports: Reports) -> str:
-        """Describe the problem if the agent sent nothing, else return ""."""
+        """Return a description of the problem if the bridge did not intercept the agent, or ""."""
         if not reports.hellos and not self.loaded:
             return f"the command ended, but {NOT_LOADED}{self.cell.output_excerpt()}"
         if not reports.hellos:
@@ -297,8 +298,8 @@ class Attempt:
         return ""
 
     def _check_episodes(self, reports: Reports) -> str:
-        """Describe the problem if episodes are missing, unfinished or without result, else return
-        "".
+        """Return a description of the problem if episodes are missing or unfinished or lack a
+        result, or "" if there is no problem.
         """
         cell = self.cell
         if reports.lost:

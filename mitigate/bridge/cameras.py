@@ -19,7 +19,7 @@ from mitigate.core.observation import DEPTH, HFOV_DEGREES, POSE, RGB, VIEW_STEP_
 from mitigate.corruptions import Corruption, DepthSensor, FrameStream, Key
 from mitigate.guards.guard import Guards
 
-# maximum bytes of all frames in a call (heuristic); 24 cameras of 1080 x 1920 pixels need 5e8
+# maximum size of all frames in a call, in bytes (heuristic); 24 cameras of 1080 x 1920 need 5e8
 MAX_BYTES = 1 << 30
 MAX_CAMERAS = 256  # maximum number of cameras per call (heuristic)
 MAX_MEDIAN = 100.0  # if the median depth is larger (metres), a range must be declared (heuristic)
@@ -185,8 +185,8 @@ class Rig:
         descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Streams of recent frames by group, from the previous rig of this environment. None
-            for the first rig.
+        streams: Maps each group of cameras to the stream of its recent frames. A new rig of an
+            environment continues the streams of the previous rig; the first rig gets None.
 
     Raises:
         ValueError: If a camera cannot be corrupted, or there are too many cameras.
@@ -288,8 +288,8 @@ class Rig:
             memory: Frames of the current call.
             offsets: Position of each camera's frame in ``memory``.
             guards: Guards of the condition.
-            started: Guards of the current episode, by the names of the cameras of an observation.
-                Guards for new observations are added.
+            started: Maps the camera names of an observation to its guards in the current episode.
+                This method adds guards for new observations.
         """
         frames = [
             frame
@@ -312,7 +312,12 @@ class Rig:
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame for a guard: the views in memory of a complete panorama, or of one camera."""
+    """One frame for a guard: either all views of a complete panorama, or the view of one camera.
+
+    Attributes:
+        cameras: The cameras of the frame.
+        views: The views, as an array in shared memory.
+    """
 
     cameras: tuple[Camera, ...]
     views: np.ndarray
@@ -359,7 +364,7 @@ def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
     """Group frames into observations.
 
     An RGB frame and a depth frame form one observation if they have the same geometry, both are
-    level, and no other frame has this geometry. Every other frame forms its own observation.
+    level, and no other frame has this geometry. Each remaining frame forms a separate observation.
     """
     by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:

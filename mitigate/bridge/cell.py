@@ -98,7 +98,7 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
     """Raise ValueError if the events in ``folder`` changed after the condition finished."""
     count = entries["episodes_told"]
     if not output.is_regular(folder / EVENTS):
-        raise damaged(folder, f"the file is missing, and {DONE} records {count} episodes")
+        raise damaged(folder, f"the file is missing, although {DONE} records {count} episodes")
     # read raises an error that names the damaged line
     reports = results.read(folder, count_closed=True)
     if _seal(folder) != entries["events"]:
@@ -122,7 +122,7 @@ class Cell:
         corruption: The corruption.
         repeat: Number of the repetition for a repeated clean run, else 0.
         config: The options of the run.
-        command: The words of the user's command.
+        command: The user's command and its arguments.
         folder: Folder for the events and the output of the command.
         condition: Applies the corruption to frames and instructions.
         label: Entries that are added to all rows.
@@ -203,7 +203,7 @@ class Cell:
         return sorted(self.clean_reports().ends.keys() - self.reports().ends.keys())
 
     def clean_reports(self) -> Reports:
-        """Return the reports of the clean condition, without episodes for that condition itself."""
+        """Return the reports of the clean condition. They are empty if this condition is clean."""
         return results.read(self.clean, self.config.count_closed) if self.clean else Reports()
 
     def extra_episodes(self) -> list[str]:
@@ -258,7 +258,7 @@ class Cell:
     def depth_warning(self) -> str:
         """Return a warning if depth may be normalised to [0, 1], else ""."""
         names = ", ".join(results.maybe_normalised(self.reports()))
-        warning = f"run: the depth of {names} counts as metres, and never exceeded 1 in any episode"
+        warning = f"run: the depth of {names} should be in metres, but it never exceeded 1"
         return f"{warning}: {results.NORMALISED_HINT}" if names else ""
 
     def summary(self) -> str:

@@ -40,7 +40,7 @@ FIRST_FRAME_LIMIT = 900.0
 MAX_DRAWN = 4  # maximum number of cameras of a panorama that the picture shows per row
 SIDE = 1.64  # side of one frame in the picture, in inches
 LINE_WIDTH = 22  # maximum number of characters per line of a camera's name
-HEADING = "heading"  # entry of the file of first frames that holds the heading
+HEADING = "heading"  # name of the array in ``first.npz`` that contains the agent's heading
 TRIED_CALLS = 40  # maximum number of calls to try until an intermittent corruption acts (heuristic)
 
 
@@ -70,7 +70,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
 
     Args:
         config: The options of a run.
-        command: The words of the user's command.
+        command: The user's command and its arguments.
 
     Raises:
         ValueError: If an option is invalid, or the command sends no frame within
@@ -128,8 +128,10 @@ def _sensors(part: Corruption) -> list[str]:
 
 
 def _shows_past(part: Corruption) -> bool:
-    """Return whether a fault shows earlier frames, or only determines when another corruption
-    acts.
+    """Return whether a corruption is a temporal fault that cannot be drawn with only one frame.
+
+    Most of these faults repeat earlier frames. The fault ``intermittent`` has no effect of its own:
+    it determines when another corruption acts.
     """
     return record(part.name).family == TEMPORAL and record(part.name).draw is not None
 
@@ -203,8 +205,9 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
 
 
 def entry_name(camera: str) -> str:
-    """Return the name of the entry for a camera's frame; it must differ from `numpy.savez`
-    arguments.
+    """Return the name of the array in ``first.npz`` that contains a camera's frame.
+
+    The name must not be the name of an argument of ``numpy.savez``.
     """
     return f"camera {camera}"
 

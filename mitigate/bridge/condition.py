@@ -1,9 +1,9 @@
 """Apply one condition to the user's command: corrupt frames and instructions, and choose episodes.
 
 An episode is chosen by a hash of its name, so the choice depends neither on the order nor on the
-number of processes. The first environments of a run report the names of their episodes. From these
-names, an upper bound for the hash is computed, so that the hashes of about the requested number of
-episodes are below it. All later environments use the same bound.
+number of processes. The first environments of a run report the names of their episodes. These names
+determine an upper bound for the hash: about as many episodes as requested have a hash up to this
+bound. All later environments use the same bound.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-# after this many seconds without a new environment, all environments count as known (heuristic)
+# seconds without a new environment after which all environments are assumed known (heuristic)
 SETTLE_TIME = 4.0
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
@@ -222,7 +222,7 @@ class Subset:
 
     Attributes:
         count: The requested number of episodes.
-        folder: The run's folder; the choice is stored there.
+        folder: The run's folder, in which the choice of episodes is stored.
         settled: Seconds without a new environment after which all environments are assumed to be
             known.
     """
@@ -250,7 +250,11 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _choice(self) -> dict[str, Any] | None:
-        """Return the stored choice: the bound for the hashes, and the number of episodes."""
+        """Return the stored choice of episodes, or None if no choice is stored.
+
+        Its entries are the upper bound of the hashes ("bound"), the requested number of episodes
+        ("episodes") and the number of episodes to choose from ("of").
+        """
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None

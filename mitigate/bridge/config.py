@@ -44,7 +44,8 @@ class RunConfig:
     launcher: Any = MISSING
     split: str = "unnamed"
     rule: str | None = None
-    # the type is Any, and check_choice checks the value, because Hydra's type error would print it
+    # The type is Any, because Hydra's type error would print the value, including a password.
+    # The function check_choice checks the value instead.
     safeguard: Any = "none"
     restore: str | None = None
     tokenizer: str | None = None

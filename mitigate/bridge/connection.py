@@ -209,7 +209,7 @@ class Connection:
         return True
 
     def on_spec(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer the description of the cameras with shared memory for their frames."""
+        """Read the description of the cameras, and reply with shared memory for their frames."""
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = {*condition.corruption.modalities, *condition.guards.frames}
@@ -223,7 +223,7 @@ class Connection:
         return {**self.shared.make(size), "offsets": self.offsets}
 
     def on_episode(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Answer the message that begins an episode with the instruction for the agent."""
+        """Begin an episode, and reply with the instruction for the agent."""
         self._leave()
         self._check_chosen()
         self.scene, self.episode = read_start(message)
@@ -260,7 +260,7 @@ class Connection:
             )
 
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Corrupt the frames of a call in memory; answer with the names of the changed cameras."""
+        """Corrupt the frames of a call in memory; reply with the names of the changed cameras."""
         self.shared.delete_file()
         if self.rig is None:
             raise ValueError("a frame was received before its cameras were described.")
@@ -323,10 +323,11 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Receive the names of an environment's episodes; answer with the indices to keep, or None
-        for all.
+        """Receive the names of an environment's episodes, and reply with the indices to keep.
 
-        The names arrive in several messages. The final answer is sent when all ``count`` names are
+        The reply is None if the program must run all episodes.
+
+        The names arrive in several messages. The final reply is sent when all ``count`` names are
         known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
         dataset.
         """
@@ -356,7 +357,7 @@ class Connection:
 
 
 def _one_line(text: object) -> str | None:
-    """Return a text from a process as one printable line of at most ``MAX_TEXT`` characters."""
+    """Return text from a process as one printable line of at most ``MAX_TEXT`` characters."""
     if text is None:
         return None
     printable = "".join(c if c.isprintable() else " " for c in str(text))

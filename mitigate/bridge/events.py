@@ -1,6 +1,6 @@
 """Write and read the events of a condition, which are JSON lines in its folder.
 
-Reports of an agent's process about an episode are checked before they are written.
+The reports that an agent's process sends about an episode are checked before they are written.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from mitigate.evaluation.rows import GREATEST, allowed, stem_of
 from mitigate.worlds.measures import path_length
 
 EVENTS, LOCK, DONE = "events.jsonl", "lock", "done.json"
-# maximum bytes of one event (heuristic); a message has at most 1 << 24 bytes
+# maximum size of one event in bytes (heuristic); a message has at most 1 << 24 bytes
 LONGEST_LINE = 1 << 26
 COUNTS = ("steps", "calls")
 METRES = ("start_distance", "distance")  # these may be infinite, if no goal can be reached
@@ -102,8 +102,9 @@ def put_aside(folder: Path, kind: str) -> None:
 
 
 def episode_name(scene: str, episode: str) -> str:
-    """Return the name of an episode in rows. It includes the scene, because ObjectNav uses the same
-    ids in every scene.
+    """Return the name by which result rows identify an episode.
+
+    The name includes the scene, because ObjectNav uses the same ids in every scene.
     """
     stem = stem_of(scene)
     return f"{stem}/{episode}" if stem else str(episode)
@@ -113,14 +114,14 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     """Return the scene and the id from the message that begins an episode.
 
     Raises:
-        ValueError: If the name is not allowed in rows.
+        ValueError: If result rows cannot contain the episode's name.
     """
     scene, episode = str(message["scene"]), str(message["id"])
     constraint = allowed("episode_id", episode_name(scene, episode))
     if constraint:
         raise ValueError(
-            "the name of an episode, which consists of its scene file and its id, must be valid in "
-            f"rows ({constraint}), got {short(episode_name(scene, episode))}. Number the episodes."
+            f"an episode's name (its scene file and its id) must be {constraint}, got "
+            f"{short(episode_name(scene, episode))}. Use numbers as episode ids."
         )
     return scene, episode
 
@@ -142,8 +143,9 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
-    """Return the fields of an episode's end without unknown values. Raises the same errors as
-    `read_end`.
+    """Check the report about the end of an episode, and return it without unknown values.
+
+    Raises the same errors as :func:`read_end`.
     """
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):

@@ -36,7 +36,7 @@ class Plan:
 
     Attributes:
         config: The options.
-        command: The words of the user's command.
+        command: The user's command and its arguments.
         name: Name of the table's column, without the names of guards.
         out: Output folder.
     """
@@ -67,8 +67,9 @@ def make_cells(plan: Plan) -> list[Cell]:
     guards = open_guards(config.safeguard, config.restore, log=out / "safeguard.jsonl")
     if guards.adapts:  # the agent runs in another process
         raise ValueError(
-            f"The guard {guards.label} adapts the agent, which the bridge cannot do for another "
-            "program. Leave restore= out, or choose a guard of frames or instructions."
+            f"The guard {guards.label} adapts the agent, but the bridge cannot adapt an agent that "
+            "runs in another program. Leave restore= out, or choose a guard that changes only "
+            "frames or instructions."
         )
     chosen = None if config.episodes is None else Subset(config.episodes, out)
     options, agent = _settings(plan, guards)
@@ -187,7 +188,7 @@ def adapters_label(config: RunConfig) -> str | None:
     if not file.is_file():
         raise FileNotFoundError(
             f"adapters={config.adapters}: there is no file {file}. Name the agent/ folder of a "
-            "training with the recipe encoder."
+            "training run with the recipe encoder."
         )
     return f"{sha256(file)[:12]}:{module}:{target}"
 

@@ -37,7 +37,7 @@ PR_SET_CHILD_SUBREAPER = 36  # linux/prctl.h
 GRACE = 3.0  # seconds between SIGTERM and SIGKILL (heuristic)
 KILL_LIMIT = 10.0  # seconds after which killed processes must be gone (heuristic)
 PAUSE = 0.05  # seconds between two checks
-MAX_LINE = 200  # maximum characters of a process's command line in a message
+MAX_LINE = 200  # maximum length of a process's command line in a message, in characters
 
 
 class Command:
@@ -51,7 +51,8 @@ class Command:
         words: The command and its arguments.
         log: File that receives the output of the command.
         environment: All environment variables of the command.
-        marker: A text that only this command's environment contains.
+        marker: A value in ``environment`` that no other command has; it identifies the processes of
+            this command.
 
     Raises:
         OSError: If the command cannot be started.
@@ -220,8 +221,8 @@ def main() -> None:
     program = sys.argv[3:]
     ending: list[bool] = []
     for number in (signal.SIGINT, signal.SIGHUP):
-        # PARENT handles these signals.
-        # A handler is set because the program would inherit SIG_IGN.
+        # PARENT handles these signals, so the supervisor ignores them with an empty handler.
+        # SIG_IGN is not used, because the program would inherit it.
         signal.signal(number, lambda *_: None)
     signal.signal(signal.SIGTERM, lambda *_: ending.append(True))
     child = os.fork()
@@ -256,7 +257,8 @@ def _report(pipe: int, **message: object) -> None:
 def _reap(child: int, pipe: int) -> bool:
     """Reap ended processes; return whether any process still runs.
 
-    If the fork ``child``, which waits for the program, was killed, report its status.
+    The fork ``child`` reports the status of the program. If the fork itself failed or was killed,
+    this function reports the status of the fork instead.
     """
     while True:
         try:

@@ -32,7 +32,8 @@ from mitigate.corruptions.frame_files import counts
 from mitigate.evaluation.rows import stem_of
 
 CAMERAS = "cameras.json"
-MAX_NAME = 150  # maximum characters of a name in a path (heuristic); a file name may have 255 bytes
+# maximum length of a name in a path, in characters (heuristic); a file name may have 255 bytes
+MAX_NAME = 150
 UNIT = 0.001  # metres per unit of the 16-bit depth values
 _NOT_ALLOWED = re.compile(r"[^A-Za-z0-9._-]+")
 
@@ -139,8 +140,12 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete the unfinished episodes that ended processes left in ``folder``, a condition's
-    recording.
+    """Delete unfinished episodes in the recording of a condition.
+
+    An unfinished episode is deleted if the process that was recording it has ended.
+
+    Args:
+        folder: The folder of the recording.
 
     Raises:
         UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO

@@ -68,10 +68,10 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
 
 
 def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) -> None:
-    """Write the rows of a run; never drop rows of an existing file without notice.
+    """Write the rows of a run; never drop rows of an existing file without a message.
 
-    Rows of conditions that are ``left_out`` of the table, and rows of a different agent, seed or
-    split, are kept in a copy of the file.
+    The existing file is copied if it holds rows of conditions in ``left_out``, or rows of a
+    different agent, seed or split.
 
     Raises:
         ValueError: The file holds rows of a condition or episode that is not in ``new_rows``. In
@@ -83,9 +83,10 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     unexplained = [name for name in lost if name not in left_out]
     if unexplained:
         raise ValueError(
-            f"{file} holds {counted(len(before), 'row')}, and {lost.total()} of them belong to "
-            f"conditions that are not finished any more ({', '.join(unexplained)}). The file was "
-            "not changed. Run these conditions again, or move the file to another folder."
+            f"{file} holds {counted(len(before), 'row')}. The results of {lost.total()} of them "
+            f"are no longer in the run's folder (conditions: {', '.join(unexplained)}), so a new "
+            "file would lack them. The file was not changed. Run these conditions again, or move "
+            "the file to another folder."
         )
     labels = {name: {row[name] for row in new_rows} for name in LABELS}
     same_episodes = [row for row in before if _condition_and_episode(row) in now]
@@ -100,7 +101,10 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
 
 
 def _condition_and_episode(row: Row) -> tuple[str, float, str]:
-    """Return the condition and the episode of a row, which are the same for all success rules."""
+    """Return a key for the condition and the episode of a row.
+
+    Rows that differ only in their success rule have the same key.
+    """
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 

@@ -19,7 +19,7 @@ from mitigate.evaluation.rows import Row
 from mitigate.worlds.measures import RULES, Rule, path_length, spl
 
 OWN = "own: the agent's Success measure"
-# if depth that counts as metres never exceeds this value, it may be normalised (heuristic)
+# if depth that is declared in metres never exceeds this value, it may be normalised (heuristic)
 NORMALISED_LIMIT = 1.01
 NORMALISED_HINT = (
     "is it normalised? If so, describe it, with the camera's own name and range: corrupt(..., "
@@ -30,8 +30,8 @@ CUT_OFF = (
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-# This is the common rule of each task, by the entry of an episode that the task needs.
-# These rules do not use STOP, because some programs never report it.
+# COMMON maps an entry of an episode to the common success rule of tasks whose episodes have it.
+# The rules do not use STOP, because some programs never report it.
 COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 
@@ -42,10 +42,9 @@ class Reports:
     Attributes:
         hellos: The first message of each connection, with the versions of Python and libraries.
         cameras: The first description of each camera.
-        unread: Observations of the first call that look like frames, although their sensors are no
-            cameras, and the types of these sensors.
-        ends: The end of each episode, by name. If an episode ended several times, this is the first
-            complete end, or else the first end.
+        unread: Descriptions of observations of the first call that look like frames, but whose
+            sensors are not cameras. Each description contains the type of the sensor.
+        ends: Maps the name of each episode to the event of its end (:meth:`end`).
         repeated: Number of episodes that ended more than once.
         dropped: Episodes that were left unfinished, with the reason if known.
         parallel: Whether an episode ended while another one was running.
@@ -79,7 +78,11 @@ class Reports:
         return sorted(self.dropped.keys() - self.ends.keys())
 
     def end(self, name: str, event: dict[str, Any]) -> None:
-        """Record the end of an episode; a complete end replaces an earlier incomplete end."""
+        """Record the event of an episode's end.
+
+        If an episode ended several times, the first event counts. The first event is replaced,
+        however, if it was a reset or a close and the later event says that the episode was over.
+        """
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
             self.ends[name] = event
@@ -178,8 +181,8 @@ def rows(
         reports: The reports of the condition.
         corruption: The corruption of the condition.
         label: Entries of all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. Without
-            ``rule`` and Success measure, an agent gets rows only by the common rule.
+        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. If it is None
+            and the agent reports no Success measure, all rows are judged by the common rule.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     rules = _choose_rules(reports, rule, clean)
@@ -205,9 +208,11 @@ def rows(
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
     """Return the requested success rule and the common success rule.
 
-    The common rule is omitted if the task has none, as PointNav, which has neither words nor
-    objects. It is also omitted if it cannot judge every episode that the agent's own rule can
-    judge, or if neither this condition nor the clean condition reports a distance.
+    The common rule is omitted in each of these cases:
+
+    - The task has no common rule. An example is PointNav, which has neither words nor objects.
+    - The common rule cannot judge an episode that the agent's own rule can judge.
+    - Neither this condition nor the clean condition reports a distance.
     """
     requested = [RULES[rule]] if rule else []
     task = next((name for name in COMMON if reports.first.get(name)), None)
@@ -263,8 +268,8 @@ def count_missing(reports: Reports, rule: str) -> dict[str, int]:
 def _spl(end: dict[str, Any], success: bool) -> float:
     """Return the SPL of the reported path, or else the SPL that the agent reported.
 
-    A success without path and SPL has SPL 1, as if the agent had taken the shortest path
-    (:func:`count_without_path` counts such episodes).
+    The SPL of a successful episode is 1 if the agent reported neither a path nor an SPL. Such
+    episodes are counted by :func:`count_without_path`.
     """
     start, length = _shortest_path(end), _path_length(end)
     if not success:
@@ -292,7 +297,7 @@ def count_without_path(reports: Reports, rule: str | None) -> dict[str, int]:
 
 
 def maybe_normalised(reports: Reports) -> list[str]:
-    """Return the cameras whose depth counts as metres but never exceeds ``NORMALISED_LIMIT``."""
+    """Return the cameras with depth in metres that never exceeds ``NORMALISED_LIMIT``."""
     maximum: dict[str, float] = {}
     for end in reports.ends.values():
         for name, metres in end.get("farthest", {}).items():

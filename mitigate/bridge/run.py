@@ -37,7 +37,7 @@ from mitigate.corruptions.language.text import is_english, passed_through
 
 PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
-# maximum characters of a problem in a progress line (heuristic); the full text is printed later
+# maximum length of a problem in a progress line, in characters (heuristic)
 MAX_REASON = 100
 
 
@@ -52,7 +52,7 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
 
     Args:
         config: The options.
-        command: The words of the user's command.
+        command: The user's command and its arguments.
 
     Raises:
         ValueError: An option is invalid, or the command failed under some conditions. In that case,
@@ -160,8 +160,9 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Print and return the files named in the command that changed after a condition finished.
+    """Print and return the command's files that have changed since a condition finished.
 
+    The command's files are the files that its command line names.
     Files in ``known``, and files that the command created, are not printed.
     """
     changed: dict[str, list[str]] = {}
@@ -243,10 +244,13 @@ def _start(attempt: Attempt) -> str:
 
 
 def _report(cell: Cell, problem: str, single: bool) -> list[str]:
-    """Say the summary or the failure of a condition that ended in one line; return its problem.
+    """Print one line about a condition that ended: its summary, or that it failed.
 
-    At the end of the run, the full text of each problem is printed. If the run has a ``single``
-    condition, that end is now.
+    The line of a failed condition contains the beginning of the problem. If the run has only this
+    ``single`` condition, the line omits the problem, because the whole text follows directly.
+
+    Returns:
+        The problem with the name of the condition, or an empty list if there is no problem.
     """
     if not problem:
         say(f"{cell.name}: {cell.summary()}")
@@ -258,13 +262,12 @@ def _report(cell: Cell, problem: str, single: bool) -> list[str]:
 
 
 class ConditionTask:
-    """Task for running conditions on other machines (``core/workers.py``). A job is the name of a
-    condition.
+    """Task for running conditions on other machines (``core/workers.py``).
 
-    The result of a job is a description of its problem, or "". The folder of the run
-    must be on a file system that all machines can access. Finished conditions are kept. If a
-    machine dies, its condition is measured again from the start on a different machine, because the
-    user's program cannot resume.
+    Each job runs one condition; a job is represented by the name of its condition. The result of a
+    job is a description of its problem, or "". The folder of the run must be on a file system that
+    all machines can access. Finished conditions are kept. If a machine dies, its condition is
+    measured again from the start on a different machine, because the user's program cannot resume.
 
     Args:
         plan: The run; the path of its output folder must be absolute.

@@ -1,4 +1,4 @@
-"""Run chains of programs, such as a training and its evaluation, as jobs of any launcher.
+"""Run chains of programs, such as a training run and its evaluation, as jobs of any launcher.
 
 Each chain has a folder that all machines can access, and its programs can resume from that folder.
 If a machine dies, its chain starts again on a different machine and keeps its finished work.
@@ -26,7 +26,7 @@ from mitigate.core.progress import Progress
 
 PAUSE = 0.1  # seconds between two checks of running programs
 GRACE = 30.0  # seconds between SIGTERM and SIGKILL, for saving the state (heuristic)
-# maximum characters that an error message quotes of a program's last line (heuristic)
+# maximum length of a program's last line in an error message, in characters (heuristic)
 REASON_WIDTH = 400
 
 
@@ -36,7 +36,7 @@ class Chain:
 
     Attributes:
         name: name for messages.
-        programs: for each program, its kind and the words of its command line.
+        programs: for each program, its kind and its command line (the program and its arguments).
         log: file for the output of the programs.
         folder: working directory.
         environment: additional environment variables.
@@ -50,7 +50,7 @@ class Chain:
 
 
 class Running:
-    """A chain that runs on this machine; call :meth:`poll` until it returns a text."""
+    """A chain that runs on this machine; call :meth:`poll` until it returns a string."""
 
     def __init__(self, chain: Chain) -> None:
         self.chain = chain
@@ -135,7 +135,7 @@ def run(
     progress: Progress,
     ended: Callable[[int, str], None],
 ) -> None:
-    """Run ``chains``, ``jobs`` at a time, on the machines of ``launcher``.
+    """Run ``chains`` on the machines of ``launcher``, at most ``jobs`` chains at a time.
 
     When a chain has ended, ``ended`` is called with the chain's number and its problem, or "" after
     success. If this function is interrupted, all chains are stopped. Programs on this machine can
@@ -181,5 +181,5 @@ def _run_here(
 
 
 def python(*arguments: str) -> tuple[str, ...]:
-    """Return the words of a ``python -m ...`` command that uses this Python."""
+    """Return the command line ``python -m ...`` for the Python interpreter of this process."""
     return (sys.executable, "-m", *arguments)

@@ -111,7 +111,10 @@ def results(
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Wait until finished jobs have ended, and remove their folder."""
+    """Wait until the SLURM jobs have ended after their last result, and then remove their folder.
+
+    If a job has not ended after ``LATE`` seconds, the folder is kept.
+    """
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -189,7 +192,7 @@ def serve(
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
     """Yield each new result of a SLURM job; an incomplete last line is read later.
 
-    Raises a ValueError if the job wrote one.
+    If the job reported an error instead of a result, the function raises a ValueError.
     """
     if not share.lines.is_file():
         return

@@ -2,8 +2,8 @@
 
 When a worker of a cluster is killed, its programs would otherwise keep running and write to the
 same files as the next worker. On Linux, the programs end together with the worker (prctl(2)); on
-other systems they do not. This file imports only the standard library. The process that runs it
-then replaces itself by the program.
+other systems they do not. This file imports only the standard library. The process that runs this
+file replaces itself with the program.
 """
 
 import ctypes
@@ -17,10 +17,10 @@ PR_SET_PDEATHSIG = 1  # linux/prctl.h
 
 
 def words(program):
-    """Return a command line that runs ``program`` (a list of words) and ends it when this process
-    ends.
+    """Return a command line that runs ``program`` and ends it when this process ends.
 
-    Raises OSError if there is no such program.
+    ``program`` is a list of the program and its arguments. Raises OSError if there is no such
+    program.
     """
     if shutil.which(program[0]) is None:
         raise FileNotFoundError(errno.ENOENT, "there is no such program", program[0])
@@ -28,7 +28,7 @@ def words(program):
 
 
 def main() -> None:
-    """Replace this process by the program that the command line names."""
+    """Replace this process with the program that the command line names."""
     parent = int(sys.argv[1])
     program = sys.argv[2:]
     # Workers ignore SIGINT, and without this line, their programs would ignore it too.

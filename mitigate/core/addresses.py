@@ -21,7 +21,7 @@ _PLAIN = re.compile(r"(?!(?:https?|ftp)/)[\w./~+ -]*", re.IGNORECASE)
 _REFERENCE = re.compile(r"\$|oc\.env:\w+")
 # characters that can surround a value in a Hydra list, mapping, sweep or quotation
 _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
-# the option safeguard=, or a misspelling of it, at the start of a word or in a list
+# the option safeguard=, or a misspelling of it, at the start of an argument or in a list
 _SAFEGUARD = re.compile(r"(?:^|[^a-z])saf\w*g\w*[\"']?\s*[=:]", re.IGNORECASE)
 _NAME = re.compile(r"[-+~]*saf\w*g\w*=?", re.IGNORECASE)
 _NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")  # the next option in a list of options
@@ -51,8 +51,8 @@ def check_url(url: str) -> None:
 def check_choice(choice: object) -> None:
     """Raise ValueError if a value of ``safeguard=`` is not a string or is an invalid address.
 
-    Names, paths without special characters and existing folders are accepted. Any other value may
-    contain a password in any form, so it must have the form ``URL@model``.
+    Names, paths without special characters and existing folders are accepted. All other values must
+    have the form ``URL@model``, because a password in any other form would not be recognised.
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
@@ -62,8 +62,8 @@ def check_choice(choice: object) -> None:
     url, at, model = choice.rpartition("@")
     if not at and "//" not in choice:
         raise ValueError(
-            "This value names no safeguard that exists and is not the address of an endpoint. "
-            f"A name or a path consists of letters, digits and . / ~ + - _. {_EXAMPLE}"
+            "This value is neither the name of an existing safeguard nor the address of an "
+            f"endpoint. A name or a path consists of letters, digits and . / ~ + - _. {_EXAMPLE}"
         )
     check_url(url if at else choice)
     if not _MODEL.fullmatch(model) or not urlsplit(url).path:
@@ -74,25 +74,26 @@ def check_choice(choice: object) -> None:
 
 
 def is_plain(choice: object) -> bool:
-    """Return whether a value of ``safeguard=`` cannot be an address, so that messages may show
-    it.
+    """Return whether a value of ``safeguard=`` is certainly not an address.
+
+    Only such values may be shown in messages, because an address may contain a password.
     """
     return isinstance(choice, str) and bool(_PLAIN.fullmatch(choice)) and "//" not in choice
 
 
 def check_arguments(arguments: Iterable[str]) -> None:
-    """Check the addresses in the words of a command line before Hydra parses and prints them.
+    """Check the addresses in command-line arguments before Hydra parses and prints them.
 
-    The words are not parsed, because a parser's error message would print an invalid word. Instead,
-    :func:`check_choice` checks every part of a value of ``safeguard=``. If another word contains a
-    URL with a secret, the parts of this word that look like addresses are checked too.
+    The arguments are not parsed, because a parser's error message would print an invalid argument.
+    Instead, :func:`check_choice` checks every part of a value of ``safeguard=``. If any other
+    argument contains a URL with a secret, its parts that look like addresses are also checked.
     """
-    is_value = False  # whether the previous words are ``safeguard`` or ``safeguard =``
+    is_value = False  # whether the previous arguments are ``safeguard`` or ``safeguard =``
     for word in arguments:
         values = [(word[match.end() :], match.start()) for match in _SAFEGUARD.finditer(word)]
         for value, start in [*values, *([(word, 0)] if is_value else [])]:
             if not _is_folder(value):
-                # if a word begins with the name of another option, it is a list of options
+                # in a list of options, the value of safeguard= ends where the next option begins
                 parts = _SEPARATORS.split(_NEXT.split(value)[0] if "=" in word[:start] else value)
                 for part in parts:
                     if not _REFERENCE.fullmatch(part):

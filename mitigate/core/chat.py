@@ -24,7 +24,7 @@ from mitigate.core.names import short
 
 # HTTP status codes after which a retry may succeed
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})
-# maximum bytes of an answer in addition to its text, such as names and token counts
+# maximum size in bytes of the parts of an answer other than its text, such as token counts
 ENVELOPE = 1 << 15
 # fraction of the deadline that connecting to one address of a host may take (heuristic)
 CONNECT_SHARE = 0.25
@@ -81,11 +81,11 @@ class ChatClient:
 
         Args:
             messages: the conversation in OpenAI's format.
-            longest: maximum characters of the answer.
+            longest: maximum length of the answer, in characters.
             ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
 
         Raises:
-            NoAnswer: If all attempts failed, a failure was not temporary, or the time is over.
+            NoAnswer: If all attempts failed, a failure was permanent, or the time limit has passed.
         """
         problem = "out of time"
         for attempt in range(self.retries + 1):

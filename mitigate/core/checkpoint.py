@@ -103,7 +103,7 @@ def unwritten(file: Path, error: Exception) -> OSError:
 
 
 def load_weights(module: nn.Module, path: str | Path) -> None:
-    """Load the weights at ``path``, which :func:`save_weights` wrote, into ``module``.
+    """Load into ``module`` the weights at ``path``, which :func:`save_weights` wrote.
 
     Names and shapes must match exactly. Float tensors may have a different precision; integers,
     booleans and complex numbers must keep their type. If the weights contain no adapters (like
@@ -271,7 +271,7 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Load weights that :func:`save_agent` wrote into ``agent``.
+    """Load into ``agent`` the weights at ``path``, which :func:`save_agent` wrote.
 
     Raises the same errors as :func:`load_weights`.
     """

@@ -16,7 +16,7 @@ from typing import Any
 from mitigate.core.files import read_bounded, sha256, write_atomically, write_text
 
 SUFFIX = ".sha256"
-LARGEST = 4096  # maximum bytes of a sidecar (heuristic); a sidecar has one or two lines
+LARGEST = 4096  # maximum size of a sidecar in bytes (heuristic); a sidecar has one or two lines
 DIGITS = 12  # number of hex digits of a fingerprint (48 bits)
 _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 

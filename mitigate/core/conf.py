@@ -40,7 +40,7 @@ from mitigate.core.signals import Ended, raise_ended
 
 CONF = PACKAGE / "conf"  # in a checkout, this is a link to its conf/
 TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
-# maps conf/<name>.yaml and a group to the files of the group that the command rejects
+# for each conf/<name>.yaml, maps a config group to the group's files that the command rejects
 REJECTED: dict[str, Mapping[str, Sequence[str]]] = {}
 FULL = "HYDRA_FULL_ERROR"  # environment variable that makes Hydra show whole tracebacks
 # main sets this variable together with FULL.
@@ -63,14 +63,15 @@ def register(
     schema: str | None = None,
     rejected: Mapping[str, Sequence[str]] | None = None,
 ) -> None:
-    """Register the dataclass ``kind`` as the types of ``conf/<primary>.yaml``.
+    """Register the dataclass ``kind`` as the schema of ``conf/<primary>.yaml``.
 
     Args:
         primary: name of the config.
-        kind: the dataclass.
-        schema: the defaults list of the file must contain ``<schema>_schema``; None means
-            ``primary``.
-        rejected: files of groups that the command rejects; the help does not list them.
+        kind: dataclass that declares the type of each option.
+        schema: name of the schema without the suffix ``_schema``; the defaults list of the file
+            contains ``<schema>_schema``. The default is ``primary``.
+        rejected: maps config groups to the names of files that the command rejects. The help of the
+            command does not list these files.
     """
     TYPES[primary] = kind
     REJECTED[primary] = rejected or {}
@@ -116,10 +117,11 @@ def main(
     Args:
         program: a ``hydra.main`` function over ``conf/<primary>.yaml`` (:func:`hydra_program`).
         primary: name of the config.
-        check: called before ``program``, after the check of addresses (``core/addresses.py``).
-        behind: words of the command line that Hydra must not parse; they are appended to the
-            printed command.
-        again: what the printed command does, if it does not resume the work.
+        check: function that is called before ``program`` and checks the command-line arguments.
+            Addresses are checked earlier (``core/addresses.py``).
+        behind: command-line arguments that Hydra must not parse. They are appended to the printed
+            command.
+        again: text before the printed command. The default says that the command resumes the work.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
@@ -153,9 +155,7 @@ def main(
 
 
 def _prepare(primary: str, check: Callable[[], None] | None) -> None:
-    """Check the command line before Hydra parses or prints it; put its words in the order Hydra
-    needs.
-    """
+    """Check the command line before Hydra parses or prints it, and move flags to the front."""
     check_arguments(sys.argv[1:])
     if check is not None:
         check()
@@ -167,11 +167,11 @@ def _prepare(primary: str, check: Callable[[], None] | None) -> None:
 
 
 def _check_files(primary: str, words: Sequence[str]) -> None:
-    """Check addresses that config files set, before Hydra prints them or stores a sweep.
+    """Check the addresses in config files before Hydra prints them or saves the config of a sweep.
 
-    This takes a tenth of a second, so it is done only if the words name a folder of the user's
-    configs, start a sweep, or print a config. Raises the same errors as
-    :func:`mitigate.core.addresses.check_arguments`.
+    The check takes a tenth of a second. It is therefore made only if the command-line arguments
+    ``words`` name a folder of the user's configs, start a sweep, or print a config. Raises the same
+    errors as :func:`mitigate.core.addresses.check_arguments`.
     """
     if not any(word.startswith("-") or "hydra." in word for word in words):
         return
@@ -241,20 +241,22 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
 
 
 def load_config(primary: str, words: Sequence[str] = (), with_hydra: bool = False) -> DictConfig:
-    """Compose ``conf/<primary>.yaml`` with the ``words`` of a command line, outside a Hydra
-    program.
+    """Compose ``conf/<primary>.yaml`` with command-line arguments, outside a Hydra program.
 
-    The words are overrides, and optionally a folder with more configs (``--config-dir=mine``).
-    ``with_hydra`` adds Hydra's own settings as ``hydra``.
+    Args:
+        primary: name of the config.
+        words: Hydra overrides, and optionally the option ``--config-dir`` with a folder of more
+            configs.
+        with_hydra: whether to add Hydra's own settings as ``hydra``.
 
     Raises:
-        ValueError: If no imported module has registered the types of this file, or an address in
-            the words contains a password.
+        ValueError: If no imported module has registered the schema of this file, or an address in
+            the overrides contains a password.
     """
     check_arguments(words)
     if primary not in TYPES:
         raise ValueError(
-            f"The types of conf/{primary}.yaml are not registered: import the module of the "
+            f"The schema of conf/{primary}.yaml is not registered: import the module of the "
             "command first (mitigate/cli.py names it)."
         )
     _, overrides = without_config_folder(words)
@@ -296,7 +298,8 @@ def notices(primary: str, options: Sequence[str]) -> list[str]:
 
 def _notice(key: str, whole: bool, cfg: DictConfig) -> str:
     """Return the warning for ``+key=``; ``whole`` is true if the value is a list or a mapping."""
-    if OmegaConf.select(cfg, key) is not None:  # Hydra itself rejects a value that is not whole
+    # if the entry exists, Hydra itself rejects a value that is neither a list nor a mapping
+    if OmegaConf.select(cfg, key) is not None:
         text = f"{key} already exists, and +{key}= replaces it. To add one, use another name."
         return text if whole else ""
     if "." in key:

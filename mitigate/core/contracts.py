@@ -15,7 +15,7 @@ def read(thing: Any, *names: str, default: Any = None) -> Any:
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """For each of ``names`` that ``thing`` has, replace the attribute of ``view`` by its value."""
+    """Copy those of the attributes ``names`` that ``thing`` has from ``thing`` to ``view``."""
     for name in names:
         if hasattr(thing, name):  # no other function reads these attributes of a user's object
             setattr(view, name, getattr(thing, name))

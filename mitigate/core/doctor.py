@@ -74,7 +74,7 @@ def _flags() -> set[str]:
 
 
 def processor(flags: set[str]) -> str:
-    """Describe the instruction levels of a processor with ``flags``.
+    """Describe which vector instructions, such as AVX2, a processor with ``flags`` supports.
 
     Without native bf16, torch emulates bf16, which is several times slower than fp32.
     """

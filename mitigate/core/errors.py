@@ -44,10 +44,10 @@ def error_message(error: ValueError | OSError) -> str:
 
 
 def command(name: str) -> Callable[[Main], Main]:
-    """Return a decorator for the main function of a command, which explains a user's mistake.
+    """Return a decorator that makes the main function of a command explain errors.
 
-    For a ValueError or OSError, the decorated function prints one paragraph that begins with
-    ``name``, and returns the exit status 2.
+    For a ValueError or OSError of the main function, the decorated function prints one paragraph
+    instead of a traceback, and returns the exit status 2. The paragraph begins with ``name``.
     """
 
     def decorate(main: Main) -> Main:

@@ -23,14 +23,14 @@ GZIP_MAGIC = b"\x1f\x8b"  # RFC 1952
 # first line of a pointer file (Git LFS specification)
 LFS_START = b"version https://git-lfs.github.com/spec/"
 RECORDING = "recording.json"  # a recording of `mitigate run record=FOLDER` contains this file
-LONGEST_DRAFT = 200  # maximum bytes of the final name that are part of the temporary name
+LONGEST_DRAFT = 200  # a temporary name contains at most this many bytes of the final name
 # A gzip file may unpack to at most FREE + RATIO * (its size) bytes.
 # This limit is a heuristic; our files unpack to 15 to 31 times their size.
 RATIO = 128
 FREE = 1 << 24
 # number of final bytes of a program's output that are read for a message (heuristic)
 TAIL_BYTES = 1 << 16
-LINE_WIDTH = 200  # maximum characters of an output line in a message (heuristic)
+LINE_WIDTH = 200  # maximum length of an output line in a message, in characters (heuristic)
 
 PACKAGE = Path(__file__).resolve().parents[1]  # the folder of mitigate
 ROOT = PACKAGE.parent  # the checkout, or the folder of installed packages

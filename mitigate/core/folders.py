@@ -46,11 +46,11 @@ from mitigate.core.signals import uninterrupted
 
 MANIFEST = "manifest.json"
 FORMAT = 1
-# maximum entries of a manifest (heuristic); the manifest of a hardened folder has 8
+# maximum number of entries of a manifest (heuristic); the manifest of a hardened folder has 8
 MOST_FILES = 1000
-LONGEST = 255  # maximum bytes of a file name (Linux, NAME_MAX)
+LONGEST = 255  # maximum length of a file name in bytes (Linux, NAME_MAX)
 AGAIN = "Fetch the folder again, or write it again with the command that made it."
-_OLD = "old"  # name, inside the temporary folder, of the folder that is being replaced
+_OLD = "old"  # name that a replaced folder gets when it is moved into the temporary folder
 _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
@@ -324,8 +324,8 @@ def problem(file: Path) -> str:
     """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
 
     Returns:
-        A predicate such as "does not have the sha256 ...", or "" if the file is intact or no
-        manifest or sidecar lists it.
+        The end of a sentence about the file, such as "does not have the sha256 ...", or "" if the
+        file is intact or no manifest or sidecar lists it.
 
     Raises:
         PermissionError: If the user has no permission to read the file; it may be intact.

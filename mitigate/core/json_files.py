@@ -15,11 +15,11 @@ from mitigate.core.names import short
 from mitigate.core.output import UnsafePathError
 
 CHUNK = 1 << 16  # number of characters that are read at a time (heuristic)
-# maximum characters of one JSON value; a longer value means a broken file (heuristic)
+# maximum length of one JSON value in characters (heuristic); a longer value means a broken file
 LARGEST_VALUE = 1 << 25
-# maximum bytes of a JSON file that is read at once (heuristic); a card has 1e4 bytes
+# maximum size in bytes of a JSON file that is read at once (heuristic); a card has 1e4 bytes
 LARGEST_JSON = 1 << 24
-# maximum bytes of a JSON file that lists the files of a folder (heuristic); a file needs 100 bytes
+# maximum size in bytes of a JSON list of the files of a folder (heuristic); a file needs 100 bytes
 LARGEST_LIST = 1 << 28
 
 

@@ -115,7 +115,7 @@ class FolderLock:
             self._root = None
         if self._file is not None:
             status = os.fstat(self._file.fileno())
-            # a different file means that another process has the lock
+            # if the lock file was replaced, it belongs to another process and must stay
             if output.is_same(status, self.path):
                 self.path.unlink(missing_ok=True)
             _locks.pop(self.path, None)
@@ -133,12 +133,12 @@ class FolderLock:
             who = "another process"
         return (
             f"{self.folder} is in use: {who} is writing there. Wait for it or stop it, or choose "
-            "another folder (folder=... for a training, out=... for an evaluation)."
+            "another folder (folder=... for a training run, out=... for an evaluation)."
         )
 
 
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
-    """Delete unfinished files that ended processes left in ``folder``, and return them.
+    """Delete unfinished files in ``folder`` whose processes no longer run, and return their paths.
 
     The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
     not searched.
@@ -154,7 +154,7 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
 
 
 def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
-    """Delete those ``drafts`` whose process has ended, and return them.
+    """Delete those ``drafts`` whose processes no longer run, and return their paths.
 
     Args:
         drafts: Paths that may be unfinished files of ``mitigate/core/files.py``.

@@ -7,13 +7,15 @@ import re
 from collections.abc import Iterable, Mapping
 from pathlib import Path
 
-LONGEST_NAME = 200  # maximum characters of an untrusted name in a message (heuristic)
-LONGEST_LIST = 4000  # maximum characters of a list of names in a message (heuristic)
-LONGEST_MESSAGE = 16000  # maximum characters of a message of a command (heuristic)
+LONGEST_NAME = 200  # maximum length of an untrusted name in a message, in characters (heuristic)
+LONGEST_LIST = 4000  # maximum length of a list of names in a message, in characters (heuristic)
+LONGEST_MESSAGE = 16000  # maximum length of a command's message, in characters (heuristic)
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
-    """Return the error paragraph for an unknown ``name``, with the nearest and all allowed names.
+    """Return the error paragraph for an unknown ``name``.
+
+    The paragraph suggests the nearest allowed name, and lists all allowed names.
 
     Args:
         what: kind of thing, such as "corruption".

@@ -1,8 +1,8 @@
 """Parse paths, ``key=value`` options and flags of a command line, before any config is read.
 
 Commands without Hydra use :func:`paths_and_options`. The other commands pass their options to Hydra
-(``core/conf.py``). Before that, these commands reject words that Hydra would accept without a
-warning or reject with an unclear message.
+(``core/conf.py``). Before that, these commands check the arguments themselves. The reason is that
+Hydra accepts some invalid arguments without a warning and rejects others with an unclear message.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def paths_and_options(
     """Return the paths and the ``key=value`` options of a command line.
 
     Args:
-        arguments: words of the command line.
+        arguments: all command-line arguments.
         paths: names of the required paths, for messages.
         known: names of the allowed options.
 
@@ -38,8 +38,8 @@ def paths_and_options(
         The paths, and the options by name, as text.
 
     Raises:
-        ValueError: If the number of paths is wrong, an option is unknown or set twice, or a word
-            begins with a dash.
+        ValueError: If the number of paths is wrong, an option is unknown or set twice, or an
+            argument begins with a dash.
     """
     words: list[str] = []
     options: dict[str, str] = {}
@@ -77,7 +77,7 @@ def check_paths(paths: Sequence[object], options: str) -> None:
 
 
 def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]:
-    """Split the words of a command line into paths and Hydra overrides."""
+    """Split command-line arguments into paths and Hydra overrides."""
     words = list(arguments)
     options = [word for word in words if "=" in word or word.startswith("-")]
     return [word for word in words if word not in options], options
@@ -113,10 +113,10 @@ def config_folder(options: Sequence[str]) -> Path | None:
 
 
 def without_config_folder(options: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Separate the folder of configs (``--config-dir mine``) from the other ``options``.
+    """Separate the option ``--config-dir``, which names a folder of configs, from other options.
 
     Returns:
-        The words that name the folder, and the other words.
+        The command-line arguments that set the folder, and the remaining arguments.
     """
     folder_words: list[str] = []
     rest: list[str] = []
@@ -143,9 +143,9 @@ def check_dashes(options: Sequence[str]) -> None:
 
 
 def flags_first(words: Sequence[str]) -> list[str]:
-    """Move the multirun flag and the option for the folder of configs to the front of ``words``.
+    """Move ``--multirun`` and ``--config-dir`` to the front of the command-line arguments.
 
-    Hydra does not recognise these options between others.
+    The parser of Hydra rejects a flag that stands between two overrides.
     """
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])

@@ -70,11 +70,11 @@ class Root:
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Check each subfolder on the relative path ``inner``.
+        """Check each folder along ``inner``, a path relative to the output folder.
 
         Raises:
-            UnsafePathError: If one of the subfolders is a link.
-            FolderLostError: If a subfolder that existed before is missing.
+            UnsafePathError: If one of these folders is a link or is not a folder.
+            FolderLostError: If a folder that existed at an earlier write is missing.
         """
         place = self.places[0]
         for part in inner.parts:
@@ -266,8 +266,8 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
         options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
-        UnsafePathError: If ``path`` is a link, a FIFO, a socket or a device, has a second name (a
-            hard link), or goes through a link inside an output folder.
+        UnsafePathError: If ``path`` is a symbolic link, a folder, a FIFO, a socket or a device, has
+            more than one hard link, or goes through a symbolic link inside an output folder.
         FolderLostError: If the output folder was removed or replaced.
         OSError: If the file cannot be opened.
     """
@@ -282,7 +282,7 @@ def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
 
 
 def _check_file(path: Path | str) -> None:
-    """Raise UnsafePathError if ``path`` exists and is not a regular file with a single name."""
+    """Raise UnsafePathError if ``path`` exists, unless it is a regular file with one hard link."""
     with suppress(FileNotFoundError):
         status = os.lstat(path)
         regular = stat.S_ISREG(status.st_mode)

@@ -22,9 +22,10 @@ import torch.nn.functional as F
 
 CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # environment variable that limits the instructions that oneDNN uses
-_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")  # limits that allow bf16 instructions
-# These are the milliseconds of the test step on the machine that measured the costs of stages.
-# It has 2 cores of an AMD EPYC, limited to AVX2.
+# values of ONEDNN_MAX_CPU_ISA with which oneDNN may use bf16 instructions
+_NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")
+# This is the result of probe() in milliseconds on the machine where stage costs were measured.
+# That machine has 2 cores of an AMD EPYC, limited to AVX2.
 REFERENCE = 12.0
 
 

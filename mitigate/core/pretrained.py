@@ -98,7 +98,7 @@ def explained(base: str, precision: str, install: str) -> Iterator[None]:
 
 
 def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
-    """Return the sha256 of the weights in a folder, whose files are read in order of name.
+    """Return one sha256 over the contents of all weight files in a folder, sorted by name.
 
     For a hub id, return the sha256 of the id itself.
     """

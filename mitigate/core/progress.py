@@ -41,7 +41,7 @@ class Progress:
         self.done = start
         self.note = ""
         self._began = time.monotonic()
-        # units done after the first advance, and its time
+        # number of units done and time.monotonic(), both taken at the first advance
         self._first: tuple[int, float] | None = None
         self._bar: tqdm | None = None
 
@@ -112,8 +112,8 @@ class Progress:
         """Return the mean seconds per unit, or None while the mean is unknown.
 
         The mean excludes the first units, because their time includes compiling code and opening
-        files. The mean is known only after a further 1 % of the units, because every worker
-        compiles.
+        files. The mean is unknown until another 1 % of all units is done, because each worker
+        compiles code during its first units.
         """
         least = max(1, (self.total - self.start) // 100)
         if self._first is None or self.done - self._first[0] < least:

@@ -99,7 +99,8 @@ def results(
     the current process if ``workers`` is 1, otherwise in a worker. While waiting for workers, the
     generator yields None at least every ``SECOND``.
 
-    If a worker dies, a new process runs its unfinished jobs; this happens at most once.
+    If a worker dies, a new process runs its unfinished jobs. Only one worker per call is replaced;
+    the death of a second worker is an error.
 
     Raises:
         WorkersDied: If a second worker died.
@@ -150,7 +151,7 @@ class _Worker:
             self.pipe.send_bytes(jobs)
 
     def end(self) -> str:
-        """End the process if it still runs, and return how it ended."""
+        """End the process if it is still running, and return a description of how it ended."""
         # the exit code may become available only after the pipe is closed
         self.process.join(SECOND)
         code = self.process.exitcode
@@ -226,7 +227,7 @@ class _Crew:
             yield worker.left.popleft()[0], result
 
     def _replace(self, worker: _Worker) -> None:
-        """Replace a dead worker by a new process; raise WorkersDied if one was already replaced."""
+        """Replace a dead worker with a new process; raise WorkersDied for a second dead worker."""
         cause = worker.end()
         self.crew.remove(worker)
         self.deaths += 1
@@ -324,8 +325,8 @@ def _unpacked(copy: bytes) -> Any:
 def portable(error: Exception) -> tuple[Exception, Exception]:
     """Return a version of ``error`` that can be pickled, and a cause with the worker's traceback.
 
-    The text of a ValueError gets the file and line in the user's code. An error that cannot be
-    pickled becomes a RuntimeError with the same text.
+    If the user's code raised a ValueError, the file and line are appended to its message. An error
+    that cannot be pickled is replaced with a RuntimeError with the same message.
     """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
     error = ValueError(error_message(error)) if type(error) is ValueError else error

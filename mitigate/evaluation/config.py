@@ -31,7 +31,7 @@ Entries = TypeVar("Entries")
 
 @dataclass
 class EvaluationConfig:
-    """Options of the evaluation at the end of a training."""
+    """Options of the evaluation at the end of a training run."""
 
     enabled: bool = True
     split: str = "val_unseen"

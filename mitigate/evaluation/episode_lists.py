@@ -170,7 +170,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
         if words[0] != digest:
             raise ValueError(
                 f"{folder} holds rows of another list of {split} than the current {source}. Name "
-                "another folder (out=..., for a training folder=...), or delete this one."
+                "another folder (out=..., or folder=... for a training run), or delete this one."
             )
     with atomic_text(note) as file:
         file.write(f"{digest}  {source}\n")

@@ -191,8 +191,8 @@ def keep(
         what = f"episode {changed[0]} of another list" if changed else "another world"
         detail = "" if changed else f": {_difference(different[0], before, described)}"
         raise ValueError(
-            f"{folder} holds rows of {what}{detail}. Name another folder (out=..., for a training "
-            "folder=...), or delete this one."
+            f"{folder} holds rows of {what}{detail}. Name another folder (out=..., or "
+            "folder=... for a training run), or delete this one."
         )
     known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
     with atomic_text(note) as file:

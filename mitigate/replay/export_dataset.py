@@ -29,7 +29,8 @@ DATA = "data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet"
 VIDEOS = "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4"
 STATE = "observation.state"
 ENCODINGS = {RGB: videos.LOSSLESS, DEPTH: videos.DEPTH}
-FIRST = {"chunk_index": 0, "file_index": 0}  # all episodes are in the first files
+# all episodes are written to the first data file and the first video file of each camera
+FIRST = {"chunk_index": 0, "file_index": 0}
 
 
 Step = dict[str, np.ndarray]  # the frames and the pose of a step

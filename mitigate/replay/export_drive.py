@@ -62,8 +62,9 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     A drive is written completely or not at all.
 
     Raises:
-        ValueError: The form or split is unknown, the world has no expert or several cameras, or a
-            drive already exists. The check precedes all episodes.
+        ValueError: The form or split is unknown, the world has more than one camera or no expert,
+            or a drive already exists. A missing expert is noticed in the first episode; the other
+            checks run before it.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress
@@ -113,8 +114,8 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
     """Return the output path of each episode.
 
-    The path is the episode id, in which other characters than letters, digits and "_" are replaced
-    by "-".
+    The file name is the episode id. Each sequence of characters other than letters, digits, "_"
+    and "-" is replaced with "-".
 
     Raises:
         ValueError: If two episodes have the same path, or a path already exists.

@@ -321,7 +321,7 @@ def replay(
 
 
 def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
-    """Return why a corruption does not apply to an agent and drives, or "" if it applies."""
+    """Return the reason why a corruption cannot reach an agent on these drives, or "" if it can."""
     from mitigate.agents.agent import as_agent
     from mitigate.corruptions.registry import parts, record
 

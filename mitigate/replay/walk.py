@@ -29,9 +29,9 @@ ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 MIN_AIM_SHIFT = 0.5
 # a continuous action counts as changed if one of its numbers moves by this fraction of the range
 MIN_ACTION_SHIFT = 0.1
-ROUNDING = 1e-6  # continuous actions whose numbers differ by less are equal
-OFTEN = 0.2  # the driver takes an action often if it takes it at this fraction of the steps
-# the agent takes an action rarely if it takes it less than this fraction as often as the driver
+ROUNDING = 1e-6  # tolerance for rounding errors when continuous actions are compared
+OFTEN = 0.2  # an action is frequent if the driver takes it in at least this fraction of the steps
+# an action is rare if the agent's frequency is below this fraction of the driver's frequency
 RARELY = 0.1
 MIN_BLOCKS = 8  # minimum number of blocks of steps for a bootstrap interval
 # number of steps per block; consecutive steps are correlated, so a block is resampled as a unit
@@ -158,7 +158,10 @@ def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
 
 
 def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
-    """Return the actions that the driver takes often, but the agent rarely on clean frames."""
+    """Return the actions that the driver takes often and that the agent rarely takes.
+
+    The agent's actions are those on clean frames. See ``OFTEN`` and ``RARELY`` for the limits.
+    """
     drives = [r for r in recordings if r.driven is not None and clean[r.name].actions.ndim == 1]
     if not drives:
         return []
@@ -249,14 +252,14 @@ def compare(
 
 
 def _share(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the fraction of steps that are true, with a 95 % interval.
+    """Estimate the fraction of steps whose value is True, with a 95 % interval.
 
     The bootstrap resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
     or if all blocks have equal means, Wilson's score interval is used instead; each block counts as
     one observation.
 
     Args:
-        drives: an array bool [T] for each drive.
+        drives: For each drive, one value per step, bool [T].
     """
     estimate = _mean(drives)
     if not np.isnan(estimate.low):
@@ -275,7 +278,7 @@ def _mean(drives: Sequence[np.ndarray]) -> Estimate:
     means.
 
     Args:
-        drives: an array float [T] for each drive.
+        drives: For each drive, one value per step, float [T] or bool [T].
     """
     blocks = [block for drive in drives for block in _blocks(drive)]
     sums = np.array([block.sum() for block in blocks])

@@ -222,7 +222,7 @@ def test_rows_leave_out_unknown_values(peer, unknown):
 def test_connection_rejects_names_that_rows_cannot_hold(peer, name):
     assert "error" not in peer.ask(HELLO)
     error = peer.ask({"kind": "episode", "scene": "", "id": name, "text": "go left"})["error"]
-    assert "must be valid in rows" in error
+    assert "an episode's name (its scene file and its id) must be" in error
     peer.close()
 
 

@@ -167,7 +167,7 @@ def test_run_names_a_failing_callable(run, tmp_path):
 
 def test_run_rejects_a_guard_that_adapts_the_agent(run, tmp_path):
     ended = run(tmp_path / "out", f"conditions=[clean] restore={FILTERS}:Politely")
-    assert "filters.Politely adapts the agent, which the bridge cannot do" in ended.stderr
+    assert "filters.Politely adapts the agent, but the bridge cannot adapt" in ended.stderr
 
 
 def test_describe_names_restored_frames(restorer):

@@ -99,7 +99,7 @@ def test_unknown_value_is_repeated_only_if_it_is_a_name():
     with pytest.raises(ValueError, match="'clasifier'. Did you mean classifier"):
         choices.check("clasifier")
     for value in ("me:PW", ["PW"], {"url": "PW"}, "PW%40h"):
-        with pytest.raises(ValueError, match="This value names no safeguard that exists") as error:
+        with pytest.raises(ValueError, match="the name of an existing safeguard") as error:
             choices.check(value)
         assert "PW" not in str(error.value)
 

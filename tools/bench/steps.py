@@ -54,8 +54,8 @@ def step_costs(run: Path) -> dict[str, float]:
     stages = sorted({file.parent for file in run.glob("*/events.out.tfevents.*")})
     if not stages:
         raise FileNotFoundError(
-            f"{run} holds no stage with TensorBoard files. Name the folder of a training, which "
-            "holds config.yaml."
+            f"{run} holds no stage with TensorBoard files. Name the folder of a training run, "
+            "which holds config.yaml."
         )
     return {stage.name: _cheapest(stage) for stage in stages}
 

@@ -40,18 +40,18 @@ ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIEN
 ADAPTERS = "MITIGATE_ADAPTERS"
 HEADER = struct.Struct("!4sI")  # magic bytes, and the size of the JSON object that follows
 MAGIC = b"mtg1"
-# maximum bytes of a message; an episode with all view points of its goals needs 1e6
+# maximum size of a message in bytes; an episode with all view points of its goals needs 1e6
 MAX_MESSAGE = 1 << 24
 KEYS_PER_MESSAGE = 10000  # maximum number of episode names; train splits have millions of episodes
 # name of a file next to the socket; a process creates it when it loads this module
 LOADED = "loaded"
-MAX_TEXT = 4000  # maximum characters of a reported problem
+MAX_TEXT = 4000  # maximum length of a reported problem, in characters
 STATUS = 97  # exit status of a process that stopped itself
 REPORT_TIMEOUT = 3.0  # maximum seconds for a stopping process to report the reason (heuristic)
 COLOR, DEPTH = "rgb", "depth"  # kinds of camera
 # how an episode ended: it was over, its Env was reset or closed early, or an exception ended it
 OVER, RESET, CLOSE, BROKEN = "over", "reset", "close", "broken"
-# exceptions that end a loop normally
+# exceptions that signal the normal end of a loop
 ORDERLY = (StopIteration, StopAsyncIteration, GeneratorExit)
 
 
@@ -215,7 +215,7 @@ class Channel:
     def map_memory(self, cameras, unread):
         """Describe the cameras to the server and map the memory that it provides.
 
-        ``unread`` names observations that look like frames, although their sensors are no cameras.
+        ``unread`` names observations that look like frames, but whose sensors are not cameras.
         """
         answer = self.ask("spec", cameras=cameras, unread=unread)
         self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
@@ -247,7 +247,7 @@ def _describe_error(error):
 
 
 def _is_orderly(error):
-    """Return whether an exception ends a loop or the program normally."""
+    """Return whether an exception signals the normal end of a loop or of the program."""
     ended = isinstance(error, SystemExit) and error.code in (None, 0)
     return ended or isinstance(error, ORDERLY)
 
@@ -319,7 +319,7 @@ class Session:
     def __init__(self):
         self.channel = None
         self.cameras = None  # camera descriptions that the server has received
-        # observations that look like frames, although their sensors are no cameras
+        # observations that look like frames, but whose sensors are not cameras
         self.unread = []
         self.sim = self.task = self.episode = None
         self.active = False  # whether an episode has begun and not ended
@@ -814,8 +814,7 @@ def _async_observations(original, sim, *args, **kwargs):
 
 
 def _is_called_by_lab(sim):
-    """Return whether habitat-lab is the caller, because its frames are corrupted at its own
-    sensors.
+    """Return whether habitat-lab is the caller; its frames are corrupted at its own sensors.
 
     The caller counts as habitat-lab if its code is in a module of habitat-lab, or is a method of a
     habitat-lab simulator or of a subclass. If any other code takes frames from a habitat-lab
@@ -845,11 +844,15 @@ def _package(module):
 
 
 def _corrupt_acting_agent(sim, observations, agent_ids):
-    """Corrupt only the observations of the acting agent, unless habitat-lab or a clean call asked.
+    """Corrupt the observations of the acting agent only.
+
+    Observations stay unchanged inside ``_call_clean``, and if habitat-lab requested them: their
+    frames are corrupted at the sensors of habitat-lab.
 
     Args:
         sim: The simulator.
-        observations: Observations by sensor, or by agent number if there are several agents.
+        observations: Maps sensors to observations. With several agents, it maps agent numbers to
+            such dicts.
         agent_ids: The ids of the requested agents; None means the acting agent.
     """
     if _is_clean_call() or _is_called_by_lab(sim):
@@ -1261,7 +1264,10 @@ def patch(module):
 
 
 def _describe_missing(module, missing):
-    """Return the message for ``methods``, pairs (class, name), that cannot be wrapped."""
+    """Return the error message for methods of ``module`` that do not exist.
+
+    ``missing`` is a list of pairs (class, method).
+    """
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]

@@ -47,7 +47,10 @@ def check(choice: object) -> None:
     if is_endpoint(text) or text in (*CHOICES, EARLIER):
         return
     if not text or not Path(text).is_dir():
-        cause = f"This value names no safeguard that exists. Choose one of: {', '.join(CHOICES)}."
+        cause = (
+            "This value is not the name of an existing safeguard. Choose one of: "
+            f"{', '.join(CHOICES)}."
+        )
         # other values may contain a password, so the message does not show them
         if is_plain(choice):
             cause = unknown("safeguard", choice, CHOICES)
