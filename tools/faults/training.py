@@ -278,6 +278,8 @@ def remove_folder(training: Training) -> str:
     if training.folder.exists():
         return problem or "it created the folder again"
     os.replace(away, training.folder)
+    if command.process.returncode == 0:  # all files had been written before
+        raise TooLate
     return problem
 
 
