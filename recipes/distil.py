@@ -48,7 +48,7 @@ class Distil(OnEpisodes):
 
     Raises:
         FileNotFoundError: If the teacher is missing.
-        ValueError: If a weight or the temperature is invalid, or ``Imitate`` raised this error.
+        ValueError: If a weight or the temperature is invalid, or if ``Imitate`` raises ValueError.
     """
 
     def __init__(

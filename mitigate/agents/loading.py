@@ -105,8 +105,8 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     Args:
         folder: a folder such as ``checkpoints/hardened/ts_distill``.
         base: if the folder holds only adapters, the file or folder of the weights to which they
-            belong. If None, the path in the card is used; it is searched below the current folder,
-            the folders above ``folder``, and the checkout.
+            belong. If None, the path in the card is used. This path is looked up below the current
+            folder, the folders above ``folder``, and the checkout.
         agent: an agent of a user's class with the settings of the exported agent, into which the
             weights are loaded in place. If this agent has no ``settings()``, it receives the
             settings in the folder. If it is None, a new agent of a shipped kind is built.

@@ -35,7 +35,7 @@ TRAIN, UNSEEN = "train", "unseen"
 FEWEST_UNSEEN = 5
 # minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
 NEAR = 0.05
-NEAREST = 0.02  # in metres; at least a fraction ``NEAR`` of valid depth must be farther (heuristic)
+NEAREST = 0.02  # in metres; at least ``NEAR`` of the valid depth must be farther (heuristic)
 EVERY = 2  # step between the views of a panorama that are used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 

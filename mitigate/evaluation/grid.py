@@ -287,7 +287,7 @@ class Grid:
         """Return the values for the PRS of each column over the corruptions ``names``.
 
         All columns use the same corruptions and episodes. A corruption is used if every column
-        measured it on at least a fraction :data:`COVERAGE` of the episodes. An episode is used if
+        measured it on at least the fraction :data:`COVERAGE` of the episodes. An episode is used if
         every column has it under all these corruptions. If no corruption or no episode remains,
         return None.
         """
@@ -396,7 +396,7 @@ def _complete_seeds(
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
     """Return the complete seeds at ``severity``, and (actual, expected) row counts of the others.
 
-    The results of complete seeds are averaged. A seed is complete if it has at least a fraction
+    The results of complete seeds are averaged. A seed is complete if it has at least the fraction
     :data:`COVERAGE` of the rows of the seed with the most rows. Clean rows and corrupted rows must
     each reach this fraction. Seeds without rows at ``severity`` are in neither result.
     """

@@ -84,9 +84,9 @@ class Guard:
     def for_episode(self) -> Guard:
         """Return the guard for one episode.
 
-        A guard that remembers earlier frames returns a new guard without memories. The method
-        ``observe`` of such a guard is called at every step, even if the agent does not read the
-        frames.
+        A guard that remembers earlier frames must override this method, and return a new guard that
+        remembers nothing yet. The method ``observe`` of such a guard is called at every step, even
+        if the agent does not read the frames.
         """
         return self
 

@@ -8,12 +8,12 @@ black_box. The option ``split`` applies only to black_box, ``mask_token`` only t
 ``tagger`` only to capitalize and mask.
 
 The clean text is kept as ``original_text``. ``tokenizer`` computes the tokens of the new text:
-``vocabulary`` uses the ``instruction_vocab`` of the file, and NAME selects a tokenizer of
-transformers by its folder or hub name. Without the option ``tokenizer``, the tokens of changed
-instructions are removed, because they encode the clean text. Instructions that are not in English
-or contain no word are copied unchanged, and the command reports their number. The command also
-writes ``OUT.summary.json``. It overwrites an existing OUT only if it wrote that file and the file
-has not changed since.
+``vocabulary`` uses the ``instruction_vocab`` of the file, and NAME is the folder or the hub name of
+a Hugging Face tokenizer. Without the option ``tokenizer``, the tokens of changed instructions are
+removed, because they encode the clean text. Instructions that are not in English or contain no word
+are copied unchanged, and the command reports their number. The command also writes
+``OUT.summary.json``. It overwrites an existing OUT only if it wrote that file and the file has not
+changed since.
 """
 
 from __future__ import annotations
@@ -85,16 +85,17 @@ def run(
         seed: Seed of the corruption. The seed and the episode id form the random key, as in an
             evaluation.
         split: See ``corrupt_instruction``.
-        tokenizer: "vocabulary" for the vocabulary of the file, or the folder or hub name of a
-            tokenizer of transformers. If None, the tokens of changed instructions are removed.
+        tokenizer: "vocabulary" to use the vocabulary that ``source`` contains, or the folder or hub
+            name of a Hugging Face tokenizer. If None, the tokens of changed instructions are
+            removed.
         mask_token: Text that replaces a word. If None, it is the mask token of the tokenizer, or
             "[MASK]" if the tokenizer has no mask token.
         tagger: See ``corrupt_instruction``.
         rewrite: See ``corrupt_instruction``.
 
     Raises:
-        ValueError, FileNotFoundError: An option or file is invalid, or ``out`` exists and this
-            function did not write it. ``out`` is then unchanged.
+        ValueError, FileNotFoundError: If an option or file is invalid, or if ``out`` exists and
+            this function did not write it. ``out`` is then unchanged.
     """
     check_for_file(corruption)
     severity = check_severity(severity)

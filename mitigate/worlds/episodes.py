@@ -39,8 +39,9 @@ NEEDED = (
 
 
 class Record:
-    """A JSON object of a file. Error messages contain the file and the position of the object in
-    the file.
+    """A JSON object that was read from a file.
+
+    Its error messages contain the file and the position of the object in the file.
     """
 
     def __init__(self, raw: Any, path: Path | str, where: str) -> None:
@@ -256,7 +257,8 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
     Raises:
         FileNotFoundError: If the file does not exist.
-        ValueError: An episode is invalid. The message contains the file, the episode and the key.
+        ValueError: If an episode is invalid. The message contains the file, the episode and the
+            key.
     """
     has_episodes = False
     for key, items in _members(path):
@@ -307,7 +309,7 @@ class ListedEpisodes:
         path: An episode file.
 
     Raises:
-        ValueError: If the file contains no episode, or :func:`read_episodes` raised this error.
+        ValueError: If the file contains no episode, or if :func:`read_episodes` raises ValueError.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -472,8 +474,9 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id with the JSON type that it had in the file. If the id was replaced after
-    reading, return a string.
+    """Return an id with the JSON type that it had in the file.
+
+    If the id of the episode was changed after the file was read, return the new id as a string.
     """
     text = str(vars(episode)[key])
     original = episode.extra.get(key)

@@ -61,9 +61,9 @@ def corrupt_habitat(
         not corrupted are not copied.
 
     Raises:
-        ValueError: If no camera has the modality, the yaw of a camera is not a multiple of 30
-            degrees below 360, the cameras of a modality differ in size, the corruption is a fault,
-            or ``corrupt_normalised`` raised this error.
+        ValueError: If the corruption is a fault, or if no camera has its modality. Also if the yaw
+            of a camera is not 0, 30, ..., or 330 degrees, or if cameras of one modality have the
+            same yaw or different sizes. Errors of ``corrupt_normalised`` are passed on.
     """
     check_turn(turn)
     if fault := family(check_corruption(corruption).name):
@@ -139,8 +139,10 @@ def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """Return the frames in the order of views, as an array [1 + last view, ...]. Views without a
-    camera are zero.
+    """Return the frames as one array [V, ...].
+
+    The index on the first axis is the view number. V is the largest view number plus 1. Views
+    without a camera are 0.
     """
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))

@@ -55,9 +55,9 @@ class CorruptObservation(ObservationTransformer):
         turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
 
     Raises:
-        ValueError: The observation space or a batch has no camera that a corruption of the schedule
-            can change. In ``forward``: ``corruption_key`` is missing, or ``corrupt_habitat`` raised
-            this error.
+        ValueError: If the observation space or a batch has no camera that a corruption of the
+            schedule can change. In ``forward``, also if ``corruption_key`` is missing, or if
+            ``corrupt_habitat`` raises ValueError.
     """
 
     def __init__(

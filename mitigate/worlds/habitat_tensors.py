@@ -50,9 +50,9 @@ def corrupt_habitat_tensors(
         if no row corrupts it.
 
     Raises:
-        ValueError: If no camera has the modality, the yaw of a camera is not a multiple of 30
-            degrees below 360, the cameras of a modality differ in size, or ``corrupt_observations``
-            raised this error.
+        ValueError: If no camera has the modality of a corruption. Also if the yaw of a camera is
+            not 0, 30, ..., or 330 degrees, or if cameras of one modality have the same yaw or
+            different sizes. Errors of ``corrupt_observations`` are passed on.
     """
     check_turn(turn)
     parts = [part for corruption in corruptions for part in corruption.parts]
@@ -80,7 +80,9 @@ def corrupt_habitat_tensors(
 
 
 def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
-    """Return the frames in the order of views, as a tensor [B, 1 + last view, H, W, C]. Views
+    """Return the frames as one tensor [B, V, H, W, C].
+
+    The index on the second axis is the view number. V is the largest view number plus 1. Views
     without a camera are 0.
     """
     first = observations[next(iter(views))]

@@ -63,8 +63,8 @@ class HabitatWorld(World):
         gpu: Index of the GPU for rendering, or -1 for the CPU.
 
     Raises:
-        ValueError: ``views`` or ``rule`` is invalid, or habitat-sim is not installed. The latter is
-            reported when the first episode starts.
+        ValueError: If ``views`` or ``rule`` is invalid, or if habitat-sim is not installed. The
+            latter is reported when the first episode starts.
     """
 
     def __init__(

@@ -45,11 +45,10 @@ class Rule:
 
     @property
     def path_metres(self) -> float:
-        """Threshold of nDTW in metres: the distance of the rule, or the distance of VLN-CE if the
-        rule uses view points.
+        """Threshold of nDTW in metres, which is the success distance of the rule.
 
-        A rule with view points needs another threshold, because view points do not lie on the
-        reference path.
+        For a rule that uses view points, the threshold is the success distance of VLN-CE, because
+        view points do not lie on the reference path.
         """
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
@@ -142,7 +141,7 @@ def dtw(path: ArrayLike, reference: ArrayLike) -> float:
 def ndtw(path: ArrayLike, reference: ArrayLike, *, threshold: float = SUCCESS_DISTANCE) -> float:
     """Return nDTW, ``exp(-DTW / (n * threshold))`` for n reference points (Ilharco et al., 2019).
 
-    As in VLN-CE, consecutive equal positions, which turns and collisions cause, count once.
+    As in VLN-CE, consecutive equal positions count once. Turns and collisions cause such positions.
     """
     points = _points(path, "path")
     moved = np.append(True, np.any(np.diff(points, axis=0) != 0, axis=1))

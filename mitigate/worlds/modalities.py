@@ -10,7 +10,7 @@ ENTRY_FIX = "name the entry: CorruptObservation(..., {0}=...)"
 
 
 def check_available(names: Iterable[str], available: Container[str], lack: str, fix: str) -> None:
-    """Check that every corruption finds its modality in an observation.
+    """Check that an observation contains frames that each corruption can change.
 
     Args:
         names: Names of the corruptions.

@@ -70,7 +70,7 @@ class FaultyMotion(WorldWrapper):
         return self._inner.reset(episode)
 
     def step(self, action: Any) -> Observation:
-        """Execute an action as the fault changes it."""
+        """Execute an action after the fault has changed it."""
         draw = registry.record(self.fault.name).draw
         assert draw is not None, "a fault has a function"
         movement = draw(self.fault.severity, Key(self.seed, self._episode, self._step))
@@ -103,7 +103,7 @@ def with_motion(world: World, corruption: Corruption, seed: int) -> World:
 
 
 def _changed(action: Any, movement: Movement, box: Box) -> np.ndarray:
-    """Return an action of ``box`` as the fault changes it."""
+    """Return the element of ``box`` into which a fault changes ``action``."""
     values = box.check(action)
     if movement.dropped:
         changed = np.zeros_like(values)

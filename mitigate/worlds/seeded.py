@@ -150,10 +150,10 @@ class SeededWorld(World):
         terminated: Whether the task ended the episode; False if a step limit ended it.
 
     Raises:
-        ValueError: An argument is invalid, an entry is missing, or frames have a shape or dtype
-            that the suite does not support. During an episode, this error is also raised if success
-            is not reported, depth is implausible, a frame does not match its space, or the
-            environment raises any error.
+        ValueError: If an argument is invalid, if an entry is missing, or if frames have a shape or
+            dtype that the suite does not support. During an episode, this error is also raised if
+            success is not reported, if depth is implausible, if a frame does not match its space,
+            or if the environment raises any error.
     """
 
     done = True
@@ -177,7 +177,7 @@ class SeededWorld(World):
         if score not in SCORES:
             raise ValueError(f"score must be one of {', '.join(SCORES)}, got {score!r:.80}.")
         if score == RETURN and (success is not None or rule is not None):
-            raise ValueError("score='return' takes no success and no rule. Leave them out.")
+            raise ValueError("success= and rule= must not be set with score='return'. Remove them.")
         if hfov is not None and not 0 < hfov < 180:
             raise ValueError(f"hfov must be above 0 and below 180 degrees, got {hfov!r:.80}.")
         if limit is not None and (type(limit) is not int or limit < 1):
@@ -440,11 +440,12 @@ def _check_unit(entry: str, dtype: str, high: float, unit: float | None) -> None
         raise ValueError(f"unit must be a number of metres above 0, got {unit!r}.")
     if unit is None and not dtype.startswith("float"):
         raise ValueError(
-            f"The unit of the depth {entry!r} is unknown, because it is {dtype}. Set unit= to the "
-            "metres per unit (0.001 for millimetres)."
+            f"The depth {entry!r} is {dtype}, so its unit is unknown. Set unit= to the metres per "
+            "unit (0.001 for millimetres)."
         )
     if unit is None and high <= 1:
         raise ValueError(
             f"The depth {entry!r} ends at {high:g}, so it may be normalised to [0, 1]. Set unit= "
-            "to the metres of 1 (10 for a sensor of 0 to 10 m), or unit=1.0 if it is in metres."
+            "to the metres that the value 1 represents (10 for a sensor of 0 to 10 m), or unit=1.0 "
+            "if the depth is in metres."
         )

@@ -165,7 +165,7 @@ class EnvWorld(SeededWorld):
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
         # torchrl resets a gymnasium environment twice.
-        # Without the seed, the second reset would start another episode than GymWorld does.
+        # Without the seed, the second reset would start a different episode from ``GymWorld``.
         is_gym = isinstance(getattr(self.env, "base_env", self.env), GymLikeEnv)
         self._now = self.env.reset(seed=seed) if is_gym else self.env.reset()
         return self._parts()

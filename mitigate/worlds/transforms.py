@@ -23,8 +23,9 @@ from mitigate.worlds.modalities import ENTRY_FIX, check_available
 
 
 class CorruptObservation(Transform):
-    """Corrupt ``rgb`` and ``depth`` as a schedule selects. Random numbers depend only on (seed,
-    ``episode``, ``frame``).
+    """Corrupt ``rgb`` and ``depth`` with the corruptions that a schedule selects.
+
+    Random numbers depend only on (seed, ``episode``, ``frame``).
 
     All properties of an episode, such as its corruption and the water drops on its lens, are a
     function of the name in ``episode``, which changes at every reset. Therefore the pixels do not
@@ -49,16 +50,16 @@ class CorruptObservation(Transform):
         depth: Name of the depth entry. The data may lack this entry.
         sensor: Depth range, and the value that marks missing depth.
         normalised: Whether depth is normalised to [0, 1] over the range of the sensor. If False or
-            None, depth is in metres. If None, an error is raised if no depth value in a replay
-            buffer exceeds 1, because the unit is then unclear.
+            None, depth is in metres. With None, data of a replay buffer must have a depth value
+            above 1. Otherwise the unit is unclear, and an error is raised.
         hfov: Horizontal field of view of the cameras in degrees; camera faults require it.
         backend: "torch" computes on the device of the frames, and "numpy" computes on the CPU. If
             None, torch is used for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
-        ValueError: If the data have no episode or frame number, the schedule corrupts a missing
-            entry, a temporal fault is applied to a replay buffer, or ``corrupt_observation`` raised
-            this error.
+        ValueError: If the data has no episode or frame number, or if the schedule corrupts a
+            missing entry. Also if a temporal fault is applied to a replay buffer. Errors of
+            ``corrupt_observation`` are passed on.
     """
 
     def __init__(
@@ -262,7 +263,7 @@ class EpisodeCounter(Transform):
         self._resets: torch.Tensor | None = None  # int64 [rows], the number of resets of each row
 
     def transform_observation_spec(self, observation_spec: Composite) -> Composite:
-        """Return the spec, to which the two entries are added."""
+        """Return the spec after adding the two entries to it."""
         shape = (*self.parent.batch_size, 1)
         for name in self.out_keys:
             observation_spec[name] = Unbounded(
@@ -288,8 +289,9 @@ class EpisodeCounter(Transform):
         return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Raise RuntimeError, because stored data must contain the numbers that the environment
-        had.
+        """Raise RuntimeError, because episodes and frames can be counted only in an environment.
+
+        Stored data must already contain the numbers of its episodes and frames.
         """
         raise RuntimeError("EpisodeCounter belongs in an environment, not in a replay buffer.")
 

@@ -57,8 +57,8 @@ class CorruptVectorObservation(VectorWrapper):
         backend: As in ``mitigate.corruptions.tensors.corrupt_tensors``.
 
     Raises:
-        ValueError: If ``autoreset_mode`` is missing, the observation lacks the frames that a
-            corruption changes, or ``corrupt_observations`` raised this error.
+        ValueError: If ``autoreset_mode`` is missing, or if the observation lacks the frames that a
+            corruption changes. Errors of ``corrupt_observations`` are passed on.
     """
 
     def __init__(

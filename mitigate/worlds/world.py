@@ -34,7 +34,7 @@ from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
 MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median depth of an indoor frame is smaller
-# metres forward and degrees to the left of each action
+# maps each action to (metres forward, degrees turned to the left)
 MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
 
 
@@ -132,8 +132,8 @@ class World:
 
         Returns:
             The frames, in the format of an observation. If the world cannot render them, return
-            None; camera faults then warp the frames of the observation, for which the sensors must
-            have ``hfov``.
+            None. Camera faults then warp the frames of the observation instead. This requires the
+            ``hfov`` of the sensors.
         """
         return None
 
@@ -288,10 +288,11 @@ class Corrupted(WorldWrapper):
     """World whose frames are corrupted by one corruption, or by the corruptions that a schedule
     selects.
 
-    Random numbers depend on the seed, the name, and the index of the frame. The index counts only
-    frames that were read. With a temporal fault, the index is the number of the step, and frames
-    are rendered at every step if a later step may show them. ``observation.clean`` is the clean
-    observation. Instructions are corrupted in ``evaluation/episode.py`` instead.
+    Random numbers depend on the seed, the name, and the index of the frame. Usually, the index
+    counts the frames that were read. With a temporal fault, the index is the number of the step. If
+    the fault may show a frame at a later step, the frame is rendered even if it is not read.
+    ``observation.clean`` is the clean observation. Instructions are corrupted in
+    ``evaluation/episode.py`` instead.
 
     Args:
         world: The world.

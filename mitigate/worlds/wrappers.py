@@ -29,8 +29,9 @@ FORMATS = "uint8 [(V,) H, W, 3] for RGB, or float32 [H, W] or [(V,) H, W, 1] for
 
 
 class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordConstructorArgs):
-    """Wrapper that corrupts the frames of an environment as a schedule selects. Random numbers
-    depend only on the seed, the episode and the frame number.
+    """Corrupt the frames of an environment with the corruptions that a schedule selects.
+
+    Random numbers depend only on the seed, the episode and the frame number.
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
     (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that contains one or both.

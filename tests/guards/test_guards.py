@@ -281,7 +281,7 @@ def test_observe_rejects_what_is_no_frame(name, words):
         (f"{FILTERS}.py:median", f"Write {FILTERS}:median."),
         (f"{FILTERS}:medain", "There is no object of .* 'medain'. Did you mean median?"),
         (f"{FILTERS}:NUMBER", "a int cannot be called with frames"),
-        ("builtins:abs", "builtins has no source file .* restore=builtins:NAME@VERSION"),
+        ("builtins:abs", "builtins has no source file, .* restore=builtins:NAME@VERSION"),
     ],
 )
 def test_open_callable_rejects_what_is_no_callable(choice, words):

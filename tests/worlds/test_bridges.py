@@ -285,7 +285,9 @@ class Deep(Room):
 def test_gym_world_requires_the_unit_of_integer_depth():
     from mitigate.worlds.gym import GymWorld
 
-    with pytest.raises(ValueError, match=r"'depth' is unknown, .*uint16.*unit=.*millimetres"):
+    with pytest.raises(
+        ValueError, match=r"'depth' is uint16, .*unit is unknown.*unit=.*millimetres"
+    ):
         GymWorld(Deep(np.uint16(2500)))
     world = GymWorld(Deep(np.uint16(2500)), unit=0.001)
     seen = world.reset(episode(3))["depth"]

@@ -134,7 +134,7 @@ class Recentre(Adaptation):
     def _shift(self, place: int) -> Callable:
         def hook(module: nn.Module, inputs: Any, output: Any) -> Any:
             mean, count = self._now[2 * place : 2 * place + 2]
-            # if gradients are enabled, another guard only repeats the decision
+            # Tent runs the network a second time with gradients; do not count a frame twice
             if not torch.is_grad_enabled():
                 mean.lerp_(_means(output).cpu(), 1.0 / (self.prior + float(count) + 1.0))
                 count.add_(1.0)

@@ -75,8 +75,9 @@ class FramesCallable(Guard):
         source = _source_sha(module)
         if not source and self.version is None:
             raise ValueError(
-                f"{named.module} has no source file to tell its versions apart: write "
-                f"restore={named.module}:NAME@VERSION, and change VERSION with its behaviour."
+                f"{named.module} has no source file, so its versions cannot be told apart. Write "
+                f"restore={named.module}:NAME@VERSION, and change VERSION whenever the behaviour "
+                "changes."
             )
         identity = [f"{named.module}:{named.name}", source, self.version]
         digest = hashlib.sha256(json.dumps(identity).encode()).hexdigest()

@@ -109,8 +109,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     if not folders.is_listed(file):
         raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
-    # This is checked here because load_weights would advise to delete the checksum.
-    # The checksum is required.
+    # The error of load_weights would advise the user to delete the checksum, which is required.
     if wrong:
         raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)

@@ -15,7 +15,8 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.guards.frames.choices import HOLD
 from mitigate.guards.guard import Guard
 
-LIMIT = 10  # observations for which one view is repeated; the robot moves on meanwhile
+# maximum repetitions of a view in a row; the view becomes outdated while the robot moves
+LIMIT = 10
 
 
 class HoldLast(Guard):
@@ -32,7 +33,8 @@ class HoldLast(Guard):
     def __init__(self, limit: int = LIMIT) -> None:
         self.limit = limit
         self._views: dict[str, np.ndarray] = {}  # last view of each camera that was not empty
-        self._ages: dict[str, np.ndarray] = {}  # observations since then
+        # number of empty observations since the last view that was not empty
+        self._ages: dict[str, np.ndarray] = {}
 
     def for_episode(self) -> HoldLast:
         return HoldLast(self.limit)

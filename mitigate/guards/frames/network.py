@@ -159,6 +159,6 @@ def texture(x: Tensor, valid: Tensor) -> Tensor:
             statistics += [part.mean((1, 2, 3)) for part in (step, bend, bend.square())]
             flat = bend.flatten(1)
             statistics += [(flat < t).float().mean(1) for t in FLAT]
-    # the colours, which depth does not have
+    # mean difference between the colours and grey; 0 for depth, which has one channel
     statistics.append((x - grey).abs().mean((1, 2, 3)) * (x.shape[1] == 3))
     return (torch.stack(statistics, 1) + 1e-4).log() / 3 + 1

@@ -107,7 +107,7 @@ class Restorer(nn.Module, Guard):
         Other entries, and frames that are classified as clean, are returned as the same objects.
 
         Raises:
-            TypeError, ValueError: A frame has the wrong dtype or shape.
+            TypeError, ValueError: If a frame has the wrong dtype or shape.
         """
         restored = dict(observation)
         for sensor in self.nets:
@@ -130,8 +130,8 @@ class Restorer(nn.Module, Guard):
 
         Raises:
             KeyError: If the restorer has no network for ``sensor``.
-            TypeError, ValueError: ``frame`` has the wrong type, dtype or shape, or its depth is not
-                in metres.
+            TypeError, ValueError: If ``frame`` has the wrong type, dtype or shape, or if its depth
+                is not in metres.
         """
         net, views = self._net(sensor), self._views(sensor, frame)
         changed, result = net.judged(torch.from_numpy(views))
@@ -140,9 +140,9 @@ class Restorer(nn.Module, Guard):
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
         """Return the gate's logit for a frame minus the gate's threshold.
 
-        If the value is above 0, :meth:`restore` restores the frame, except if this would change
-        most pixels of depth by too much. The value is -inf for depth that has no valid pixels or
-        too many pixels beyond ``far``.
+        If the value is above 0, :meth:`restore` restores the frame, unless this would change most
+        depth pixels too much. The value is -inf for depth that has no valid pixels or too many
+        pixels beyond ``far``.
         """
         return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 

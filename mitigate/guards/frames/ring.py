@@ -18,7 +18,7 @@ from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
 # a 90-degree view overlaps with the views that are 1 and 2 steps (30 and 60 degrees) away
 STEPS = (1, 2)
-# squared trust of the neighbours that gives their colour or depth the weight 1/2 (heuristic)
+# if the squared trusts of the neighbours sum to this, their mean has the confidence 1/2 (heuristic)
 SURE = 0.05
 # weight of the coarser level if a hole is filled from the pixels around it (heuristic)
 FAINT = 0.02
@@ -86,8 +86,8 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
     """Yield each neighbour's values and weights, resampled into the view, and its depth scale.
 
-    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s].
-    :func:`neighbours` gets the depth scale [s, s] as its argument ``ahead``.
+    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s]. The depth scale
+    [s, s] is the array ``ahead`` that :func:`neighbours` returns.
     """
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]

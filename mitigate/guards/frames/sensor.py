@@ -29,7 +29,8 @@ TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of th
 # About 99 % of clean pixels differ from the other views by less than the margin.
 # On 20 panoramas of val_seen, the share was 98.6 % for RGB and 99.2 % for depth.
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-# initial amount by which the trust logit decreases per margin outside [low, high] (heuristic)
+# This is the initial value of a trained weight (heuristic).
+# The trust logit of a pixel decreases by this weight times the pixel's contradiction.
 ALONE = 2.0
 LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
@@ -37,11 +38,12 @@ SUREST = 6.0
 # The limits for depth are heuristic, and depth frames of the apartments stay far below both.
 # The maximum depth of the apartments is 10 m.
 # In 600 panoramas, at most 1.3 % of a view was farther away.
-# Restoring moved half of the pixels of a corrupted time step by at most 0.4 m in depth.
+# In corrupted time steps, the median change of depth by restoration was at most 0.4 m.
 # This was measured on 400 single views and 200 panoramas with all depth corruptions.
-# The only exceptions were single views in which all pixels have exactly 10 m.
+# The only exceptions were single views in which every pixel had a depth of exactly 10 m.
 BEYOND = 0.1  # maximum fraction of pixels beyond ``far``; training contained no such pixels
-# a frame is not changed if over half of its pixels would move more than this fraction of the range
+# Depth is not changed if over half of the pixels would change by more than this.
+# The value is a fraction of the range.
 MOVED = 0.1
 # These are limits of the log gain, so the gain is 0.14 to 37.
 # They are heuristic: low light reduces brightness to 0.03.
@@ -120,15 +122,17 @@ class SensorRestorer(nn.Module):
         """Encode frames at the working size, and detect corruption.
 
         Returns:
-            The feature maps of the U-Net, the contradiction of each pixel with the other views [n,
-            c, h, w] in margins, and one logit of the gate per time step.
+            Three values. The first one contains the feature maps of the U-Net. The second one is
+            the contradiction of each pixel with the other views, float [n, c, h, w]. It is 0 for
+            distances up to ``MARGIN``, and grows by 1 for each further ``MARGIN``. The third one is
+            the logit of the gate for each time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
-        """Return the input of the U-Net, and by how much each pixel contradicts the other views.
+        """Return the input of the U-Net, and the contradiction of each pixel with the other views.
 
         The input consists of the frame, the mask of valid pixels (only for depth), the differences
         from the smallest and the largest value in the other views, and a mask of the pixels for
@@ -197,8 +201,8 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames always are within the range. Depth frames must have valid pixels, and at most
-        a fraction :data:`BEYOND` of the valid pixels may be beyond ``far``. If a larger fraction is
+        RGB frames are always within the range. Depth frames must have valid pixels, and at most the
+        fraction :data:`BEYOND` of the valid pixels may be beyond ``far``. If a larger fraction is
         beyond ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):

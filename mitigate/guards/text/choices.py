@@ -67,7 +67,7 @@ def is_endpoint(choice: str) -> bool:
 
 
 def kind(folder: str | Path) -> str | None:
-    """Return whether a folder contains a "classifier" or an "adapter", or None if neither.
+    """Return the kind of safeguard in a folder: "classifier", "adapter", or None if there is none.
 
     Raises ValueError if the folder contains both.
     """

@@ -162,9 +162,10 @@ class Classifier:
         return np.where(np.asarray(square) > EMPTY, odds, 0.0)
 
     def attack(self, text: str, clauses: Sequence[Clause], bonus: float) -> tuple[float, int, int]:
-        """Return the log odds that a text contains an attack, and its first and last clause.
+        """Return the log odds that a text contains an attack, and the position of the attack.
 
-        A larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
+        The position consists of the indices of the first and the last clause of the attack. A
+        larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
         """
         return self.segmenter.attack(features(text, clauses, self), bonus)
 

@@ -43,8 +43,9 @@ _MORSE_CODES = (
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
 _JOINERS = "\u200c\u200d"  # invisible joiners, which are needed in Indic scripts and in Persian
-# These are fractions of the letters that are in known words.
-# A decoded text needs at least ENGLISH, and a text to be deciphered has at most HIDDEN.
+# ENGLISH and HIDDEN are fractions of the letters of a text that belong to known words.
+# A text is deciphered only if its fraction is at most HIDDEN.
+# A deciphered text is used only if its fraction is at least ENGLISH.
 ENGLISH, HIDDEN = 0.6, 0.45
 
 

@@ -1,4 +1,4 @@
-"""Find attacks in an instruction, and remove each attack that the gate allows to be removed.
+"""Find attacks in an instruction, and remove those whose removal the gate accepts.
 
 The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
 the text contains an attack, and where the attack begins and ends. The search is repeated, because a
@@ -16,7 +16,7 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.classifier import Classifier, Clause
 from mitigate.guards.text.pieces import Piece, without
 
-# if more than this fraction of the letters is not Latin, the route may be in the other script
+# if more than this fraction of the letters is not Latin, the route may be in a non-Latin script
 FOREIGN = 0.3
 ROUTE = -1.0  # English text whose log odds of an attack are below this is certainly a route
 ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
@@ -33,7 +33,7 @@ GOAL = 17  # a text of one sentence with fewer words is often only the name of a
 BARE = 1.9
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
-# an English attack in a text in another script is removed only if it has at least this many words
+# minimum number of words of an English attack that is removed from a text with non-Latin parts
 SHORTEST = 3
 READ = 60_000  # maximum number of characters of a text that are analysed
 
@@ -65,8 +65,9 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
     """Return the pieces of a text that are attacks.
 
-    At most one piece is returned. If most of the text is in another script, all English attacks are
-    returned.
+    At most one piece is returned, except for a text that has non-Latin parts. All English attacks
+    in such a text are returned if more than the fraction ``FOREIGN`` of its letters is not Latin.
+    They are also returned if the Latin parts are not certainly a route.
     """
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]
@@ -107,9 +108,9 @@ def _is_step(text: str) -> bool:
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
-    """Return the English pieces that look like attacks, in a text in another script.
+    """Return the English parts that look like attacks, in a text that has non-Latin parts.
 
-    The route is in the other script, so text in that script is never removed.
+    The route is assumed to be in the non-Latin parts, so these parts are never removed.
     """
     spans = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):

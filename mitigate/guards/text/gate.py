@@ -1,7 +1,7 @@
 """Check that a changed instruction keeps the meaning of the original.
 
 Each check returns the reason to reject a change, or "" to accept it. A deletion removes whole
-clauses and does not reword the rest, so it is only checked that an instruction remains. A rewrite
+clauses and does not reword the rest, so the only check is that an instruction remains. A rewrite
 must contain the same facts in the same order: turns, stops, landmarks, numbers, colours, relations
 and negations.
 """
@@ -22,7 +22,7 @@ LONG = 3000  # longer texts are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
 TIMES = 4  # a longer rewrite may have up to this many times the length of the original (heuristic)
-LONGER = 3  # a rewrite may have at most this many words more than the original
+LONGER = 3  # a rewrite may have at most this many more words than the original
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
@@ -65,7 +65,7 @@ def longest(heard: str) -> int:
 def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     """Return the reason why ``rewrite`` must not replace ``heard``, or "" if it may.
 
-    If ``last`` is true, ``rewrite`` may add a stop.
+    If ``last`` is true, ``heard`` is the end of an instruction, and ``rewrite`` may add "stop".
     """
     if rewrite is None:
         return "no answer in time"

@@ -1,9 +1,9 @@
 """The safeguard, which repairs each instruction once before the agent receives it.
 
-The safeguard has three parts. In :mod:`detect`, a classifier finds text that does not belong to the
-instruction. In :mod:`language_models`, a language model, if the user chose one, rewrites the rest
-in plain words. In :mod:`gate`, rules accept a change only if it preserves the meaning of the
-instruction.
+The safeguard has three parts. A classifier finds text that does not belong to the instruction
+(:mod:`detect`). An optional language model rewrites the rest in plain words
+(:mod:`language_models`). Rules accept a change only if it preserves the meaning of the instruction
+(:mod:`gate`).
 """
 
 from __future__ import annotations

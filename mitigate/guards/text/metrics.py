@@ -113,7 +113,7 @@ def table(scores: dict[str, Scores]) -> str:
 
 
 def token_f1(reference: str, text: str) -> float:
-    """Return the F1 score of the words in ``text``, compared as a bag with ``reference``."""
+    """Return the F1 score between the bags of words of ``reference`` and ``text``."""
     expected, actual = Counter(words_of(reference)), Counter(words_of(text))
     shared = (expected & actual).total()
     return 2 * shared / max(1, expected.total() + actual.total()) if shared else 0.0

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.language.words import bag
 
-# These are blocks between delimiters that no route needs; each block is one piece.
+# This matches blocks such as tags and comments, which no route contains; each block is one piece.
 # The text between most delimiters is limited to 4,000 characters (heuristic).
 # Searches from each opening delimiter to the end of the text would take quadratic time.
 _BLOCK = re.compile(
@@ -47,7 +47,7 @@ _CLAUSE = re.compile(
     r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
     r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
 )
-# The words of _CALL begin a sentence in speech.
+# A word of _CALL may begin a sentence even if no full stop precedes it.
 # After the words of _LINKS, a capital letter begins a name and not a sentence.
 _CALL = re.compile(r"(?:um+|uh|okay|ok|yo|hey|arr+|please|kindly)\b")
 _LINKS = bag(
@@ -92,7 +92,7 @@ def sentence_pieces(text: str) -> list[Piece]:
 def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
     """Return the clauses of a sentence.
 
-    If possible, each clause has at least ``LONGEST_CLAUSE`` words.
+    If possible, a clause of a single word is joined to a neighbouring clause.
     """
     if sentence.block:
         return [sentence]
@@ -141,10 +141,10 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _seams(part: str) -> list[tuple[int, int]]:
-    """Return the positions in a sentence where an attack and a route may meet without a full stop.
+    """Return the positions inside a sentence where an attack may begin or end without a full stop.
 
-    An attack may begin at a word with a capital letter, at an interjection such as "um", or at the
-    start or end of several words in capitals.
+    Such a position is before a word with a capital letter, before an interjection such as "um", or
+    at the start or end of several words in capitals.
     """
     cuts = []
     words = list(re.finditer(r"\S+", part))
@@ -176,7 +176,7 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return "latin" or "other" for the script of most letters.
+    """Return the script of at least half of the letters: "latin" or "other".
 
     For a text without letters, return "".
     """

@@ -15,9 +15,9 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# Words in capitals are converted to lower case only if the text has enough known ones.
-# There must be at least SHOUTS, and they must be at least a fraction SHOUTED of all words.
-# Fewer words in capitals may be the text of a sign.
+# Words in capitals are converted to lower case only if enough of them are known words.
+# Their number must be at least SHOUTS, and at least the fraction SHOUTED of all words of the text.
+# A text with only a few words in capitals may quote a sign.
 SHOUTS, SHOUTED = 2, 0.15
 # number of generated routes whose words are counted; this takes about one second per process
 ROUTES = 4000
@@ -100,9 +100,10 @@ def fill_masks(text: str) -> str:
 
 
 def _hidden_adjective(match: re.Match[str]) -> str:
-    """Return the replacement for an article or a similar word and a mask, such as "the [mask]".
+    """Return the replacement for a match of ``_WHICH``, such as "the [mask]" or "first [mask]".
 
-    If a noun follows the mask, the mask is removed. Otherwise the mask hides a noun and is kept.
+    If a noun follows the mask, the mask is removed. If a verb follows, and the word before the mask
+    is not "your", the match is returned unchanged. Otherwise the mask hides a noun and is kept.
     """
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 FEATURES = 22  # number of features of a clause
 EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
-# maximum distance at which the last character before a clause is searched
+# maximum number of characters from a clause back to the last character that is not a space
 GAP = 80
 # This is added to the score of each boundary inside the text.
 # The reason is that few training texts have an attack inside a route.
@@ -178,9 +178,9 @@ def _mean(parts: list[np.ndarray], weights: np.ndarray, bias: np.ndarray) -> np.
 
 
 def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return one term for each clause as the start of a span, and one for each clause as its end.
+    """Return a start term and an end term for every clause.
 
-    The score of a span is the sum of its two terms.
+    The score of a span is the start term of its first clause plus the end term of its last clause.
     """
     sums = np.cumsum(clause)
     return edge[:-1] - sums + clause, edge[1:] + sums

@@ -23,8 +23,8 @@ class ApartmentsEnv(WorldEnv):
         size: side of a square view in pixels.
 
     Raises:
-        ValueError: An argument is invalid (see ``WorldEnv``), or the scene of an episode is not an
-            apartment. The scene is checked at reset.
+        ValueError: If an argument is invalid (see ``WorldEnv``), or if the scene of an episode is
+            not an apartment. The scene is checked at reset.
     """
 
     key = "apartments env"

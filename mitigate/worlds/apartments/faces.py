@@ -52,7 +52,7 @@ class FaceBuilder:
     shading.
     """
 
-    # maps the axis of a face's normal to the brightness of faces that point to its (-, +) side
+    # brightness of faces by the axis of their normal, for its negative and its positive direction
     _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
 
     def __init__(self, apartment: Apartment) -> None:
@@ -112,8 +112,10 @@ class FaceBuilder:
         category: int = STRUCTURE,
         instance: int = -1,
     ) -> None:
-        """Add a rectangle in the plane whose coordinate on ``axis`` is ``at``. Its normal points in
-        the direction ``sign``, and ``low`` and ``high`` are its bounds on the other two axes.
+        """Add a rectangle that is perpendicular to ``axis`` and lies at the coordinate ``at``.
+
+        The sign of its normal is ``sign``. Its bounds on the other two axes are ``low`` and
+        ``high``.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, *low, *high))
@@ -184,11 +186,11 @@ def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return the corners (float32 [n, 4, 3]) of rectangles in planes whose coordinate on ``axis``
-    is ``at``.
+    """Return the corners (float32 [n, 4, 3]) of n rectangles.
 
-    The order of the corners depends on ``sign``, the direction of each rectangle's normal. ``low``
-    and ``high`` [n, 2] are the bounds on the other two axes.
+    Each rectangle is perpendicular to its ``axis`` and lies at the coordinate ``at``. The order of
+    the corners depends on ``sign``, the sign of the rectangle's normal. ``low`` and ``high`` [n, 2]
+    are the bounds on the other two axes.
     """
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-# Some turns come just after a doorway.
-# Training instructions mention this fraction of them before the doorway (heuristic).
+# fraction of turns just after a doorway that training texts mention before the doorway (heuristic)
 SAID_BEFORE = 0.25
 # maximum metres between a doorway and a turn that is described together with it (heuristic)
 _BESIDE = 1.6

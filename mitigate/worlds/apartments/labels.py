@@ -48,7 +48,7 @@ def ahead(directions: np.ndarray) -> np.ndarray:
     shape is [30, 12], from left to right.
     """
     half = round(ANGLES * HFOV_DEGREES / 720)
-    # bin 0 is half an angle between views to the left of the heading
+    # number of bins from bin 0 to the heading, which is half the angle between neighbouring views
     middle = round(ANGLES / VIEWS / 2)
     return np.roll(directions, half - middle, 0)[: 2 * half]
 

@@ -125,9 +125,10 @@ class Renderer:
             x: plan position in metres.
             y: plan position in metres.
             heading: heading in counter-clockwise radians.
-            views: indices of the views to draw; all other views contain 0, and -1 in ids. The
-                choice does not change the pixels of the drawn views.
-            rgb: whether to draw colours; if false, rgb contains 0.
+            views: indices of the views to draw. In all other views, the colours and the depth are
+                0, and the face ids are -1. The choice does not change the pixels of the drawn
+                views.
+            rgb: whether to draw colours. If false, the colours are 0.
             mount: displacement of the cameras.
 
         Returns:

@@ -159,8 +159,8 @@ def landmarks(episode: Episode) -> list[int]:
         return [int(info["landmark"])]
     if info.get("task") != "ogn" or "category" not in info:
         raise ValueError(
-            f"The info of episode {episode.episode_id} must name what marks the goal: task "
-            '"vln" and a landmark (index of a piece of furniture), or task "ogn" and a category.'
+            f"The info of episode {episode.episode_id} must contain the goal: a landmark (index of "
+            'a piece of furniture) if task is "vln", or a category if task is "ogn".'
         )
     return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
 

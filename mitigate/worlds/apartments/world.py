@@ -64,7 +64,7 @@ class ApartmentsWorld(World):
         self.views = views
         self._rule = rule
         self.rule = str(RULES[rule])
-        # the text must differ from older versions, which recorded distances to the goal itself
+        # rows of older versions have distances to the goal itself, so their rule text must differ
         if RULES[rule].view_points:
             self.rule += ", as are all distances"
         self.sensors = cameras(size, views)
@@ -123,11 +123,11 @@ class ApartmentsWorld(World):
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode.
 
-        The measures are success, spl, ndtw, collisions, steps, and in metres path_length,
-        geodesic_distance and distance_to_goal. geodesic_distance is measured from the start of the
-        episode and distance_to_goal from the agent, both to the target of the success rule. ndtw
-        compares the agent's path with the reference path and uses ``path_metres`` of the success
-        rule.
+        The measures are success, spl, ndtw, collisions, steps, path_length, geodesic_distance and
+        distance_to_goal. The last three are in metres. geodesic_distance is the distance from the
+        start of the episode to the target of the success rule. distance_to_goal is the distance
+        from the agent to this target. ndtw compares the agent's path with the reference path. Its
+        threshold is ``path_metres`` of the success rule.
         """
         simulator = self.simulator
         values = measures.of_episode(

@@ -52,7 +52,7 @@ FORMATS = {
 
 KINDS = (RGB, DEPTH)
 # The limits below are heuristic.
-# maximum number of poses per drive, which allows poses at 500 Hz with images at 30 Hz
+# maximum number of poses per drive; this is enough for poses at 480 Hz with images at 30 Hz
 MAX_POSES = 16 * MAX_INSTANTS
 # maximum bytes of buffered images that wait for an image of another topic
 MAX_BUFFER_BYTES = 1 << 30
@@ -105,9 +105,7 @@ class Bag(Source):
         return "Set unit= (metres per count), such as unit=0.0001."
 
     def _describe(self, encodings: Mapping[str, str]) -> dict[str, str]:
-        """Return a text for each sensor: its topic, the encoding of its images, and the unit of its
-        depth.
-        """
+        """Describe each sensor by its topic, its image encoding and the unit of its depth."""
         formats = {POSE: self.topics[POSE]} if POSE in self.topics else {}
         for kind in self.kinds:
             topic = self.topics[kind]
@@ -136,10 +134,10 @@ class Bag(Source):
                     waiting = [image for images in buffer.values() for image in images.values()]
                     if sum(i.nbytes for i in waiting if i is not None) > MAX_BUFFER_BYTES:
                         raise ValueError(
-                            f"{self.path}: images of the same time must be close together in the "
-                            f"bag, but over {MAX_BUFFER_BYTES >> 30} GiB of others lie between "
-                            "them. Write the bag again in the order of time, or leave one topic "
-                            "out (topics.depth=none)."
+                            f"{self.path}: images with the same timestamp must be close together "
+                            f"in the bag, but more than {MAX_BUFFER_BYTES >> 30} GiB of other "
+                            "images lie between them. Rewrite the bag in the order of time, or "
+                            "leave out one topic (topics.depth=none)."
                         )
                 while done < len(chosen) and all(indices[k][done] in buffer[k] for k in self.kinds):
                     step = {k: buffer[k][indices[k][done]] for k in self.kinds}
@@ -261,7 +259,7 @@ class Bag(Source):
                 if len(stamps[name]) > limit:
                     raise ValueError(
                         f"{self.path} must have at most {limit} messages on {self.topics[name]}. "
-                        "Cut the recording."
+                        "Shorten or split the recording."
                     )
             with self._explained():
                 if name == POSE:

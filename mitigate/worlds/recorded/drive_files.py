@@ -94,7 +94,9 @@ def read_rows(
                 f"{file}, line {line_number}, must have {columns} words, got {len(row)}."
             )
         if line_number > MAX_INSTANTS:
-            raise ValueError(f"{file} must have at most {MAX_INSTANTS} lines. Cut the recording.")
+            raise ValueError(
+                f"{file} must have at most {MAX_INSTANTS} lines. Shorten or split the recording."
+            )
         yield line_number, row
 
 
@@ -102,7 +104,7 @@ def number(word: str, file: Path, line: int) -> float:
     """Parse a finite number.
 
     Raises:
-        ValueError: The word is not a finite number. The message contains the file and the line.
+        ValueError: If the word is not a finite number. The message contains the file and the line.
     """
     try:
         value = float(word)

@@ -54,7 +54,7 @@ POSES = "poses.csv"
 FIX = "Copy it again, or leave this drive out."
 # maximum absolute value of a number in a recording, in metres or degrees (heuristic)
 MAX_NUMBER = 1e6
-# in radians, which is eight full turns (heuristic); larger values are assumed to be in degrees
+# eight full turns in radians (heuristic); larger values are assumed to be in degrees
 MAX_HEADING = 50.0
 
 
@@ -135,8 +135,10 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera. If ``cameras.json`` does not describe the camera, a frame
-    determines its kind, and ``hfov`` or a default is its field of view.
+    """Return the lens of a camera.
+
+    If ``cameras.json`` does not describe the camera, its kind is inferred from a frame, and its
+    field of view is ``hfov`` or a default.
     """
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
@@ -219,8 +221,8 @@ def read_frames(path: Path, options: Options) -> list[Frames]:
     if len(set(counts.values())) != 1 or not files:
         listed = ", ".join(f"{count} in {name}" for name, count in counts.items()) or "no frame"
         raise ValueError(
-            f"{path} must have as many of each, one per step, got {listed}. Add or remove the "
-            "files that do not match."
+            f"{path} must have the same number of frames and poses, one per step, got {listed}. "
+            "Add or remove the ones that do not match."
         )
     if options.unit is None and DEPTH in files:
         try:
@@ -280,7 +282,9 @@ def _read_lines(file: Path) -> list[Any]:
     records = []
     lines = read_text(file).splitlines()
     if len(lines) > MAX_INSTANTS:
-        raise ValueError(f"{file} must have at most {MAX_INSTANTS} steps. Cut the recording.")
+        raise ValueError(
+            f"{file} must have at most {MAX_INSTANTS} steps. Shorten or split the recording."
+        )
     for line_number, line in enumerate(lines, 1):
         try:
             records.append(parse_json(line))

@@ -65,8 +65,9 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
 
     Raises:
         FileNotFoundError: If a file is missing.
-        ValueError: If the dataset is damaged, several cameras are possible, an episode is too long
-            or has an unknown task, or the name of a camera or the number of an episode is unknown.
+        ValueError: If the dataset is damaged, or if an option names an unknown camera or episode.
+            Also if no camera or several cameras can be read, or if an episode is too long or has an
+            unknown task.
     """
     dataset = open_dataset(path)
     chosen = []

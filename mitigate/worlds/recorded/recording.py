@@ -43,11 +43,11 @@ NO_ACTION = -1
 OBSERVED = "observation."  # prefix of the names of signals that an agent may read
 
 # The limits below are heuristic.
-# This is the minimum motion of a new step, as a fraction of a step.
-# It is below 1, so that rounding does not lose a motion of exactly one step.
+# A new step begins when the motion since the last step exceeds this fraction of ``Step``.
+# The fraction is below 1, so that rounding does not lose a motion of exactly one step.
 STEP_TOLERANCE = 0.98
 MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies by less
-# as a fraction of a step; a last step that is shorter is merged into the previous step
+# if the last step is shorter than this fraction of ``Step``, it is merged into the previous step
 MIN_LAST_STEP = 0.5
 MAX_FRAME_BYTES = 1 << 32  # maximum number of bytes that all frames of a drive may take
 # maximum fraction of moving steps whose direction may differ from the heading without a warning
@@ -108,7 +108,7 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         size: Height and width of a view in pixels.
         step: Distance between two chosen time steps.
         crop: Whether to crop views to the largest square field of view that all cameras cover. If
-            false, views have 90 degrees and may have a black border.
+            false, views have a field of view of 90 degrees and may have a black border.
 
     Returns:
         The drive with its frames in memory. Steps with a damaged image are left out.
@@ -129,7 +129,8 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         longer = "" if source.stepped else " set longer steps (step.metres=0.5),"
         raise ValueError(
             f"The frames of {source.name} must take at most {MAX_FRAME_BYTES >> 30} GiB, got "
-            f"{needed / 2**30:.1f} GiB. Cut the recording,{longer} or use smaller frames (size=)."
+            f"{needed / 2**30:.1f} GiB. Shorten or split the recording,{longer} or use smaller "
+            "frames (size=)."
         )
     frames, readable, shapes, tangent = _read_views(
         source, chosen.tolist(), view_cameras, size, crop
@@ -172,9 +173,10 @@ def _read_views(
     """Read the square views at the chosen time steps. :func:`load` describes the arguments.
 
     Returns:
-        The frames of the readable steps, in the format of :class:`Recording`; whether all images of
-        a chosen step could be read (bool [T]); the height and width of each camera's images; and
-        the tangent of half the field of view of the views.
+        Four values: frames, readable, shapes and tangent. The frames are those of the readable
+        steps, in the format of :class:`Recording`. A chosen step is readable (bool [T]) if all its
+        images could be read. The shapes are the height and width of the images of each camera. The
+        tangent is that of half the field of view of the square views.
     """
     views = 1 + max(view for _, view in view_cameras)
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
@@ -364,9 +366,9 @@ class Step:
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
         """Choose the recorded times at which an agent receives an observation.
 
-        The result contains the first time, each time that is one step after the previously chosen
-        time, and the last time. If the last two chosen times have nearly the same pose, only the
-        last is kept.
+        The first time is chosen. After that, a time is chosen if it is about one step or more after
+        the previously chosen time. If poses are known, the final time is also chosen. If the final
+        two chosen times then have nearly the same pose, only the final time is kept.
 
         Args:
             times: float64 [N], seconds.

@@ -217,11 +217,13 @@ def interpolate_poses(
     Args:
         times: float64 [N], seconds.
         table: float64 [M, 4], (time, x, y, heading) of the known poses.
-        tolerance: A time that is at most this many seconds from a recorded pose always has a pose.
+        tolerance: If a recorded pose is at most this many seconds from a time, the pose at that
+            time counts as known.
 
     Returns:
         The poses (float64 [N, 3]), and whether each pose is known (bool [N]). Poses are unknown
-        where recorded poses are more than ``MAX_POSE_GAP`` seconds apart.
+        where recorded poses are more than ``MAX_POSE_GAP`` seconds apart, except within
+        ``tolerance`` of a recorded pose.
     """
     table = table[np.isfinite(table).all(1)]
     if not len(table):
@@ -260,7 +262,7 @@ def match_times(
     tolerance: float,
     names: Mapping[str, str],
 ) -> Instants:
-    """Find frames of several cameras and poses that belong to the same times.
+    """Match poses and the frames of several cameras by time.
 
     Args:
         path: The recording, for the error message.
@@ -327,5 +329,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         # read() allocates memory for its maximum, so the maximum is at most the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
-        raise ValueError(f"{file} must have at most {max_bytes} bytes. Cut the recording.")
+        raise ValueError(
+            f"{file} must have at most {max_bytes} bytes. Shorten or split the recording."
+        )
     return raw.decode("utf-8-sig", errors="replace")

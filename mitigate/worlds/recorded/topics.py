@@ -66,8 +66,8 @@ def choose_topics(
         path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
         topics: The topics that the user chose.
-        counts: Number of messages of each topic, if known. A pose topic with a single message is no
-            trajectory if an image topic has several messages.
+        counts: Number of messages of each topic, if known. A pose topic with a single message does
+            not count as a trajectory if an image topic has several messages.
         encodings: Encoding of the first image of each topic, if known. If it is unknown, the name
             of the topic decides whether the topic contains depth.
 

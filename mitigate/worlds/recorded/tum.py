@@ -55,7 +55,7 @@ def read_tum(path: Path, options: Options) -> list[Frames]:
         listed = _read_associations(path)
     listed = {kind: lines for kind, lines in listed.items() if lines}
     if not listed:
-        raise ValueError(f"{path}: its lists name no image. Add lines to {' or '.join(LISTS)}.")
+        raise ValueError(f"{path} must list at least one image. Add lines to {' or '.join(LISTS)}.")
     stamps = {kind: [time for time, _ in lines] for kind, lines in listed.items()}
     has_poses = (path / TRAJECTORY).is_file()
     table = _read_trajectory(path / TRAJECTORY) if has_poses else None
@@ -106,7 +106,7 @@ def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
 
 
 def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[float, Path]:
-    """Return the time and the file that a line of a list contains."""
+    """Return the time and the path of the image in one line of an image list."""
     file = path / row[1]
     if "\0" in row[1] or path.resolve() not in file.resolve().parents:
         raise ValueError(f"{path / name}, line {line}, names a file outside of {path}.")
@@ -118,8 +118,9 @@ def _read_trajectory(file: Path) -> np.ndarray:
     heading.
 
     Raises:
-        ValueError: The camera faces up or down in most poses. This happens if the poses describe a
-            robot frame (x forward) instead of the frame of the camera (z forward).
+        ValueError: If the file has no pose, or if the camera faces up or down in most poses. The
+            latter happens if the poses describe a robot frame (x forward) instead of the frame of
+            the camera (z forward).
     """
     rows = []
     for line, row in read_rows(file, 8):
@@ -127,12 +128,15 @@ def _read_trajectory(file: Path) -> np.ndarray:
         pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
         rows.append((numbers[0], *pose))
     if not rows:
-        raise ValueError(f"{file} has no pose. Add poses, or delete it to read without poses.")
+        raise ValueError(
+            f"{file} has no pose. Add poses. To read the images without poses, delete this file."
+        )
     invalid = sum(math.isnan(row[3]) for row in rows)
     if 2 * invalid > len(rows):
         raise ValueError(
             f"{file}: {invalid} of {len(rows)} poses face up or down, or are not rotations. Poses "
-            "must be of the camera's optical axis (z ahead, x right, y down), with z up in the "
-            "room. Convert poses of a robot (x ahead), or delete the file to read without poses."
+            "must describe the optical frame of the camera (z ahead, x right, y down) in a room "
+            "frame with z up. If they describe a robot (x ahead), convert them. To read the images "
+            "without poses, delete this file."
         )
     return np.array(sorted(rows))

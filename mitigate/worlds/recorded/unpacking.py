@@ -26,7 +26,7 @@ _budgets: list[Budget] = []  # one budget per open bag, in the order of opening
 
 
 class Bomb(ValueError):
-    """Raised if compressed data expand to far more bytes than their compressed size."""
+    """Raised if compressed data expands to far more bytes than its compressed size."""
 
 
 class Budget:
@@ -41,7 +41,7 @@ class Budget:
         """Subtract ``count`` bytes.
 
         Raises:
-            Bomb: The budget is exceeded.
+            Bomb: If the budget is exceeded.
         """
         self.left -= count
         if self.left < 0:
@@ -56,8 +56,9 @@ def bounded(path: Path) -> Iterator[None]:
     """Limit how much data ``rosbags`` may decompress while it reads ``path``, a file or a folder.
 
     Raises:
-        ValueError: The database contains objects that no recorder writes, or the metadata is too
-            large. Inside the context, :class:`Bomb` is raised if the bag expands to too many bytes.
+        ValueError: If the database contains objects that no recorder writes, or if the metadata is
+            too large. Inside the context, :class:`Bomb` is raised if the bag expands to too many
+            bytes.
     """
     files = [path] if path.is_file() else [file for file in path.iterdir() if file.is_file()]
     size = sum(file.stat().st_size for file in files)
@@ -133,8 +134,8 @@ def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
         The decompressed bytes.
 
     Raises:
-        Bomb: The budget is exceeded.
-        EOFError: If the data are incomplete.
+        Bomb: If the budget is exceeded.
+        EOFError: If the data is incomplete.
     """
     blocks = []
     left = bytes(data)
@@ -143,7 +144,7 @@ def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
         blocks.append(_count(stream.decompress(left, max_length=_max_length())))
         while not stream.eof:
             if stream.needs_input:
-                raise EOFError("compressed data are cut short")
+                raise EOFError("its compressed data is truncated")
             blocks.append(_count(stream.decompress(b"", max_length=_max_length())))
         left = stream.unused_data or b""
     return b"".join(blocks)

@@ -456,7 +456,10 @@ def test_open_recording_reads_a_folder_of_drives(tmp_path):
 @pytest.mark.parametrize(
     ("damage", "message"),
     [
-        (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"), "as many of each"),
+        (
+            lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,0\n"),
+            "number of frames and poses",
+        ),
         (
             lambda f: (f / "poses.csv").write_text("heading,x,y\n" + "90,0,0\n" * 6),
             "line 1: .*heading",
@@ -467,8 +470,8 @@ def test_open_recording_reads_a_folder_of_drives(tmp_path):
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,a\n"), "line 2: .* got 'a'"),
         (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "must be a finite number"),
         (lambda f: (f / "rgb" / "000002.png").write_bytes(b"\x89PNG cut"), "000002.png"),
-        (lambda f: (f / "rgb" / "000002.png").unlink(), "as many of each"),
-        (lambda f: (f / "depth" / "000001.png").replace(f / "rgb" / "000001.png"), "as many"),
+        (lambda f: (f / "rgb" / "000002.png").unlink(), "number of frames and poses"),
+        (lambda f: (f / "depth" / "000001.png").replace(f / "rgb" / "000001.png"), "same number"),
     ],
 )
 def test_open_recording_names_a_damaged_file(folder, damage, message):

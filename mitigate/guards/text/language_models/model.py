@@ -101,9 +101,9 @@ class LanguageModel(nn.Module):
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
         """Return the model's greedy rewrite of each text.
 
-        ``seconds`` is the time limit for all texts together. The result of a text is None if its
+        ``seconds`` is the time limit for all texts together. The result for a text is None if its
         rewrite is not finished in time, if its prompt has more than ``LONGEST`` tokens, or if the
-        answer has no end.
+        answer is cut off at the maximum number of tokens.
         """
         began = time.monotonic()
         prompts = [self.encode(text) for text in texts]
@@ -274,8 +274,8 @@ def _with_lora(network: nn.Module, lora: dict[str, Any]) -> nn.Module:
             name.rpartition(".")[2] for name, m in network.named_modules() if not [*m.children()]
         }
         raise ValueError(
-            f"agent.lora.targets={list(lora['targets'])} name no module of this model. Choose of: "
-            f"{', '.join(sorted(n for n in names if n.endswith('proj')))}."
+            f"agent.lora.targets must name modules of this model, got {list(lora['targets'])}. "
+            f"Choose from: {', '.join(sorted(n for n in names if n.endswith('proj')))}."
         ) from error
 
 

@@ -29,7 +29,7 @@ def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], lis
 
 
 def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
-    """Join pairs (prompt, completion) to a batch that is padded on the left.
+    """Combine pairs (prompt, completion) into a batch that is padded on the left.
 
     Returns ``input_ids``, ``attention_mask`` and ``position_ids``, int64 [B, T], and
     ``completion``, bool [B, C]. ``completion`` marks which of the last C tokens belong to the

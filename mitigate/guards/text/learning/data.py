@@ -102,7 +102,7 @@ def _masked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
 
 def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     attack = " ".join(attacks(rng))
-    if rng.random() < 0.3:  # passages can consist only of an attack
+    if rng.random() < 0.3:  # a passage may contain nothing but an attack
         return Pair(attack, "", "black_box")
     if rng.random() < 0.3 and spoken.available():
         source, plain = spoken.passage(rng)
@@ -139,7 +139,7 @@ _MAKE = {
 def attacks(rng: np.random.Generator) -> list[str]:
     """Return one to three attack sentences.
 
-    Each is a sentence of the train split, or a new sentence that resembles one of its families.
+    Each sentence is drawn from the train split of the attacks, or composed by :func:`vary`.
     """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [
@@ -149,7 +149,7 @@ def attacks(rng: np.random.Generator) -> list[str]:
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Compose an attack sentence that belongs to one of the training families."""
+    """Compose an attack sentence from random phrases, similar to the attacks of the train split."""
     patterns = _PHRASES["patterns"]
     pattern, *slots = patterns[int(rng.integers(len(patterns)))]
     lists = [_PHRASES[slot] for slot in slots]
@@ -166,7 +166,7 @@ def holds_held_out(source: str, manner: str) -> bool:
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
-    """Return patterns of the phrases of a style that are excluded from training.
+    """Return patterns that match those phrases of a style that are excluded from training.
 
     Phrases are openers, frames, commands and closers.
     """

@@ -1,9 +1,9 @@
 """Load words and phrases of routes in buildings: rooms, things, doors and clause templates.
 
 ``route_words.json`` lists these words and phrases, which were written for this project. In a
-template, {a} is a thing and {aa} is a different thing. Further fields are {room}, {door}, {stairs},
-{place}, {side} (left or right) and {n} (a number). ``learning/routes.py`` composes whole
-instructions from them.
+template, {a} stands for an object and {aa} for a different object. Other fields are {room},
+{door}, {stairs}, {place}, {look} (an adjective), {side} (left or right) and {n} (a number).
+``learning/routes.py`` composes whole instructions from them.
 """
 
 from __future__ import annotations

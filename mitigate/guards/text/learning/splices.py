@@ -101,8 +101,8 @@ class _Source:
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
         """Draw an attack.
 
-        To imitate longer attacks, some attacks are joined from two, or have sentences that
-        introduce or close them.
+        To imitate longer attacks, some attacks are joined with a second attack. Some also get a
+        sentence that introduces them, or one that closes them.
         """
         line = self._line(self.attacks, rng)
         attack = line.text

@@ -41,12 +41,12 @@ class Spoken:
 
     @property
     def original(self) -> str:
-        """The whole styled text."""
+        """The complete text in its original style."""
         return " ".join(original for original, _ in self.parts)
 
     @property
     def plain(self) -> str:
-        """The whole plain version of the text."""
+        """The plain translation of the complete text."""
         return " ".join(plain for _, plain in self.parts if plain)
 
 
@@ -73,9 +73,9 @@ def spoken(split: str) -> tuple[Spoken, ...]:
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:
-    """Draw consecutive parts of a text in a training style.
+    """Sample consecutive parts of a random text whose style is used for training.
 
-    Returns the styled text and its plain version.
+    Returns these parts in their original style, and their plain translation.
     """
     texts = spoken("train")
     parts = texts[int(rng.integers(len(texts)))].parts

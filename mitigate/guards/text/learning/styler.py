@@ -1,4 +1,4 @@
-"""Generate routes in random styles, with random persons, verbs, phrases and conjunctions.
+"""Generate routes in random styles: with random subjects, verbs, phrases and conjunctions.
 
 These routes teach the classifier that unusual words alone are not an attack. The sentences need not
 sound natural. The words are read from a checkout: ``tools/safeguard/data/styler.json``.
