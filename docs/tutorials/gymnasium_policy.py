@@ -57,8 +57,9 @@ class Corridor(gymnasium.Env):
 # %% [markdown]
 # ## The policy
 #
-# The network is a torchrl `ConvNet` on depth. A short supervised training teaches the network to
-# predict whether the wall is within one metre. Replace the network with your own trained policy.
+# The network is a torchrl `ConvNet` on depth.
+# A short supervised training run teaches it to predict whether the wall is within one metre.
+# Replace the network with your own trained policy.
 
 
 # %%

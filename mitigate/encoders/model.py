@@ -302,7 +302,7 @@ class Encoder(nn.Module):
         targets = [targets] if isinstance(targets, str) else targets
         names = inserted.insert_adapters(self.model, targets, run=self._probe, **options)
         share = inserted.trainable_share(self.model)
-        say(f"adapters behind {', '.join(names)}: {share:.1%} of the encoder's weights")
+        say(f"adapters after {', '.join(names)}: {share:.1%} of the encoder's weights")
 
     def _probe(self, count: int) -> Any:
         """Return the output for random frames; for constant frames, some normalisations would give

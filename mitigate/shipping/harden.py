@@ -378,7 +378,7 @@ def _insert_adapters(
     for parameter in adapter_parameters(policy.network):
         parameter.requires_grad_(True)
     share = trainable_share(policy.network)
-    say(f"adapters behind {', '.join(adapted)}: {share:.1%} of the policy's weights")
+    say(f"adapters after {', '.join(adapted)}: {share:.1%} of the policy's weights")
 
 
 def _like(policy: Any, hardened: Policy) -> Any:

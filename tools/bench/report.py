@@ -126,7 +126,7 @@ def tensor_lines(batches: dict[str, list[Batch]]) -> list[str]:
         ]
         lines += ["", f"On {device}:", "", markdown_table(head, cells, words=2)]
     if len(batches) == 1:
-        lines += ["", "No GPU was available, so there are no times of a GPU."]
+        lines += ["", "No GPU was available, so there are no GPU timings."]
     return [*lines, ""]
 
 
@@ -143,16 +143,15 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
         "## Training",
         "",
         "The table shows every stage of the recipes as `make train` runs it, with one worker "
-        "process per core, on "
-        f"2 threads and {LAYOUTS} apartments. The time to generate apartments is excluded, because "
-        "it is spent only once per training run. Values are medians of a few steps, and all parts "
-        "are timed in one run.",
+        f"process per core. The measurement used 2 cores and {LAYOUTS} apartments. The time to "
+        "generate apartments is excluded, because it is spent only once per training run. Values "
+        "are medians of a few steps, and all parts are timed in one run.",
         "",
         "- **waiting**: fraction of a step during which the trainer waits for its batch.",
-        "- **no network computes**: the same fraction if rollouts run no networks (target: at most "
-        f"{AIM:.0%}).",
-        "- **rendering** to **other**: milliseconds that one core needs for each part of a step's "
-        "batch.",
+        "- **no network**: fraction of a step during which no network computes, neither for "
+        f"training nor in rollouts (target: at most {AIM:.0%}).",
+        "- The columns from **rendering** to **other**: milliseconds that one core needs for each "
+        "part of the work on a batch.",
     ]
     for caps, measured in stages.items():
         name = " ".join(f"{key}={value}" for key, value in CAPS.items())

@@ -234,7 +234,7 @@ def table(stages: Sequence[Stage]) -> str:
         "waiting",
         "forward + backward",
     ]
-    head += ["step / forward + backward alone", "no network computes", *names]
+    head += ["step / forward + backward alone", "no network", *names]
     rows = []
     for s in stages:
         cells = [f"`{s.recipe}`", s.stage, s.precision, f"{1e3 / s.whole:.2f}", f"{s.whole:.0f}"]

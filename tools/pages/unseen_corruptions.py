@@ -51,21 +51,19 @@ def table(half: str) -> str:
 
 
 def _ranges(suite: Mapping[str, Curve], unseen: Mapping[str, Curve], at: int) -> str:
-    """Return a sentence with the effects of the weakest and the strongest corruption, for the suite
-    and for unseen corruptions.
+    """Return two sentences with the effects of the weakest and the strongest corruption.
+
+    The first sentence describes the suite, and the second describes the unseen corruptions.
     """
     ranges = []
     for curves in (suite, unseen):
         psnr = [curve.psnr[:, at].mean() for curve in curves.values() if curve.psnr.size]
         error = [curve.error[:, at].mean() for curve in curves.values() if curve.error.size]
         ranges.append(
-            f"{min(psnr):.0f} to {max(psnr):.0f} dB (RGB) and {min(error):.2f} to "
-            f"{max(error):.2f} m (depth)"
+            f"the PSNR of RGB is {min(psnr):.0f} to {max(psnr):.0f} dB, and the mean error of "
+            f"depth is {min(error):.2f} to {max(error):.2f} m."
         )
-    return (
-        f"The PSNR and the mean depth error are {ranges[0]} for the standard suite, and "
-        f"{ranges[1]} for the unseen corruptions."
-    )
+    return f"For the standard suite, {ranges[0]} For the unseen corruptions, {ranges[1]}"
 
 
 def _strengths(curves: Mapping[str, Curve], at: int) -> str:
