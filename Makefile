@@ -40,7 +40,7 @@ train: $(VENV)/.stamp $(ENCODERS) ## train and evaluate: RECIPE=da_per_episode A
 evaluate: $(VENV)/.stamp $(ENCODERS) ## evaluate weights: ARGS="checkpoint=checkpoints/base split=val_seen"
 	$(BIN)/python -m mitigate.evaluate $(ARGS)
 
-sweep: $(VENV)/.stamp ## run many trainings or evaluations, and make one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
+sweep: $(VENV)/.stamp ## run many training runs or evaluations, and make one table: ARGS="recipe=da_per_frame,da_per_episode seed=0,1"
 	$(BIN)/python -m mitigate.sweep runs=sweeps/$(SWEEP) $(ARGS)
 
 table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --out report"
@@ -69,7 +69,7 @@ test-all: $(VENV)/.stamp ## run all tests; only the slow ones: ARGS="-m slow"
 wheels: $(VENV)/.stamp ## build both wheels and test them in an empty folder
 	PYTHON=$(abspath $(BIN))/python tools/wheels.sh $(ARGS)
 
-test-faults: $(VENV)/.stamp ## break trainings and evaluations on purpose: ARGS="--recipes ts_distill"
+test-faults: $(VENV)/.stamp ## break training runs and evaluations on purpose: ARGS="--recipes ts_distill"
 	$(BIN)/python -m tools.faults $(ARGS)
 
 mutations: $(VENV)/.stamp ## break central functions and require that a test fails: ARGS="kl spl"

@@ -83,7 +83,7 @@ class AdaptViews(DistilViews):
             (``agents.adapters.scale_adapters``).
 
     Raises:
-        ValueError: If the encoders have no adapters, or a number is invalid.
+        ValueError: If the encoders have no adapters, or if a number is invalid.
     """
 
     teaches_gates = True
@@ -145,11 +145,11 @@ class AdaptViews(DistilViews):
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the backbone is unchanged, and for which fractions of views the gates
-        open.
+        """Return whether the backbone is unchanged, and how often the gates open.
 
-        The views differ from the views that :meth:`finish` uses to set the thresholds at the end of
-        training.
+        "clean_opened" and "corrupted_opened" are the fractions of clean and of corrupted views for
+        which the gates open. These views differ from the views with which :meth:`finish` sets the
+        thresholds at the end of training.
         """
         values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
         for gate in self.gates:
@@ -202,8 +202,9 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
 
 
 def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
-    """Raise ValueError unless one of ``modules`` (default: the agent) has adapters; print their
-    size.
+    """Print the size of the agent's adapters, as a fraction of its backbone.
+
+    Raises ValueError if none of ``modules`` has adapters. The default is the whole agent.
     """
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(

@@ -45,7 +45,7 @@ class Dagger(Imitate):
         losses: same as in ``Imitate``.
 
     Raises:
-        ValueError: If the rollouts of the agent are not plain data, or the schedule samples
+        ValueError: If the rollouts of the agent are not plain data, or if the schedule samples
             corruptions by success rate, which needs a trained agent.
     """
 
@@ -82,8 +82,9 @@ class Dagger(Imitate):
         self.walks = walks
 
     def jobs(self, step: int) -> list[tuple]:
-        """Return the jobs of ``Rollouts``, each extended by the fraction of expert decisions.
-        Return no jobs in steps without new rollouts.
+        """Return the jobs of ``Rollouts``, or an empty list in steps without new rollouts.
+
+        Each job also contains the fraction of decisions that follow the expert.
         """
         if step % self.every:
             return []

@@ -70,7 +70,7 @@ class Distil(OnEpisodes):
             raise ValueError(f"recipe.temperature must be above 0, such as 2, got {temperature:g}.")
         if not (w_il or w_kl or w_feat):
             raise ValueError(
-                "Nothing would train: w_il, w_kl and w_feat are 0. Set one of them above 0."
+                "No weight would be trained: w_il, w_kl and w_feat are 0. Set one of them above 0."
             )
         self.agent = agent
         self.losses = loss_weights(agent, losses)
@@ -116,9 +116,10 @@ class Distil(OnEpisodes):
         learned = any(feature.requires_grad for feature in features.values())
         if torch.is_grad_enabled() and not (self.w_il or self.w_kl or learned):
             raise ValueError(
-                f"Nothing would train: decide() of {type(self.agent).__name__} returns no features "
-                f"that depend on a trained weight (it has {', '.join(features) or 'none'}), and "
-                "w_il and w_kl are 0. Return such features in Output.features, or set w_il."
+                "No weight would be trained: w_il and w_kl are 0, and decide() of "
+                f"{type(self.agent).__name__} returns no features that depend on a trained weight. "
+                f"Its features are: {', '.join(features) or 'none'}. Return such features in "
+                "Output.features, or set w_il or w_kl above 0."
             )
 
 
@@ -135,7 +136,7 @@ class DistilViews(OnViews):
 
     Raises:
         FileNotFoundError: If the teacher is missing.
-        ValueError: If the adapters have gates, or a weight is invalid.
+        ValueError: If the adapters have gates, or if a weight is invalid.
     """
 
     teaches_gates: ClassVar[bool] = False
@@ -205,8 +206,8 @@ def feature_loss(student: Tensor, teacher: Tensor) -> Tensor:
 
     Therefore the overall scale of a feature does not matter, but the relative scale of its parts
     does. If a feature contains both probabilities and larger values, the probabilities contribute
-    only 0.3 to 5 % of the error (measured for each encoder and corruption). Such probabilities are
-    trained by the label loss instead.
+    only 0.3 to 5 % of the error (measured for each encoder and corruption). For such probabilities,
+    use the label loss instead.
     """
     error = (student.float() - teacher.float()).square().mean()
     return error / teacher.float().var().clamp(min=1e-6)

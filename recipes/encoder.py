@@ -71,7 +71,7 @@ class HardenEncoder(Objective):
             channels have equal weight. If false, it is divided by the mean variance.
 
     Raises:
-        ValueError: If a number is invalid, or the schedule has no corruption of the encoder's
+        ValueError: If a number is invalid, or if the schedule has no corruption of the encoder's
             sensor.
     """
 
@@ -248,8 +248,9 @@ def variance(clean: Tensor, per_channel: bool) -> Tensor:
 
     Args:
         clean: features of shape [n, C], [n, C, h, w] or [n, T, C].
-        per_channel: whether to return the variance of each channel, in a shape that broadcasts and
-            limited to at least a hundredth of the mean. If false, return the mean of all variances.
+        per_channel: whether to return the variance of each channel. It is at least 0.01 times the
+            mean variance, and its shape broadcasts with the features. If false, return the mean
+            variance.
     """
     each = clean.var(0)
     channel = 0 if each.dim() == 3 else each.dim() - 1

@@ -35,7 +35,7 @@ class Imitate(OnEpisodes):
         losses: weights of auxiliary losses by name, which override the agent's defaults.
 
     Raises:
-        ValueError: If a part is unknown, or a weight is invalid.
+        ValueError: If a part is unknown, or if a weight is invalid.
     """
 
     def __init__(
@@ -65,11 +65,10 @@ def decide(
 
 
 def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -> dict[str, Tensor]:
-    """Return the imitation loss.
+    """Return the imitation loss plus the weighted auxiliary losses.
 
-    It is the weighted cross-entropy with the expert, less the entropy of the expert.
-
-    Auxiliary losses are added, multiplied by their ``weights`` (default 1).
+    The imitation loss is the weighted cross-entropy with the expert, minus the entropy of the
+    expert. ``weights`` contains the weights of auxiliary losses by name; the default weight is 1.
 
     Returns:
         A dict with the entry "loss" and with values that are logged.
@@ -126,6 +125,6 @@ def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
     for name in weights:
         if name not in known:
             raise ValueError(
-                f"recipe.losses has a weight of {name!r}, which decide() of {type(agent).__name__} "
-                f"does not return. Its losses are {', '.join(known) or 'none'}."
+                f"recipe.losses has a weight for {name!r}, but decide() of {type(agent).__name__} "
+                f"returns no such loss. Its losses are {', '.join(known) or 'none'}."
             )

@@ -42,7 +42,7 @@ class StoredRollouts:
             features.
 
     Raises:
-        ValueError: If there are no episodes, the fraction is invalid, or the schedule samples
+        ValueError: If there are no episodes, if the fraction is invalid, or if the schedule samples
             corruptions by success rate.
     """
 

@@ -43,7 +43,7 @@ class Ppo(Objective):
 
     Args:
         agent: the policy, which is trained in place. If it has adapters, only these are trained.
-            The policy must give a distribution of actions and must have no memory.
+            The policy must return an action distribution and must have no memory.
         world: function that constructs a world with a ``reward``, such as ``GymWorld`` or
             ``EnvWorld``.
         training: source of the episodes.
@@ -64,8 +64,8 @@ class Ppo(Objective):
         seed: seed of episodes, corruptions and actions.
 
     Raises:
-        ValueError: If a number is out of range, the policy reads no frames, has a memory or gives
-            no distribution of actions, or the world has no reward.
+        ValueError: If a number is out of range, or if the world has no reward. It is also raised if
+            the policy reads no frames, has a memory or returns no action distribution.
     """
 
     loss: Any  # ClipPPOLoss
@@ -124,7 +124,7 @@ class Ppo(Objective):
         }
         with _random(agent.device, seed, "ppo critic"):
             self.actor = ActorCritic(agent, example, module or last_convolution(agent))
-        # a copy with the weights that run the episodes of the current round
+        # a copy with the weights from the start of the round, which runs the round's episodes
         self.behaviour = self.actor.copied()
         self.teacher = clean_teacher(agent) if w_kl else None
         self.loss = _loss(self.actor, clip, w_critic, w_entropy)

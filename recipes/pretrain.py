@@ -1,8 +1,8 @@
 """Train an agent's encoders on random poses with labels from the simulator.
 
 In the apartments, RGB labels describe the furniture, near furniture, colours and rooms that are
-visible in the middle of each view. Depth labels are the directions in which the agent can move
-straight ahead. The encoders of the two sensors are independent, so each has its own stage.
+visible in the middle of each view. Depth labels state how far the agent can move in a straight line
+in each direction. The encoders of the two sensors are independent, so each has its own stage.
 """
 
 from __future__ import annotations
@@ -48,7 +48,7 @@ def views_to_learn(agent: Any, modality: str, adapters_only: bool = False) -> di
         The arguments of ``Poses.learn``.
 
     Raises:
-        ValueError: If the agent has no method ``see``, or the modality is unknown.
+        ValueError: If the agent has no method ``see``, or if the modality is unknown.
     """
     if not isinstance(agent, Seeing):
         raise ValueError(

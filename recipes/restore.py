@@ -1,15 +1,16 @@
 """Train a restorer on pairs of corrupted and clean frames, without an agent, labels or actions.
 
-    L = mean over scales of |out - clean| + w_grad |their image gradients|
-        + w_right mean of e / (e + TOLERANCE), where e = |out - clean| of a pixel
+    L = mean over scales of |out - clean|
+        + w_grad * |gradient(out) - gradient(clean)|
+        + w_right * mean of e / (e + TOLERANCE), with e = |out - clean| per pixel
 
 The last term counts wrong pixels instead of measuring their error. It keeps the restorer from
 changing correct pixels next to drops, stripes or noise. In the first term, the error is multiplied
-by ``w_far`` if restored depth is too far. Depth that is too far can make an episode fail, because
-it shows free paths that do not exist. Depth that is too near only costs a detour. RGB is in [0, 1],
-and depth is divided by its range. Pixels without a valid clean depth are ignored. Because no agent
-is used in training, one restorer works with all agents. The restorer's gate is trained afterwards
-on fixed maps (``restore_gate.py``).
+by ``w_far`` where the restored depth is too large. Overestimated depth can make an episode fail,
+because it shows free paths that do not exist. Underestimated depth only makes the agent take a
+detour. RGB is in [0, 1], and depth is divided by its range. Pixels without a valid clean depth are
+ignored. Because no agent is used in training, one restorer works with all agents. The restorer's
+gate is trained afterwards on fixed maps (``restore_gate.py``).
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ class Restore(Objective):
         seed: seed for choosing these steps.
         w_grad: weight of the error of image gradients.
         w_right: weight of the fraction of wrong pixels.
-        w_far: factor by which the error of depth that is too far is multiplied.
+        w_far: factor by which the error of overestimated depth is multiplied.
 
     Raises:
         ValueError: If a number is invalid.

@@ -1,7 +1,9 @@
 """Train the gate of a restorer, which decides which frames are restored.
 
-    L = BCE(gate, error after < ``BETTER`` error before, and at most ``SPENT`` fewer correct pixels)
+    L = BCE(gate, target)
 
+The target is 1 if restoring a frame reduces its error to less than ``BETTER`` times the original
+error, and lowers its fraction of correct pixels by at most ``SPENT``. Otherwise the target is 0.
 The limit ``SPENT`` is needed, because blurring a partly wrong frame can reduce its mean error
 although details are lost. A corrupted frame is ignored if restoring makes it neither clearly better
 nor worse. The inputs of the gate do not change in this stage, so they are computed only once, for
@@ -32,8 +34,8 @@ CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 BETTER = 0.85
 # maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
 SPENT = 0.15
-# First step number of each purpose. Purposes use different time steps.
-# No purpose uses the time steps on which the network was trained.
+# Number of the first step from which each data set of this recipe samples its time steps.
+# The data sets do not overlap, and none contains time steps on which the network was trained.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 

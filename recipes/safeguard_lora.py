@@ -88,7 +88,7 @@ class SafeguardLora(Objective):
         return (job, *self.encode_pair(self.pair(job)))
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for workers without the language model, which is large."""
+        """Return the state for pickling. Workers do not need the language model, which is large."""
         return {**self.__dict__, "_modules": {}}
 
     def weight(self, batch: dict[str, Any]) -> float:

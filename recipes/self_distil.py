@@ -75,7 +75,7 @@ class SelfDistil(Objective):
         seed: seed of episodes and corruptions.
 
     Raises:
-        ValueError: If a number is out of its range, or the policy reads no frames or has no such
+        ValueError: If a number is out of range, or if the policy reads no frames or has no such
             module.
     """
 
@@ -217,7 +217,7 @@ class SelfDistil(Objective):
             return _read(file)
         if step < self._now:
             raise ValueError(
-                f"{file} is missing. A training cannot resume without its stored frames. Restore "
+                f"{file} is missing. Training cannot resume without its stored frames. Restore "
                 "the file if you have a copy, or choose another folder (out=...)."
             )
         windows = [self._rollout(step, number) for number in range(self.episodes)]

@@ -33,7 +33,7 @@ def build(node: Mapping[str, Any], **arguments: Any) -> Any:
         arguments: additional keyword arguments.
 
     Raises:
-        ValueError, FileNotFoundError: The constructor raised this error.
+        ValueError, FileNotFoundError: If the constructor raises ValueError or FileNotFoundError.
     """
     config = plain(node)
     makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}

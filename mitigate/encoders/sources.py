@@ -79,8 +79,8 @@ class WorldFrames:
             None for no labels.
 
     Raises:
-        ValueError: If the world cannot render from arbitrary poses, it lacks the sensor, or a scene
-            is in both splits.
+        ValueError: If the world cannot render from arbitrary poses or lacks the sensor, or if a
+            scene is in both splits.
     """
 
     files = False

@@ -168,7 +168,8 @@ def benchmark(
                 if first.action_space is None:
                     raise ValueError(
                         f"{type(first).__name__} must have the attribute action_space "
-                        "(mitigate.core.spaces): a return is compared with that of random actions."
+                        "(mitigate.core.spaces), because its returns are compared with the return "
+                        "of random actions. Add this attribute to its class."
                     )
                 random = RandomPolicy(first.action_space, seed)
                 return compare([*rows, *measure(random, conditions=[CLEAN], name=RANDOM)])
@@ -218,7 +219,7 @@ def _conditions(
 
 
 def _visible(met: Sequence[Corruption], world: World, suite: str) -> list[Corruption]:
-    """Return the conditions of a suite without corruptions of sensors that the world lacks."""
+    """Return the conditions of a suite, except corruptions of sensors that the world lacks."""
     unseen = {RGB, DEPTH} - {*world.sensors}
     left_out = [
         one.name
@@ -243,7 +244,7 @@ def checked_world(
     (``provenance.first_world``).
 
     Raises:
-        ValueError: If ``make_world`` does not return a world, or the world lacks a sensor that a
+        ValueError: If ``make_world`` does not return a world, or if the world lacks a sensor that a
             condition corrupts.
     """
     if not callable(make_world):

@@ -28,8 +28,8 @@ _BOUNDS = ((1 - LEVEL) / 2, (1 + LEVEL) / 2)
 ROUNDING = 1e-9  # tolerance for the equality of resamples (heuristic)
 NO_INTERVAL = "[–]"
 NO_WIDTH = f"{NO_INTERVAL}: no interval, as no resample differs (only one episode, or all equal)."
-CHUNK = 1 << 20  # number of indices per block of resamples (heuristic): 8 MiB
-# number of entries per matrix product (heuristic): 128 KiB of float64 fit into a core's cache
+CHUNK = 1 << 20  # number of indices per block of resamples (heuristic); a block takes 8 MiB
+# number of entries per matrix product (heuristic); 128 KiB of float64 fit into a core's cache
 PART = 1 << 14
 
 
@@ -208,8 +208,9 @@ def _prs(
 
 
 def with_interval(value: float, samples: np.ndarray) -> Estimate:
-    """Return ``value`` with the percentiles of ``samples``, except samples that are undefined
-    because their clean value is 0.
+    """Return ``value`` with the percentile interval of ``samples``.
+
+    Samples are ignored if they are undefined because their clean value is 0.
     """
     known = samples[np.isfinite(samples)]
     if not len(known) or math.isnan(value):

@@ -102,7 +102,7 @@ class Comparison:
     about: str
 
     def line(self, title: str) -> Line:
-        """Return the line with a title; raise KeyError for an unknown title."""
+        """Return the line with the given title; raise KeyError if there is none."""
         known = {line.title: line for line in self.lines}
         if title not in known:
             raise KeyError(f"{title!r} must be one of {', '.join(known)}.")
@@ -128,12 +128,13 @@ def compare(rows: Iterable[Row]) -> Comparison:
 
     If an episode was run with several seeds, the mean over the seeds is used.
 
-    Rows with the name ``RANDOM`` do not belong to an agent but to random actions. The retention of
-    returns needs them: (R_corrupted - R_random) / (R_clean - R_random).
+    Rows with the name ``RANDOM`` hold the results of random actions. They are needed to compute the
+    fraction of the return that an agent retains under corruption. The fraction is
+    (R_corrupted - R_random) / (R_clean - R_random), where each R is a mean return.
 
     Raises:
-        ValueError: If the agents have no episodes in common, or the first agent is no better than
-            random actions.
+        ValueError: If the agents were not evaluated on common episodes, or if the first agent is no
+            better than random actions.
     """
     rows = list(rows)
     if not rows:

@@ -52,8 +52,8 @@ def conditions(names: list[str], severity: float, severity_depth: float | None) 
     severity 0.
 
     Raises:
-        ValueError: If there are no names, a name is unknown, or the corruptions of a pair would
-            have different severities.
+        ValueError: If there are no names, if a name is unknown, or if the corruptions of a pair
+            would have different severities.
     """
     from mitigate.corruptions import CLEAN, Corruption
     from mitigate.corruptions.registry import AND, FAULTS, known, parts

@@ -49,7 +49,7 @@ class WeightsConfig:
 
 @dataclass
 class FinetuneConfig:
-    """Options with which recipes fine-tune a trained policy of the chosen kind of agent."""
+    """Options that recipes use to fine-tune a trained policy of the chosen kind of agent."""
 
     lr: float = 4e-4
     follow_oracle: float = 0.25
@@ -60,8 +60,12 @@ class CostConfig:
     """Computing time of the chosen kind of agent, relative to the topological agent; None means
     unknown.
 
-    The time estimate at the start of training uses three costs: of a training step on random views,
-    of a training step on rollouts, and of an evaluated episode.
+    The time estimate at the start of a training run uses these costs.
+
+    Attributes:
+        views: relative time of a training step on random views.
+        episodes: relative time of a training step on rollouts.
+        evaluation: relative time of an evaluated episode.
     """
 
     views: float | None = None
@@ -127,14 +131,14 @@ class EvaluateConfig:
     critical: list[float] | None = None
     seed: int = 0
     workers: int | None = None
-    launcher: Any = MISSING  # read: a LauncherConfig
+    launcher: Any = MISSING  # becomes a LauncherConfig when the options are read
     out: str | None = None
-    agent: Any = MISSING  # read: a dict
+    agent: Any = MISSING  # becomes a dict when the options are read
     weights: WeightsConfig = field(default_factory=WeightsConfig)
     finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
     cost: CostConfig = field(default_factory=CostConfig)
-    env: Any = MISSING  # read: an EnvConfig
-    suite: Any = MISSING  # read: a SuiteConfig
+    env: Any = MISSING  # becomes an EnvConfig when the options are read
+    suite: Any = MISSING  # becomes a SuiteConfig when the options are read
 
     @property
     def condition_names(self) -> list[str]:
@@ -162,8 +166,8 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
     unused = [option for option in overrides if option.lstrip("+").startswith(TRAINING_OPTIONS)]
     if unused:
         raise ValueError(
-            f"{unused[0]} must be left out: it is an option for trainings, and an "
-            "evaluation does not train."
+            f"{unused[0]} must be left out: it is a training option, and an evaluation does not "
+            "train."
         )
     check_choice(config.safeguard)
     seeding.check(config.seed)

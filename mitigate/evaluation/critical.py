@@ -66,9 +66,11 @@ def decreasing(values: ArrayLike) -> np.ndarray:
 
 
 def crossing(severities: Sequence[float], rates: ArrayLike, loss: float) -> np.ndarray:
-    """Return the lowest severity at which the fit of ``rates`` has lost a fraction ``loss``.
+    """Return the critical severity for the fraction ``loss``.
 
-    Between measured severities, the fit is interpolated linearly.
+    The function fits a decreasing curve to ``rates`` (:func:`decreasing`). The result is the lowest
+    severity at which the curve is at most ``1 - loss`` times the clean rate. Between measured
+    severities, the curve is interpolated linearly.
 
     Args:
         severities: K severities in ascending order; the first severity is 0 (clean).
@@ -111,9 +113,9 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
 
     ``rates`` maps each measured severity, including 0 and 1, to the success rate.
 
-    For each loss, the next severity lies midway between the two measured severities where the fit
-    falls to ``1 - loss`` of the clean rate. A loss is skipped if the two measured severities are at
-    most :data:`WIDTH` apart, or if the fit stays above ``1 - loss`` of the clean rate.
+    The target of a loss is ``1 - loss`` times the clean rate. If the fit falls to the target
+    between two neighbouring measured severities, the midpoint of these severities is measured next,
+    unless they are at most :data:`WIDTH` apart.
     """
     severities = sorted(rates)
     fit = decreasing([rates[at] for at in severities])
@@ -134,8 +136,8 @@ def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corrup
     corruptions at severity 1.
 
     Raises:
-        ValueError: If ``conditions`` contains no corruption or a severity of 0, or the world has no
-            success criterion.
+        ValueError: If ``conditions`` contains no corruption or a severity of 0, or if the world has
+            no success criterion.
     """
     corrupted = [one for one in conditions if one.name != "clean"]
     if rule == RETURN:
@@ -192,7 +194,7 @@ def search(
 
 @dataclass(frozen=True)
 class Score:
-    """A critical severity or an area.
+    """A critical severity, or the area under a retention curve.
 
     The score may be a mean over corruptions and seeds, or a difference between two columns.
 
@@ -215,8 +217,8 @@ class Scores:
 
     Attributes:
         grid: the results.
-        losses: fractions of the clean success.
-        columns: labels of the columns; the first one is the reference of differences.
+        losses: the losses to search for, as fractions of the clean success rate.
+        columns: labels of the columns; the first one is subtracted in differences.
         corruptions: corruptions for which at least one column has clean results and results at
             severity 1.
     """
@@ -245,7 +247,10 @@ class Scores:
 
     @property
     def comparisons(self) -> list[tuple[str, ...]]:
-        """The single columns, and the pairs (column, reference) of each other column."""
+        """The keys of the scores: each single column, and pairs of columns to compare.
+
+        Each column except the first is paired with the first one.
+        """
         first, *others = self.columns
         return [(first,), *((c,) for c in others), *((c, first) for c in others)]
 
@@ -282,7 +287,7 @@ class Scores:
     def results(self) -> dict[tuple[tuple[str, ...], tuple[str, ...], float | None], Score]:
         """All scores by (columns, corruptions, loss).
 
-        The score of a pair of columns is a difference.
+        The score of a pair of columns is the score of the first minus the score of the second.
         """
         return {
             (columns, names, loss): self.score(columns, names, loss)
@@ -309,7 +314,7 @@ class Scores:
         parts = [_scored(lists, common, self.grid.units[common], loss) for lists in curves]
         count = int(common.sum())
         above = tuple(bool(np.isinf(part[:, 0]).any()) for part in parts)
-        # critical severities above 1 count as 1; areas are not limited
+        # critical severities above 1 are clipped to 1; areas are not clipped
         first, *others = (np.minimum(x, 1 if loss else np.inf).mean(axis=0) for x in parts)
         if not others:
             mean = np.where(np.isinf(parts[0]).all(axis=0), np.inf, first)

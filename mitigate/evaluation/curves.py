@@ -31,7 +31,11 @@ class Curve:
 
 
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
-    """Return the curves of columns that measured ``corruption`` at ``least`` severities or more."""
+    """Return the curve of each column that was measured under ``corruption``.
+
+    A column is left out if it was measured at fewer than ``least`` severities above 0, or if its
+    severities have no seed or no episode in common.
+    """
     lines = (_curve(grid, column, corruption, least) for column in grid.columns)
     return [line for line in lines if line is not None]
 

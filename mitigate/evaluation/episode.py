@@ -44,8 +44,8 @@ def run_episode(
     The measure ``decisions`` is the number of observations that the agent read.
 
     Raises:
-        ValueError: A step failed, an action is not an integer, or the agent or the world raised
-            SystemExit. The message names the episode, the condition and the step.
+        ValueError: If a step failed, if an action is not an integer, or if the agent or the world
+            raised SystemExit. The message names the episode, the condition and the step.
     """
     run = episode, corruption, seed
     with _no_exit(_name(run)):
@@ -198,7 +198,7 @@ def start_of(agent: Agent, episode: Episode, corruption: Corruption, seed: int) 
     """Return what guards receive before an episode: the corrupted instruction and prompt.
 
     Raises:
-        ValueError: "white_box" is used with an agent that has no system prompt.
+        ValueError: If "white_box" is used with an agent that has no system prompt.
     """
     key = Key(seed, episode.episode_id)
     prompt = as_agent(agent).system_prompt

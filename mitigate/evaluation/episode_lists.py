@@ -35,8 +35,8 @@ def episodes(env: EnvConfig, split: str, count: int | None) -> list[Episode]:
     If ``count`` is None, all episodes are returned.
 
     Raises:
-        ValueError: If the split is unknown, the count is below 1, or the list is empty, contains an
-            id twice or has an episode without an instruction.
+        ValueError: If the split is unknown, or if the count is below 1. It is also raised if the
+            list is empty, contains an id twice or has an episode without an instruction.
     """
     from mitigate.worlds.episodes import read_episodes
 
@@ -153,9 +153,9 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
     """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
 
     Raises:
-        ValueError: The rows belong to a different episode list, or the stored hash is damaged.
-            Without this check, rows of a different list would be treated as finished, because rows
-            identify episodes only by id.
+        ValueError: If the rows belong to a different episode list, or if the stored hash is
+            damaged. Without this check, rows of a different list would be treated as finished,
+            because rows identify episodes only by id.
     """
     note = folder / LIST_HASH.format(split=split)
     digest = sha256(find(source))
@@ -169,8 +169,9 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
             )
         if words[0] != digest:
             raise ValueError(
-                f"{folder} holds rows of another list of {split} than the current {source}. Name "
-                "another folder (out=..., or folder=... for a training run), or delete this one."
+                f"{folder} holds rows of another list of {split} than the current {source}. Choose "
+                "another folder (out=... for an evaluation, folder=... for a training run), or "
+                "delete this one."
             )
     with atomic_text(note) as file:
         file.write(f"{digest}  {source}\n")
@@ -179,8 +180,8 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
     """Return the rows of each episode list, ordered by the first row of each list.
 
-    Agents belong to the same list if they have an episode in common, directly or through a chain of
-    other agents.
+    Two agents belong to the same list if both were evaluated on at least one common episode, or if
+    a chain of other agents connects them in this way.
     """
     rows = list(rows)
     by_agent: dict[tuple[str, str], set[str]] = defaultdict(set)

@@ -39,8 +39,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             precedence over the settings of the weights and become part of the column name.
 
     Raises:
-        ValueError: If the split or a condition is unknown, no weights are given, the agent lacks
-            ``reset`` or ``act``, or the world lacks a sensor.
+        ValueError: If the split or a condition is unknown, or if no weights are given. It is also
+            raised if the agent lacks ``reset`` or ``act``, or if the world lacks a sensor.
         FileNotFoundError: If weights are missing.
     """
     config = options.read(cfg)
@@ -165,7 +165,7 @@ def write_critical(rows: list[dict[str, Any]], losses: Sequence[float], out: Pat
 
 
 def write_table(files: list[Path], out: Path, selected: list[dict[str, Any]] | None = None) -> None:
-    """Join row files into ``out/table.md`` and pictures, and print the table.
+    """Write the table and the pictures of the rows in ``files`` to ``out``, and print the table.
 
     If ``selected`` is not None, the printed table contains only these rows of the files.
     """
@@ -187,7 +187,7 @@ hydra_main = conf.hydra_program("evaluate", lambda cfg: run(cfg, HydraConfig.get
 
 
 def _add_kind_of_agent() -> None:
-    """Add to the command line the kind of agent to which the weights belong."""
+    """Add the ``agent=`` option that fits the weights in ``checkpoint=`` to the command line."""
     if any("checkpoint=" in option for option in sys.argv[1:]):
         from mitigate.agents.building import with_kind
 

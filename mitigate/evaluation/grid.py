@@ -86,8 +86,8 @@ def expected_corruptions(block: str, measured: Sequence[str]) -> tuple[str, ...]
     """Return the corruptions that a complete PRS over ``block`` needs.
 
     :data:`PROMPT_ONLY` is needed only if it is in ``measured``. The unseen corruptions consist of a
-    validation part and a test part. The corruptions of one of these parts are needed only if
-    ``measured`` contains at least one of them.
+    validation half and a test half. The corruptions of a half are needed only if ``measured``
+    contains at least one corruption of that half.
     """
     every = tuple(n for n in BLOCKS.get(block, measured) if n in measured or n != PROMPT_ONLY)
     halves = {UNSEEN[name].half for name in measured if name in UNSEEN}
@@ -101,8 +101,9 @@ def label_columns(
 
     ``measured`` lists the (name, agent hash, seed) of every measured agent.
 
-    Agents with the same name and different seeds are the training seeds of one column. Otherwise
-    each agent has its own column, whose label contains the agent's hash.
+    If the agents with a name have different seeds, they share one column, and each agent is one
+    training seed of it. Otherwise each agent has its own column, whose label contains the agent's
+    hash.
     """
     seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
     for name, agent, seed in measured:
@@ -118,8 +119,7 @@ def label_columns(
     return columns
 
 
-# A PRS includes a corruption only if enough of the clean episodes were also measured under it.
-# This is the minimum fraction (heuristic).
+# A PRS omits a corruption measured on a smaller fraction of the clean episodes (heuristic).
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
 STEPS = "steps"  # number of steps, which the HTML page shows
@@ -149,8 +149,8 @@ class Retention:
         corruptions: names of the K corruptions.
         clean: clean values of N episodes, shape [N].
         corrupted: values of the same episodes under each corruption, shape [K, N].
-        units: a number per episode. The bootstrap resamples episodes with the same number together,
-            as one unit.
+        units: for each episode, the number of its unit, such as its scene. The bootstrap resamples
+            the episodes of a unit together.
     """
 
     corruptions: tuple[str, ...]
@@ -183,8 +183,10 @@ class Grid:
             clean cell, because the seeds may differ between severities.
         runs: ``runs[label][seed]`` holds the cells of a seed by (corruption, severity, metric).
         drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
-        units: a number per episode. Episodes with equal numbers are resampled together.
-        cut: for each label with episodes that a step limit ended, a text with their number.
+        units: for each episode, the number of its unit. The episodes of a unit are resampled
+            together.
+        cut: for each label, a text that states how many episodes were ended by a step limit. Labels
+            without such episodes are missing.
         begins: id of the first episode if another grid has the same split, suite and rule but a
             different episode list; otherwise empty.
     """
@@ -235,7 +237,7 @@ class Grid:
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
         """Return the seeds that every column in ``labels`` has at ``severity``.
 
-        With the same seed, columns met corruptions with the same random keys.
+        For the same seed, all columns were evaluated with the same random keys of corruptions.
         """
         return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
 
@@ -331,7 +333,7 @@ def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
         drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
 
     Raises:
-        ValueError: If there are no rows, or the bootstrap resamples scenes but rows do not name
+        ValueError: If there are no rows, or if the bootstrap resamples scenes but rows do not name
             their scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
@@ -396,9 +398,10 @@ def _complete_seeds(
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
     """Return the complete seeds at ``severity``, and (actual, expected) row counts of the others.
 
-    The results of complete seeds are averaged. A seed is complete if it has at least the fraction
-    :data:`COVERAGE` of the rows of the seed with the most rows. Clean rows and corrupted rows must
-    each reach this fraction. Seeds without rows at ``severity`` are in neither result.
+    The results of complete seeds are averaged. A seed is complete if its row count is at least
+    :data:`COVERAGE` times the largest row count of any seed. This must hold separately for clean
+    rows and for corrupted rows. If no seed is complete, the seed with the most rows counts as
+    complete. Seeds without rows at ``severity`` are in neither result.
     """
 
     def rows(run: _Run, at: float) -> int:

@@ -1,9 +1,9 @@
-"""Record to which agent, world and episodes the rows in a folder belong.
+"""Record which agent, world and episodes the rows in a folder come from.
 
 A row contains the world's success rule, the agent's hash (which includes the sensors) and the
-episode id. A row does not describe the world or the episode further. Therefore, rows of a different
-world with the same rule and ids would be treated as finished. The notes that this module writes
-next to the rows prevent this.
+episode id. A row contains no other description of the world or the episode. Therefore, rows of a
+different world with the same rule and ids would be treated as finished. The notes that this module
+writes next to the rows prevent this.
 """
 
 from __future__ import annotations
@@ -42,13 +42,14 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# This table is for agents without settings(), by the id() of the agent.
-# Each value holds a function that returns the agent, and two versions of its hashed parts.
-# The first version is from after its last run, and the second from before its first run.
+# Contents of the agents that have no settings(), by the id() of the agent.
+# Each value is a tuple (function that returns the agent, contents after, contents before).
+# The contents are the data from which the hash of the agent is computed.
+# "After" means after the last evaluation, and "before" means before the first one.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
-# The key holds the classes of the world and its environments, and the user's version.
-# Each value holds two hashes of the values that the code of these classes refers to.
-# The first hash is from before the first episode, and the second from after the last one.
+# Hashes of the attributes of classes, and of the global names that their code uses.
+# Each key is a pair (classes of the world and its environments, version that the user passed).
+# Each value is a pair (hash before the first episode, hash after the last episode).
 _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 
 
@@ -60,10 +61,10 @@ class Known:
     functions that their code refers to. The object is used as a context manager around all
     episodes.
 
-    If an agent has no ``settings()``, its attributes are part of the hash. Episodes may change the
-    attributes of such an agent. If nothing else changed the agent since the last evaluation, the
-    hash from before that evaluation is used. The attributes of the world's classes are treated in
-    the same way.
+    If an agent has no ``settings()``, its attributes are part of the hash, and episodes may change
+    these attributes. If only episodes have changed the agent since an earlier evaluation, the agent
+    keeps the hash that was computed before that evaluation. The attributes of the world's classes
+    are treated in the same way.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
@@ -191,8 +192,8 @@ def keep(
         what = f"episode {changed[0]} of another list" if changed else "another world"
         detail = "" if changed else f": {_difference(different[0], before, described)}"
         raise ValueError(
-            f"{folder} holds rows of {what}{detail}. Name another folder (out=..., or "
-            "folder=... for a training run), or delete this one."
+            f"{folder} holds rows of {what}{detail}. Choose another folder (out=... for an "
+            "evaluation, folder=... for a training run), or delete this one."
         )
     known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
     with atomic_text(note) as file:

@@ -1,6 +1,7 @@
 """Write the report: Table II of the paper in Markdown, with paired intervals and pictures.
 
-All numbers are computed from result rows. Incomplete rows give a table that lists its gaps.
+All numbers are computed from result rows. If rows are missing, the report lists the incomplete
+cells of the table.
 """
 
 from __future__ import annotations
@@ -232,7 +233,7 @@ def _notes(section: Section) -> str:
         notes.append(
             "Several seeds: the value of an episode is their mean, and two columns are compared "
             "over the seeds that both have. Intervals are over episodes; the values seed by seed "
-            "show the differences between trainings."
+            "show the differences between training runs."
         )
     notes += section.notes(markdown_of)
     if section.gaps:

@@ -110,7 +110,7 @@ def read(path: Path | str) -> list[Row]:
     An incomplete last line of a plain file is ignored.
 
     Raises:
-        ValueError: A row is invalid. The message names the file, the line and the key.
+        ValueError: If a row is invalid. The message names the file, the line and the key.
     """
     rows: list[Row] = []
     try:
@@ -168,8 +168,8 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
             row is lost.
 
     Raises:
-        ValueError: The existing file has more rows than ``rows``, or it is damaged. The file is not
-            changed.
+        ValueError: If ``fewer`` is false, and the existing file is damaged or has more rows than
+            ``rows``. The file is then not changed.
     """
     path, rows = Path(path), list(rows)
     before = len(read(path)) if path.exists() and not fewer else 0

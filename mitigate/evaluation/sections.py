@@ -29,7 +29,7 @@ from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
-# a column with one of these names comes first and is the reference of comparisons
+# a column with one of these names comes first, and the other columns are compared with it
 REFERENCES = ("base", "before")
 
 label = title  # returns the name of a corruption in the paper's table
@@ -39,8 +39,11 @@ label = title  # returns the name of a corruption in the paper's table
 class Retained:
     """A PRS, a mean SR, or a difference of two of these.
 
-    ``corruptions`` and ``episodes`` state over which corruptions and how many episodes the value is
-    computed. ``near_floor`` states whether a clean value is too low for a meaningful PRS.
+    Attributes:
+        estimate: value and interval.
+        corruptions: the corruptions over which the value is computed.
+        episodes: number of episodes from which the value is computed.
+        near_floor: whether a clean value is too low for a meaningful PRS.
     """
 
     estimate: Estimate
@@ -53,7 +56,7 @@ class Retained:
 class Difference:
     """Paired differences of one column from another, over the seeds that both have.
 
-    Without a common seed there are no differences, because corruptions with different seeds use
+    Differences are computed only for common seeds, because corruptions with different seeds use
     different random keys.
 
     Attributes:
@@ -77,7 +80,7 @@ class Section:
         grid: the results.
         kind: the kind of corruptions in the table; it is empty for the corruption suite.
         severity: severity of the corruptions.
-        columns: labels of the columns; the first one is the reference of differences.
+        columns: labels of the columns; the others are compared with the first one.
     """
 
     grid: Grid
@@ -97,9 +100,9 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """The validation and test parts of blocks of unseen corruptions, by block and heading.
+        """The validation and test halves of blocks of unseen corruptions, by block and heading.
 
-        A block is left out if its validation part or its test part was not measured.
+        A block is left out if one of its halves was not measured.
         """
         of_half = [(half, {n for n in UNSEEN if UNSEEN[n].half == half}) for half in HALVES]
         by_block = {
@@ -113,7 +116,10 @@ class Section:
 
     @cached_property
     def parts(self) -> dict[str, tuple[str, ...]]:
-        """The corruptions of everything that has a PRS: the blocks, and then their parts."""
+        """The corruptions over which each PRS is computed, by part.
+
+        The blocks come first, followed by the validation and test halves of blocks.
+        """
         parts = self.halves.values()
         return self.blocks | {half: names for part in parts for half, names in part.items()}
 
@@ -265,7 +271,8 @@ def sections(
 ) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 
-    If a column, such as a control, has only clean rows, a section with clean rows only comes first.
+    If a column, such as a control, has only clean rows, its grid has an additional first section
+    that shows only clean rows.
 
     Args:
         rows: result rows.

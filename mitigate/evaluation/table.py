@@ -30,7 +30,7 @@ def run(
     drawn: str = "episode",
     critical: Sequence[float] | None = None,
 ) -> list[Path]:
-    """Join the rows of ``paths``, write a report to ``out``, and return the report's files.
+    """Read the rows in ``paths``, write a report to ``out``, and return the report's files.
 
     The table is the first file.
 
@@ -46,8 +46,8 @@ def run(
 
     Raises:
         FileNotFoundError: If a path contains no rows.
-        ValueError: If rows are damaged, a seed or the column does not exist, or ``critical`` is
-            invalid or needs rows that are missing.
+        ValueError: If rows are damaged, or if a seed or the column does not exist. It is also
+            raised if ``critical`` is invalid or needs rows that are missing.
     """
     from mitigate.evaluation import critical_report, report, rows
     from mitigate.evaluation.critical import scores

@@ -112,7 +112,7 @@ def _picture(frames: np.ndarray, far: float) -> np.ndarray:
 def won_back(rows: Sequence[Row], before: str, after: str) -> Iterator[tuple[str, Corruption]]:
     """Yield pairs (episode id, corruption) for which ``before`` fails and ``after`` succeeds.
 
-    The pairs are in the order of the rows. No episode and no corruption occurs in two pairs.
+    The pairs are in the order of the rows. No two pairs share an episode or a corruption.
     """
     won = {(r["name"], r["episode_id"], r["corruption"], r["severity"]): r["success"] for r in rows}
     done: set[str] = set()

@@ -89,7 +89,7 @@ def commit() -> str | None:
 
 
 def uncommitted() -> bool:
-    """Return whether the checkout has uncommitted changes of code or configs."""
+    """Return whether the checkout has uncommitted changes to code or configs."""
     return bool(_git("--no-optional-locks", "status", "--porcelain", "--", *CODE))
 
 
@@ -121,7 +121,7 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
 
     Args:
         rows: result rows; rows of other agents are ignored.
-        agents: hashes of their weights.
+        agents: hashes of the agents' weights.
 
     Returns:
         One entry per split, suite, success rule and severity; intervals are [value, low, high].
@@ -131,7 +131,7 @@ def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
 
 
 def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
-    """Return the agent fingerprints in those rows whose weights have a hash in ``agents``.
+    """Return the agent fingerprints of the rows whose weight hash is in ``agents``.
 
     Tables and the leaderboard identify agents by fingerprint.
     """
@@ -170,9 +170,9 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, retained: Retained) -> str:
-    """Return the block of a PRS.
+    """Return the label of a PRS in the model card, which is the name of its corruption block.
 
-    If the PRS does not cover all corruptions of the block, their number is added.
+    If the PRS does not cover all corruptions of the block, the label also states their number.
     """
     count = len(retained.corruptions)
     whole = section.whole(block)
@@ -301,8 +301,8 @@ def _check(cfg: dict[str, Any]) -> None:
     }
     for key in [key for key, ok in valid.items() if not ok]:
         raise ValueError(
-            f"The run's config.yaml has {key}={short(entries.get(key))}, which no training writes. "
-            "Export the folder as `make train` wrote it."
+            f"The run's config.yaml has {key}={short(entries.get(key))}, which `make train` never "
+            "writes. Export the folder as `make train` wrote it."
         )
 
 

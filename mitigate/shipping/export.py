@@ -46,13 +46,13 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 HARDENED = Path("checkpoints/hardened")
-# The next three limits are maximum absolute differences of outputs on the fixed probe inputs.
-# They are heuristic; logits are about 1 to 10.
-# limit for the agent loaded in a new process, compared with the agent in this process
+# The next three numbers are limits of the absolute difference between two outputs (heuristic).
+# The outputs are computed from fixed probe inputs; logits are about 1 to 10.
+# maximum difference between the agent that a new process loads and the agent in this process
 RELOADED = 1e-5
-EXPORTED = 1e-3  # limit for program.pt2 and the ONNX files, compared with the agent
-ROUNDED = 0.1  # limit for the float16 weights, compared with the float32 weights of the run
-# maximum characters that a message quotes of a failed check's last line of output (heuristic)
+EXPORTED = 1e-3  # maximum difference between program.pt2 or the ONNX files and the agent
+ROUNDED = 0.1  # maximum difference between float16 weights and the float32 weights of the run
+# maximum length in characters of the line that a message quotes from a failed check (heuristic)
 REASON_WIDTH = 400
 MOST_PIXELS = 4096  # maximum side of the frames that exported programs read, in pixels (heuristic)
 WALKS = 2  # agents of other classes are checked on this number of episodes (heuristic)
@@ -106,9 +106,10 @@ def export(
 
     Raises:
         FileNotFoundError: If ``run`` contains no finished run.
-        ValueError: The run cannot be exported, ``rows`` has no rows of this agent, or the agent
-            loaded from the new folder gives different outputs. Also raised if ``out/name`` exists,
-            unless ``overwrite`` is true and it is a hardened folder. Nothing is written.
+        ValueError: If the run cannot be exported, if ``rows`` has no rows of this agent, or if the
+            agent loaded from the new folder gives different outputs. It is also raised if
+            ``out/name`` exists, unless ``overwrite`` is true and it is a hardened folder. Nothing
+            is written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise ValueError(
@@ -118,7 +119,8 @@ def export(
     _check_free(target, overwrite)
     if onnx and walks is not None:
         raise ValueError(
-            "--onnx works only for the topological agent: folders of other agents have no programs."
+            "--onnx works only for the topological agent: other agents cannot be exported as "
+            "programs."
         )
     cfg, agent = finished(run, walks)
     with output_folder(out, name), folders.replace_folder(target) as draft:
@@ -131,8 +133,8 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
     Raises:
         FileNotFoundError: If there is no finished run.
-        ValueError: If the run cannot be exported, its kind of agent needs ``walks``, or its weights
-            overflow in float16.
+        ValueError: If the run cannot be exported, if its kind of agent needs ``walks``, or if its
+            weights overflow in float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.reject_other_models(run)
@@ -173,12 +175,16 @@ def add_programs(folder: Path) -> Path:
 
     Raises:
         FileNotFoundError: If ``folder`` is not a complete hardened folder.
-        ValueError: If the folder is damaged, its agent has no programs, or the outputs differ.
+        ValueError: If the folder is damaged, if it was exported without programs, or if the outputs
+            differ.
     """
     folders.repair_folder(folder.resolve())
     card = loading.check_hardened(folder)
     if not card.get("program", True):
-        raise ValueError(f"{folder} holds an agent of a class without programs.")
+        raise ValueError(
+            f"{folder} was exported without programs. Only the topological agent can be exported "
+            "as programs."
+        )
     agent = loading.load_hardened(folder)
     size = _input_size(folder)
     exported = programs.export_programs(agent, size)
@@ -363,7 +369,7 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
 
 
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
-    """Return the rows in ``run`` and ``rows`` whose weights have a hash in ``agents``.
+    """Return the rows in ``run`` and ``rows`` whose weight hash is in ``agents``.
 
     Raises ValueError if ``rows`` contains no row of these weights.
     """
@@ -382,7 +388,7 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 
 
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
-    """Yield the rows of the exported agent, whose weights have a hash in ``weights``.
+    """Yield the rows of the exported agent, which are rows whose weight hash is in ``weights``.
 
     The same weights with a blanked sensor or with a guard form a different agent. If the rows
     belong to several agents, only the agent in the run's own rows is used. Raises ValueError if
@@ -417,14 +423,14 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
         # Unpickling is safe, because this function writes the file for the process that it starts.
         check_file.write_bytes(pickle.dumps((sys.path, walks)))
         expected.write_text(json.dumps(walks.measures(agent)), encoding="utf-8")
-        _run_apart("check_walks", "agent", draft, check_file, expected)
+        _run_apart("check_walks", "measures", draft, check_file, expected)
 
 
 def _run_apart(check: str, what: str, *paths: Path) -> None:
     """Call the function ``check`` of this module in a new process.
 
-    If the check fails, raise ValueError. The message states that the loaded folder does not give
-    the same ``what``, and quotes the last line of the output.
+    If the check fails, raise ValueError. The message states that the loaded agent did not give the
+    same ``what``, and quotes the last line of the output.
     """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:
@@ -437,7 +443,8 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
         last = "".join(last_lines(errors, 1, REASON_WIDTH)) or "no message"
     if process.returncode:
         raise ValueError(
-            f"The folder does not reload to the same {what} ({last}). Nothing was written."
+            f"The agent in the folder did not give the same {what} in a new process ({last}). "
+            "Nothing was written."
         )
 
 

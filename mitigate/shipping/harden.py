@@ -1,8 +1,8 @@
 """``mitigate.harden(policy, world)``: make a trained policy robust, without an expert.
 
-A copy of the policy is trained. The original policy is its teacher (``recipes/self_distil.py``), or
-the copy learns from the reward of the world (``recipes/ppo.py``). Then the policies before and
-after training are compared, on episodes that are not used for training.
+A copy of the policy is trained. The copy learns from the original policy as its teacher
+(``recipes/self_distil.py``), or from the reward of the world (``recipes/ppo.py``). Then the
+policies before and after training are compared, on episodes that are not used for training.
 """
 
 from __future__ import annotations
@@ -305,8 +305,8 @@ class _Training:
         if shared:
             raise ValueError(
                 f"Training and comparison share {counted(len(shared), 'episode')} "
-                f"({', '.join(sorted(shared)[:3])}). Name other episodes, so that the "
-                "comparison is fair."
+                f"({', '.join(sorted(shared)[:3])}). Choose other episodes for one of them, so "
+                "that the comparison is fair."
             )
         if self.listed == []:
             raise ValueError("training must hold at least one episode, or be None.")

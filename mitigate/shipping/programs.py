@@ -237,9 +237,9 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    The calls of the different kinds of networks, such as eager and exported, alternate.
-
-    A call processes one panorama and then one decision among three nodes and four ghosts.
+    Calls alternate between the kinds of network, such as eager and exported. A call of the first
+    network processes one panorama. A call of the second network makes one decision among three
+    nodes and four ghosts.
 
     Args:
         kinds: the two networks of each kind, such as ``{"eager": networks(agent), "exported":
@@ -248,8 +248,9 @@ def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int
         size: width of the views in pixels.
 
     Returns:
-        Two times by kind and network: the time of the fastest of ``TIMED`` calls ("wall"), and the
-        median processor time of all threads ("cpu"). Other programs affect the processor time less.
+        Two measurements for each kind and network: the fastest of ``TIMED`` calls ("wall"), and the
+        median CPU time over all threads of this process ("cpu"). Other programs on the machine
+        affect the CPU time less than the wall time.
     """
     inputs_by_name = probe(agent, size)
     single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
@@ -308,7 +309,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 def _drop_type_checks(program: ExportedProgram) -> None:
     """Remove the type checks of stored tensors.
 
-    Over a hundred calls are removed. The removed checks cannot fail.
+    A program contains more than a hundred of these checks, and none of them can fail.
     """
     graph = program.graph_module.graph
     for node in list(graph.nodes):
@@ -330,7 +331,7 @@ def _free(shape: str) -> dict[int, Any]:
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:
-            free[place] = Dim.AUTO  # torch derives that this dimension is 1 + N + G
+            free[place] = Dim.AUTO  # torch infers this dimension as 1 + N + G
         elif name.isupper():
             free[place] = Dim(name, min=1, max=MAX_WORDS if name == "L" else None)
     return free

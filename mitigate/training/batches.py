@@ -104,8 +104,8 @@ class Batches:
         if not self._taken:
             self.workers.take(self.objective, self.kind)
             self._taken = True
-        # This is the index of the workers; it is always 0 if jobs need the current weights.
-        # In that case only one step is requested at a time.
+        # Consecutive values of ``turn`` select different workers for consecutive steps.
+        # If jobs need the current weights, only one step is requested at a time, so 0 is enough.
         turn = step if self.objective.ahead or self.lag else 0
         self.workers.order(jobs, turn)
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))

@@ -50,13 +50,13 @@ class TablesConfig:
     seeds: list[int] = field(default_factory=list)
     split: str = "val_unseen"
     episodes: int | None = None
-    suite: Any = MISSING  # read: a SuiteConfig
+    suite: Any = MISSING  # becomes a SuiteConfig when the options are read
     conditions: list[str] | None = None
     severity: float = 0.6
     evaluations: dict[str, Any] = field(default_factory=dict)
     train: list[str] = field(default_factory=list)
     jobs: int = 2
-    launcher: Any = MISSING  # read: a LauncherConfig
+    launcher: Any = MISSING  # becomes a LauncherConfig when the options are read
     walks: list[str] = field(default_factory=list)
     paper: dict[str, Any] = field(default_factory=dict)
 
@@ -141,7 +141,7 @@ class Cell:
         return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """Return all options of the cell's evaluation ``name``.
+        """Return all options for the evaluation of this cell that is called ``name``.
 
         ``options`` extend or override the options of the table. The number of episodes is at most
         the number in the table.
@@ -158,7 +158,7 @@ class Cell:
         ]
 
     def chain(self, config: TablesConfig) -> programs.Chain:
-        """Return the programs that compute the cell as a chain that runs on one core."""
+        """Return the chain of programs that compute the cell, one after another on one core."""
         return programs.Chain(
             f"{self.column}, seed {self.seed}",
             tuple((kind, programs.python(*words)) for kind, words in self.commands(config)),
@@ -201,7 +201,7 @@ def _at_most(most: int | None, option: str) -> str:
 def cells(config: TablesConfig) -> list[Cell]:
     """Return all cells of the table, ordered by seed.
 
-    With this order, a table that is not finished already has every column.
+    The cells of the first seed come first, so even an unfinished table has every column.
     """
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
@@ -242,8 +242,8 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
     Raises:
-        ValueError: If a seed is repeated; an option, a split or a condition does not exist; or the
-            folder of a cell contains rows of a different agent.
+        ValueError: If a seed is repeated, or if an option, a split or a condition does not exist.
+            It is also raised if the folder of a cell contains rows of a different agent.
     """
     from mitigate.training import plan  # brings torch
 

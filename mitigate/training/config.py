@@ -121,13 +121,13 @@ class TrainConfig:
     folder: str | None = None
     workers: int | None = None
     report: str = REPORT
-    agent: Any = MISSING  # read: a dict
+    agent: Any = MISSING  # becomes a dict when the options are read
     weights: WeightsConfig = field(default_factory=WeightsConfig)
     finetune: FinetuneConfig = field(default_factory=FinetuneConfig)
     cost: CostConfig = field(default_factory=CostConfig)
-    env: Any = MISSING  # read: an EnvConfig
-    schedule: Any = MISSING  # read: a dict
-    suite: Any = MISSING  # read: a SuiteConfig
+    env: Any = MISSING  # becomes an EnvConfig when the options are read
+    schedule: Any = MISSING  # becomes a dict when the options are read
+    suite: Any = MISSING  # becomes a SuiteConfig when the options are read
     stages: dict[str, StageConfig | None] = field(default_factory=dict)
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
     evaluation: EvaluationConfig = field(default_factory=EvaluationConfig)
@@ -139,9 +139,9 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the run starts from complete weights.
+        """Whether the initial weights are weights for all parts of the agent.
 
-        Complete initial weights are also evaluated.
+        In that case, the agent is also evaluated with its initial weights.
         """
         return bool(self.init and not self.init_parts)
 

@@ -35,7 +35,8 @@ def estimate(config: TrainConfig, folder: Path) -> float:
 
     Costs are in seconds on the machine of ``precision.REFERENCE``. The costs were measured in
     training runs. The cost of a stage is the time per step with the topological agent. For other
-    kinds of agent, the config contains a factor (``cost``) by which the stage's cost is multiplied.
+    kinds of agent, the recipe may multiply it by a factor from the agent's config (``cost.views``
+    or ``cost.episodes``).
     """
     # pairs (number of steps or episodes, seconds for each)
     costs: list[tuple[float, float | None]] = []

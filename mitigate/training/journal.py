@@ -23,8 +23,8 @@ class Journal:
 
     While the journal is open, every write below its folder checks that the folder still exists.
 
-    The journal shows a :class:`~mitigate.core.progress.Progress`. The progress is shown as a bar in
-    a terminal, and as plain lines elsewhere. :meth:`scalars` with ``line=True`` prints an
+    The progress of the run is shown as a bar in a terminal, and as plain lines elsewhere
+    (:class:`~mitigate.core.progress.Progress`). :meth:`scalars` with ``line=True`` prints an
     additional line with all its values.
     """
 
@@ -82,7 +82,7 @@ class Journal:
     def scalars(self, step: int, values: dict[str, float], *, line: bool = True) -> None:
         """Log ``values`` after ``step`` updates; with ``line``, also print them.
 
-        Raises FolderLostError if the folder was removed. TensorBoard would not notice the loss.
+        Raises FolderLostError if the folder was removed, which TensorBoard would not notice.
         """
         output.check(self._folder / "events")
         for name, value in values.items():

@@ -136,10 +136,11 @@ class Objective(nn.Module):
         return [batch]
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the weight of a rank's batch in means over ranks.
+        """Return the weight of a rank's batch when values are averaged over ranks.
 
-        The losses of a batch are weighted means, and the result is their total weight. The default
-        is the total weight of the decisions, or 1 if there are no decisions.
+        A loss is a weighted mean over the items of a batch, and the weight of the batch is the sum
+        of the items' weights. By default, the items are decisions. Without decisions, the weight of
+        the batch is 1.
         """
         decisions = batch.get("decisions")
         return 1.0 if decisions is None else float(decisions.weight.sum())
@@ -297,8 +298,8 @@ class ObjectiveSpec:
         """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
         Raises:
-            ValueError: If neither constructor declares an argument, the class is not an objective,
-                or it accepts no agent.
+            ValueError: If neither constructor declares an argument, or if the class is not an
+                objective or accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -321,7 +322,7 @@ class ObjectiveSpec:
         The objective chooses which parameters are trained.
 
         Raises:
-            ValueError: If the target does not build an objective, or its constructor raises
+            ValueError: If the target does not build an objective, or if its constructor raises
                 ValueError.
         """
         for parameter in agent.parameters():

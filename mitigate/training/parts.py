@@ -46,8 +46,9 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
             None selects all parts.
 
     Raises:
-        ValueError: If a part is unknown, a parameter belongs to no part, adapters that are to be
-            trained have gates (gates cannot be trained on episodes), or the agent is not trainable.
+        ValueError: If a part is unknown, if a parameter belongs to no part, or if the agent is not
+            trainable. It is also raised if adapters with gates are to be trained, because gates
+            cannot be trained on episodes.
     """
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)

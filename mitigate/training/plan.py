@@ -78,7 +78,7 @@ class Plan:
     """The plan of a training run.
 
     Attributes:
-        config: the options, as changed by the planning.
+        config: the options, without the stages and corruptions that planning left out.
         folder: folder of the run.
         agent: the agent with its initial weights.
         stages: stages in order.
@@ -189,11 +189,11 @@ def _contains(node: Any, target: str) -> bool:
 
 
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
-    """Set each stage that would train no part of ``agent`` to None, and print its name.
+    """Replace each stage that would train no part of ``agent`` with None, and print its name.
 
     Raises:
-        ValueError: No stage is left. If ``agent.blind`` is set and evaluation is enabled, there is
-            no error and the agent is only evaluated.
+        ValueError: If no stage is left. If ``agent.blind`` is set and evaluation is enabled, there
+            is no error and the agent is only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -231,7 +231,7 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
-    """Set stages that use random poses to None if the agent or the world does not support them.
+    """Replace stages on random poses with None if the agent or the world does not support them.
 
     If no other stage can train the agent, these stages are kept, and :func:`check_fit` then rejects
     them.
@@ -311,8 +311,8 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
     """Return the stages that will run.
 
     Raises:
-        ValueError: If a stage cannot train ``agent``, or :meth:`ObjectiveSpec.of` raised this
-            error.
+        ValueError: If a stage cannot train ``agent``, or if :meth:`ObjectiveSpec.of` raises
+            ValueError.
     """
     _check_settings(config.agent, agent)
     stages = []
@@ -356,8 +356,9 @@ def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ra
     """Check before the first step that the world, the folder and the stages fit the agent.
 
     Raises:
-        ValueError: If the number of views differs between the world and the agent, the folder
-            contains a different run, or there are more ``ranks`` than pieces of work per step.
+        ValueError: If the number of views differs between the world and the agent, or if the folder
+            contains a different run. It is also raised if there are more ``ranks`` than pieces of
+            work per step.
     """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
@@ -396,9 +397,9 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
     objective that a user wrote, because it is unknown how such an objective changes the agent.
 
     Raises:
-        ValueError: If there are more ``ranks`` than pieces of work per step, or an objective raised
-            this error.
-        FileNotFoundError: If an objective raised this error.
+        ValueError: If there are more ``ranks`` than pieces of work per step, or if an objective
+            raises ValueError.
+        FileNotFoundError: If an objective raises FileNotFoundError.
     """
     if len(stages) < 2 and ranks.count == 1:  # a single stage is built immediately after this check
         return

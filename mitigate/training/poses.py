@@ -55,9 +55,9 @@ class Poses(DrawsBySuccess):
             frames and the labels still come from the undisplaced camera.
 
     Raises:
-        ValueError: The sensor is unknown, there are no panoramas, the world has no random poses, or
-            ``camera_share`` is invalid. ``camera_share`` must be 0 in a world that cannot displace
-            its camera.
+        ValueError: If the sensor is unknown, if there are no panoramas, or if the world has no
+            random poses. It is also raised if ``camera_share`` is invalid; it must be 0 in a world
+            that cannot displace its camera.
     """
 
     agent: Any

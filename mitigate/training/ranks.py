@@ -83,9 +83,9 @@ class Ranks:
         """Replace gradients and logged values by their weighted means over the ranks.
 
         If the loss is a mean weighted by ``Objective.weight``, the result equals the gradient that
-        a single process would compute from the whole batch. Other losses are only averaged over
-        ranks, which is not identical: the KL divergence of distillation, auxiliary losses of
-        agents, and errors that are divided by the variance of a batch.
+        a single process would compute from the whole batch. For other losses, the result is only
+        similar. Such losses are the KL divergence of distillation, the auxiliary losses of agents,
+        and errors that are divided by the variance of a batch.
         """
         if self.count == 1:
             return

@@ -19,7 +19,8 @@ from mitigate.training.objective import check_counts
 from mitigate.training.poses import Poses
 from mitigate.worlds.world import TrainingEpisodes
 
-GROUP = 12  # number of frames in a folder that count as one panorama of a batch
+# number of frames per group; batches from a folder contain groups instead of panoramas
+GROUP = 12
 
 
 class PosePairs(Poses):
@@ -131,7 +132,8 @@ def pairs_of(
 ) -> Pairs:
     """Return the source of pairs for an ``env`` config, which is a world or a folder of frames.
 
-    A folder of frames has no ``training`` episodes. From a folder, ``frames`` frames are read once.
+    A folder of frames has no ``training`` episodes. If the source is a folder, ``frames`` of its
+    frames are read once.
 
     Raises:
         ValueError: If the schedule samples corruptions by success rate.

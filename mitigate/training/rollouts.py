@@ -47,8 +47,8 @@ class Rollouts(DrawsBySuccess):
         refresh_episodes: number of training episodes per corruption in each measurement.
 
     Raises:
-        ValueError: If there are no episodes, a fraction is invalid, or ``prior_rates`` raised this
-            error.
+        ValueError: If there are no episodes, if a fraction is invalid, or if ``prior_rates`` raises
+            ValueError.
     """
 
     agent: Any

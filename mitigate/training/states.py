@@ -35,7 +35,7 @@ def checkpoints(folder: Path) -> list[Path]:
 
 
 def steps_done(path: Path) -> int:
-    """Return the number of updates in the name of a checkpoint."""
+    """Parse the number of updates from the name of a checkpoint."""
     match = _NAME.fullmatch(path.name)
     assert match, f"{path} is not the name of a checkpoint"
     return int(match[1])
@@ -44,8 +44,8 @@ def steps_done(path: Path) -> int:
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
-    ``keep`` checkpoints stay. Also keep a checkpoint of a later step, which exists if it was
-    damaged when the run resumed.
+    The newest ``keep`` checkpoints up to this step stay. Checkpoints of later steps also stay; they
+    were damaged, so the run resumed from an earlier checkpoint.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
@@ -62,9 +62,9 @@ def load(path: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: If the file is missing.
-        Damaged: The file is cut short or its bytes have changed.
-        ValueError: If the file is not a checkpoint of this trainer, or it is intact but cannot be
-            read.
+        Damaged: If the file is cut short or its bytes have changed.
+        ValueError: If the file is not a checkpoint of this trainer, or if it is intact but cannot
+            be read.
     """
     path = Path(path)
     if not path.is_file():
@@ -110,9 +110,10 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
     if damaged:
         raise Damaged(
             f"Every checkpoint in {folder} is cut short or damaged ("
-            f"{', '.join(path.name for path in damaged)}); none was deleted. Restore them if you "
-            f"have a copy. If only their {checksums.SUFFIX} files are damaged, delete these. To "
-            "train from the start, delete the folder. Then run the same command again."
+            f"{', '.join(path.name for path in damaged)}); none was deleted. If you have copies of "
+            f"the checkpoints, restore them. If only the {checksums.SUFFIX} files are damaged, "
+            f"delete the {checksums.SUFFIX} files. To train from the start, delete the folder. "
+            "Then run the same command again."
         )
     return None
 

@@ -123,7 +123,7 @@ def prior_rates(path: Path | str) -> dict[str, float]:
 
     Raises:
         FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or its rows belong to several agents, splits or
+        ValueError: If the file is damaged, or if its rows belong to several agents, splits or
             severities.
     """
     rows = read(path)

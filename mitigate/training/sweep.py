@@ -41,7 +41,7 @@ class SweepConfig:
     command: str = "train"
     runs: str = "sweeps/default"
     jobs: int = 1
-    launcher: Any = MISSING  # a LauncherConfig after the options are read
+    launcher: Any = MISSING  # becomes a LauncherConfig when the options are read
 
 
 conf.register("sweep", SweepConfig)
@@ -52,14 +52,14 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
     Raises:
-        ValueError: An option is unknown, or runs failed. An unknown option is reported before
+        ValueError: If an option is unknown, or if runs failed. An unknown option is reported before
             anything runs. Failed runs are reported after all other runs are finished and the table
             is written.
     """
     if config.command not in COMMANDS:
         raise ValueError(unknown("command", config.command, COMMANDS))
     if config.jobs < 1:
-        raise ValueError(f"jobs must be >= 1 run at a time, got {config.jobs}.")
+        raise ValueError(f"jobs must be >= 1 (the number of simultaneous runs), got {config.jobs}.")
     configs, options = without_config_folder(options)
     runs = [[*configs, *chosen] for chosen in combinations(options)]
     _check_own(options)

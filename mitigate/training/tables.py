@@ -49,9 +49,9 @@ def make_table(config: TablesConfig) -> Path:
     If ``config.rows`` is set, the report is computed from those rows, and no cell is run.
 
     Raises:
-        ValueError: Settings are invalid, or a cell failed. Invalid settings are reported before any
-            cell runs. A failed cell is reported after the others are finished; the message contains
-            the end of its log.
+        ValueError: If settings are invalid, or if a cell failed. Invalid settings are reported
+            before any cell runs. A failed cell is reported after the others are finished; the
+            message contains the end of its log.
         FileNotFoundError: If rows are missing.
     """
     out = Path(config.out)

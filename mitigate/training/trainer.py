@@ -262,7 +262,7 @@ class Trainer:
         return max(group["lr"] for group in self.optimizer.param_groups)
 
     def _save(self, done: int, *, finished: bool = False) -> None:
-        """Write a checkpoint of ``done`` steps, if this is the first rank."""
+        """Write a checkpoint after ``done`` steps if this is the first rank."""
         self._saved = done
         if not self.ranks.first:
             return
@@ -310,8 +310,8 @@ class Trainer:
             self.optimizer.load_state_dict(state["optimizer"])
         except (RuntimeError, ValueError, KeyError) as error:
             raise ValueError(
-                f"The checkpoint {path} does not fit {self.name} as configured now: "
-                f"{str(error).splitlines()[0]} Choose another folder, or delete it."
+                f"The checkpoint {path} does not match the current config of {self.name}: "
+                f"{str(error).splitlines()[0]} Choose another folder, or delete {self.folder}."
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])

@@ -173,9 +173,9 @@ class _Worker:
         what = f"worker {self.number} ended with code {code}"
         if self.deaths >= DEATHS or self.objective is None:
             raise WorkersDied(
-                f"The {what}, for the second time. With a code below 0 it was killed, most likely "
-                "because the memory ran out. Checkpoints are complete. Run the same command again "
-                "with fewer processes: workers=1, or 0 for none."
+                f"The {what}, for the second time. A negative code means that the process was "
+                "killed, most likely because memory ran out. The checkpoints are complete. Run the "
+                "same command again with fewer processes: workers=1, or workers=0 for none."
             )
         self.deaths += 1
         say(f"{what}; a new one repeats its work")

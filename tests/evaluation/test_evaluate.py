@@ -49,7 +49,7 @@ def test_default_folder_depends_on_depth_severity_and_world():
 @pytest.mark.parametrize("option", ["finetune.lr=9", "++cost.evaluation=4"])
 def test_evaluate_rejects_options_of_trainings(tmp_path, option):
     cfg = conf.load_config("evaluate", [option, f"runs={tmp_path}"])
-    with pytest.raises(ValueError, match="is an option for trainings"):
+    with pytest.raises(ValueError, match="is a training option"):
         evaluate.run(cfg, [option])
     assert not list(tmp_path.iterdir())
 

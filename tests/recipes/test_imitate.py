@@ -97,7 +97,7 @@ def test_imitate_rejects_weights_of_unknown_losses():
     out = Output(losses={"waypoints": torch.ones(())})
     check_losses(agent, {**agent.loss_weights, "waypoints": 0.5}, out)
     with pytest.raises(
-        ValueError, match=r"has a weight of 'waypoint', which decide.* are waypoints"
+        ValueError, match=r"has a weight for 'waypoint', but decide.* are waypoints"
     ):
         check_losses(agent, {"waypoint": 0.5}, out)
 

@@ -143,7 +143,7 @@ class LeaderboardEntry:
         """Write the entry to ``path`` as JSON, atomically.
 
         Raises:
-            ValueError: :func:`load` would reject the entry.
+            ValueError: If :func:`load` would reject the entry.
         """
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
         _validated(_ADAPTER, text, f"{path}: ")
@@ -168,8 +168,8 @@ def load(path: Path | str) -> LeaderboardEntry:
 
     Raises:
         FileNotFoundError: If the file does not exist.
-        ValueError: the file has more than :data:`LARGEST` bytes, a key is missing or unknown, or a
-            value has a wrong type, length or range. The message names the file and the key.
+        ValueError: If the file has more than :data:`LARGEST` bytes, if a key is missing or unknown,
+            or if a value has a wrong type, length or range. The message names the file and the key.
     """
     path = Path(path)
     if not output.is_regular(path):

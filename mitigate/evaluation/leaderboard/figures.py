@@ -38,8 +38,9 @@ def entry_of(
         **texts: sensors, training_data and link of the entry.
 
     Raises:
-        ValueError: If no rows match; the rows mix several splits, episode lists, suites, rules, or
-            agents that are not training seeds of one column; or a condition lacks episodes.
+        ValueError: If no rows match, or if a condition lacks episodes. It is also raised if the
+            rows mix several splits, episode lists, suites or success rules, or agents that are not
+            training seeds of one column.
     """
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
@@ -70,9 +71,10 @@ def entry_of(
 
 
 def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
-    """Return a text on the seeds and conditions in ``rows`` that the entry omits.
+    """Return a text that lists the seeds and conditions in ``rows`` that the entry omits.
 
-    Only rows of the entry's agent count. If the entry omits nothing, return "".
+    Only rows with the name, split, severity, suite and success rule of the entry are considered. If
+    the entry omits nothing, the text is empty.
     """
     comparable = [
         row

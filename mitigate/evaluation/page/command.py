@@ -48,8 +48,8 @@ def run(
 
     Raises:
         FileNotFoundError: If a path contains no rows.
-        ValueError: If rows are damaged, a name does not occur in them, ``options`` are given
-            without ``walk``, or ``out`` does not end in .html.
+        ValueError: If rows are damaged, or if a name does not occur in them. It is also raised if
+            ``options`` are given without ``walk``, or if ``out`` does not end in .html.
     """
     from mitigate.evaluation import rows
     from mitigate.evaluation.page import document

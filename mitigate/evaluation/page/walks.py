@@ -105,7 +105,8 @@ def walk_again(
         seed: corruption seed.
 
     Raises:
-        ValueError: If an agent has no rows, no episode can be chosen, or the world has no poses.
+        ValueError: If an agent has no rows, if no episode can be chosen, or if the world has no
+            poses.
     """
     if POSE not in world.sensors:
         raise ValueError(
@@ -150,15 +151,15 @@ def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
     """Return the rows of the agents in ``hashes`` (by name).
 
     Raises:
-        ValueError: If all rows with the name of an agent belong to agents with different hashes.
+        ValueError: If there are rows with the name of an agent, but none of them has its hash.
     """
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})
         if others and agent_hash not in others:
             raise ValueError(
                 f"The rows of {name} belong to the agent {', '.join(others)}, but the given "
-                f"weights belong to the agent {agent_hash}. Name the weights and the options "
-                "(agent=..., env.views=1) that gave the rows."
+                f"weights belong to the agent {agent_hash}. Pass the weights and the options "
+                "(agent=..., env.views=1) with which the rows were produced."
             )
     return [row for row in rows if hashes.get(row["name"]) == row["agent"]]
 

@@ -185,8 +185,9 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Draw a bar chart with one panel per measure; each condition has a bar for before and one for
-    after training.
+    """Draw a bar chart with one panel per measure.
+
+    Each condition has two bars: one before training and one after training.
     """
     measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
     figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")

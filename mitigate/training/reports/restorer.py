@@ -180,8 +180,10 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views of one time step in their corrupted, restored and clean versions. The
-    time step is chosen so that its drawn views show the least of near walls (:func:`_far`).
+    """Draw three views of one time step in their corrupted, restored and clean versions.
+
+    The time step is the one with the largest :func:`_far`, so that no drawn view shows mostly a
+    near wall.
 
     Returns:
         A uint8 RGB picture with one row per corruption, or None if no corruption applies to the

@@ -98,7 +98,10 @@ def choose(name: str) -> Repairer:
     if safeguard is not None and not name.endswith(ALONE):
         return guarded(safeguard)
     if safeguard is None or safeguard.rewriter is None:
-        raise ValueError(f"{name} has no language model to use alone. Write lora{ALONE}.")
+        raise ValueError(
+            f"{name} must be a safeguard with a language model, which {ALONE} uses without the "
+            f"classifier. Choose lora{ALONE} or prompted{ALONE}."
+        )
     return alone(safeguard.rewriter)
 
 
