@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 # OpenMP reads this variable when torch is imported.
 # By default, a waiting OpenMP thread spins and occupies a core that other processes need.
-# Measured: a training step on 2 cores, while another process used one of them.
-# It took 2000 ms with the default and 450 ms with this setting.
-# Without the other process, it took 200 ms with either setting.
+# A training step was timed on 2 cores while another process used one of the cores.
+# The step took 2000 ms with the default and 450 ms with this setting.
+# Without the other process, the step took 200 ms with either setting.
 os.environ.setdefault("OMP_WAIT_POLICY", "PASSIVE")
 
 # ``commands/`` holds modules such as ``mitigate.train``, which torchrun starts with ``python -m``.

@@ -50,7 +50,7 @@ def load_config(primary: str, words: Iterable[str] = (), with_hydra: bool = Fals
 # saves time, because no imported object becomes garbage before the tests are collected
 gc.disable()
 conf.load_config = load_config
-SLOW_FIXTURES = {"cluster"}  # a Ray cluster takes long to start
+SLOW_FIXTURES = {"cluster"}  # starting a Ray cluster takes a long time
 for command in (
     *("train", "evaluate", "table1", "table2", "sweep", "harden", "run", "replay", "export_drive"),
 ):
@@ -85,7 +85,7 @@ def compile_kernels(share: int, workers: int) -> None:
         corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
 
 
-@pytest.hookimpl(tryfirst=True)  # runs before pytest-xdist reports the tests
+@pytest.hookimpl(tryfirst=True)  # runs before a pytest-xdist worker sends its list of tests
 def pytest_collection_finish() -> None:
     """Start the fork server with the modules that most workers import.
 

@@ -62,7 +62,7 @@ def files(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def folder(files) -> Path:
-    """The folder of :func:`page` after the page's commands, which train, evaluate and export."""
+    """The folder of :func:`files` after all commands of the page: train, evaluate and export."""
     for command in COMMANDS:
         run(files, *shlex.split(command)[1:])
     return files

@@ -1,10 +1,12 @@
 """Compare the results of two commits on one machine: ``python tools/compare.py COMMIT [COMMIT]``.
 
-The tool checks that moving or rewriting code has not changed results. In a checkout of each commit,
-the normal commands train two steps with every recipe, and evaluate every shipped agent in 20
-episodes under the whole suite. Weights and rows must be equal bit for bit. Training uses fp32,
-because older commits measured times to choose the precision. Bits differ between processors, so
-digests are valid only on one machine. They are stored in ``runs/compare`` for later comparisons.
+The tool checks that moving or rewriting code has not changed results. It runs the usual commands in
+a checkout of each commit. Every recipe trains for two steps, and every shipped agent is evaluated
+in 20 episodes under the whole suite. Weights and rows must be equal bit for bit.
+
+Training uses fp32, because older commits chose the precision by measured times, so their choice
+could differ between runs. Results differ slightly between processors, so digests are valid only on
+one machine. They are stored in ``runs/compare`` for later comparisons.
 
 By default, the second commit is the working tree. The exit status is 1 if anything differs.
 """
@@ -70,8 +72,9 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return the digests of a commit or of the working tree by name; the digests of a commit are
-    stored.
+    """Return the digests of a commit, or of the working tree if ``commit`` is None, by name.
+
+    The digests of a commit are stored in a file and reused.
     """
     digests: dict[str, str] = {}
     sha = commit and run(["git", "rev-parse", "--short=12", f"{commit}^{{commit}}"], ROOT).strip()

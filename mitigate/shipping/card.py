@@ -142,7 +142,7 @@ def readme(card: dict[str, Any]) -> str:
     """Return the README of a folder as Markdown, with Hugging Face's front matter."""
     parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card)]
     if not card["metrics"]:
-        parts.insert(2, "No evaluation rows were given when it was exported.")
+        parts.insert(2, "There are no metrics, because no result rows were given at export.")
     return front_matter(card) + "\n" + "\n\n".join(parts) + "\n"
 
 
@@ -191,24 +191,30 @@ def _origin(card: dict[str, Any]) -> str:
     depth = card["severity"] if card["severity_depth"] is None else card["severity_depth"]
     severities = f"{_span(card['severity'])} (depth {_span(depth)})"
     base = card["base"]
-    start = f", from `{base['weights']}` (sha256 `{base['sha256'][:12]}`)" if base else ""
+    start = (
+        f" Training started from `{base['weights']}` (sha256 `{base['sha256'][:12]}`)."
+        if base
+        else ""
+    )
     taught = "".join(
-        f", taught by `{t['weights']}` (sha256 `{t['sha256'][:12]}`)" for t in card["teachers"]
+        f" The teacher was `{t['weights']}` (sha256 `{t['sha256'][:12]}`)."
+        for t in card["teachers"]
     )
     kind = (
-        "These are adapters; the base they belong to is not in this folder"
+        "This folder contains adapters, without the base agent that they belong to"
         if card["adapters_only"]
-        else f"The weights are whole{', in float16' if card.get('program', True) else ''}"
+        else "This folder contains all weights of the agent"
+        f"{', in float16' if card.get('program', True) else ''}"
     )
     known = card["license"] != UNKNOWN
-    licence = f"licence {card['license']}" if known else "its licence is for its owner to name"
-    computed = f", trained in {card['precision']}" if card.get("precision") else ""
+    licence = f"Licence: {card['license']}." if known else "The agent's owner chooses the licence."
+    computed = f", precision {card['precision']}" if card.get("precision") else ""
     changed = ", with uncommitted changes" if card.get("uncommitted") else ""
-    commit = f", exported at commit `{card['commit']}`{changed}" if card["commit"] else ""
+    commit = f" Exported at commit `{card['commit']}`{changed}." if card["commit"] else ""
     return (
-        f"Recipe `{card['recipe']}`, severity {severities}, seed {card['seed']}{computed}, "
-        f"corruption suite {card['suite']}{start}{taught}.\n{kind}. {_hashes(card)}, "
-        f"{licence}{commit}."
+        f"Trained with the recipe `{card['recipe']}`: severity {severities}, seed {card['seed']}"
+        f"{computed}, corruption suite {card['suite']}.{start}{taught}\n{kind}. {_hashes(card)} "
+        f"{licence}{commit}"
     )
 
 
@@ -220,7 +226,8 @@ def _hashes(card: dict[str, Any]) -> str:
     exported, before = card["agent"], card.get("run_agent", card["agent"])
     rounded = f" (`{before}` before rounding)" if before != exported else ""
     names = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
-    return f"Weights `{exported}`{rounded}" + (f", in rows the agent {names}" if names else "")
+    rows = f" Result rows name this agent {names}." if names else ""
+    return f"The hash of the weights is `{exported}`{rounded}.{rows}"
 
 
 def _span(severity: float | list[float]) -> str:
@@ -258,13 +265,14 @@ def _use(card: dict[str, Any]) -> str:
     start = (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
         f"{', agent=Mine(...)' if of_user else ''})\n```\n\n"
-        f"{'Build the agent with the settings in `config.yaml`; it is filled in place. ' * of_user}"
-        f"Files are compared with the sha256 in `{listed}` first. "
+        f"{'Build the agent with the settings in `config.yaml`. ' * of_user}"
+        f"{'The weights are loaded into this object. ' * of_user}"
+        f"Before loading, every file is compared with its sha256 in `{listed}`. "
     )
     if not whole:
         return (
-            f"{start}A fresh process reloaded the folder and walked {card['checked']['walks']} "
-            "episodes to the same measures."
+            f"{start}At export, the agent was also loaded in a new process, where it ran "
+            f"{counted(card['checked']['walks'], 'episode')} with the same results."
         )
     times, checked = card["latency_ms"], card["checked"]
     rows = [
@@ -274,13 +282,14 @@ def _use(card: dict[str, Any]) -> str:
     ]
     table = markdown_table(["network", "fastest", "processor"], rows)
     return (
-        f"{start}`program.pt2` runs a decision "
-        "without this code; `program.json` describes its inputs. Where `program.pt2` is missing, "
-        "`mitigate export FOLDER --programs` writes it. Reloaded in a fresh process, "
-        f"the outputs on a fixed probe were equal within {checked['reload_tolerance']:g} (agent) "
-        f"and {checked['program_tolerance']:g} (program); float16 moved them by "
-        f"{checked['float16']:.2g}.\n\nMilliseconds, fastest of {times['calls']} "
-        f"calls and median processor time, threads: {times['threads']}.\n\n{table}"
+        f"{start}`program.pt2` computes a decision without the code of this project, and "
+        "`program.json` describes its inputs. If `program.pt2` is missing, "
+        "`mitigate export FOLDER --programs` writes it. At export, the files were loaded in a new "
+        "process. There, the outputs on a fixed probe differed by at most "
+        f"{checked['reload_tolerance']:g} (agent) and {checked['program_tolerance']:g} (program). "
+        f"Rounding to float16 changed the outputs by {checked['float16']:.2g}.\n\n"
+        f"Times in milliseconds on {counted(times['threads'], 'thread')}: the fastest of "
+        f"{times['calls']} calls, and the median processor time.\n\n{table}"
     )
 
 

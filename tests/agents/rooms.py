@@ -31,7 +31,7 @@ class Brief(ApartmentsWorld):
 
 
 class Corner(ApartmentsWorld):
-    """Apartments that offer only their first few places, so that only a few features are stored."""
+    """Apartments limited to their first 400 points, so that only a few features are stored."""
 
     def points(self) -> np.ndarray:
         return super().points()[:400]

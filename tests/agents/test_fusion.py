@@ -80,8 +80,8 @@ def test_learned_reliability_starts_with_equal_weights(views):
 
 
 def test_learned_reliability_learns_beyond_magnitudes():
-    """If features of equal magnitude replace views, the magnitude rule misses it, but a learned
-    score detects it."""
+    """If views are replaced by features of equal magnitude, the magnitude rule does not detect
+    this, but a learned score does."""
     torch.manual_seed(0)
     # the features that broken views get
     marks = torch.nn.functional.normalize(torch.randn(8, 64), dim=-1)

@@ -1,5 +1,4 @@
-"""Tests of encoder gates: features of frames that are classified as clean do not change by a
-bit."""
+"""Tests of encoder gates: the features of frames classified as clean stay bit-identical."""
 
 from __future__ import annotations
 

@@ -37,8 +37,8 @@ def example(name: str) -> str:
 
 
 class Network(nn.Module):
-    """Computes a chunk of actions from the brightness of the frame; like ACT, it also returns
-    None."""
+    """Computes a chunk of actions from the brightness of the frame. Like ACT, it returns a tuple
+    whose first element is the chunk."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,5 +1,7 @@
-"""Tests that untrusted recordings are read, or rejected with their name, within bounded memory and
-time."""
+"""Tests that untrusted recordings are either read, or rejected with an error that names them.
+
+Both cases must use little memory and time.
+"""
 
 from __future__ import annotations
 

@@ -44,8 +44,7 @@ def program(tmp_path):
 
 
 def finish_again(folder):
-    """Update the note of a finished condition to the number of episodes that its events now
-    report."""
+    """Mark the condition as finished, with the number of episodes that its events now report."""
     entries = json.loads((folder / "done.json").read_text())
     write_done(folder, entries | {"episodes_told": len(read(folder).ends)})
 

@@ -1,5 +1,7 @@
-"""Tests that interrupts, threads and forks cause no clean frame and no answer to the wrong
-message."""
+"""Tests of the hook and the server under interrupts, threads and forks.
+
+No frame may stay uncorrupted, and no answer may belong to another message.
+"""
 
 import signal
 import time

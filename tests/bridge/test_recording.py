@@ -102,7 +102,7 @@ def test_run_deletes_drafts_of_ended_processes(run, tmp_path):
 
 
 def test_recorder_keeps_a_recording_until_the_next_end(tmp_path):
-    """After the last episode, Habitat loops reset once more and start the first episode again."""
+    """After the last episode, Habitat's loops call reset, which starts the first episode again."""
     recorder, description = Recorder(tmp_path), {"scene": "k.glb", "id": "1"}
     recorder.episode(description)
     recorder.end({"kind": "end", "steps": 3})

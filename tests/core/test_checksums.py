@@ -40,7 +40,7 @@ def flipped(data: bytes, bit: int) -> bytes:
 
 
 def flips(data: bytes, name: str) -> list[bytes]:
-    """Yield ``data`` with one flipped bit, at ``FLIPS`` positions that depend on ``name``."""
+    """Return ``FLIPS`` copies of ``data``, each with one flipped bit; ``name`` is the seed."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
 

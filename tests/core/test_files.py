@@ -126,7 +126,7 @@ def text_to(path):
 
 
 def private(path):
-    """Like safetensors, replace the file by a new file with mode 0600."""
+    """Replace the file with a new file of mode 0600, as safetensors does."""
     path.unlink(missing_ok=True)
     os.close(os.open(path, os.O_CREAT | os.O_WRONLY, 0o600))
 

@@ -258,7 +258,7 @@ def test_replace_folder_replaces_the_whole_folder_or_nothing(tmp_path, name):
 
 
 def test_replace_folder_restores_the_old_folder_after_a_kill(tmp_path):
-    """A process was killed between the two renames of a folder, while another process is still
+    """One process was killed between the two renames of a folder. Another process is still
     writing."""
     target = tmp_path / "agent"
     killed = tmp_path / ".agent.01234567.999999999.tmp"

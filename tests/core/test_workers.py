@@ -131,7 +131,7 @@ def test_idle_worker_is_reported_and_not_killed(tmp_path, monkeypatch):
     monkeypatch.setattr(workers, "SECOND", 0.1)
     matches, message = run(Squares(tmp_path), groups("wait", ""))
     assert matches == {n: n**2 for n in range(6)}
-    # on a busy machine, other jobs may run as long
+    # on a busy machine, other jobs may also run long enough to be reported
     assert any("has been running number 1 for 1 s" in line for line in message)
 
 
@@ -201,7 +201,7 @@ sys.exit("an error")
 
 
 def test_error_ends_a_program_that_still_holds_its_workers(tmp_path):
-    """An error keeps its frames, and so the workers, until the interpreter ends."""
+    """The program never closes its workers, so they exist until the interpreter exits."""
     ended = subprocess.run(
         [sys.executable, "-c", HELD.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],

@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ("mitigate", "recipes", "tools")
-WRITERS = {  # names of functions, and of methods of any object, that write to a path
+WRITERS = {  # names of functions and methods that write to a path
     *("write_text", "write_bytes", "touch", "mkdir", "makedirs", "symlink_to", "hardlink_to"),
     *("imwrite", "savefig", "savez", "savez_compressed", "save_file", "save_pretrained", "memmap"),
     *("copy2", "copyfile", "copytree", "copymode", "FileHandler", "SummaryWriter", "Writer1"),

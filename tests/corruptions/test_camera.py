@@ -111,9 +111,10 @@ def test_warped_panorama_agrees_with_the_renderer(mount, world, clean):
 
 def test_renderer_shows_the_height(world, clean):
     low, high = (world.displaced(Mount(height=metres))[DEPTH] for metres in (-0.6, 0.6))
-    # in the last row, 45 degrees down, the depth of the floor equals the camera's height
+    # at the lower edge of the view, 45 degrees down, the depth of the floor is the camera's height
     below = np.s_[:, -1, 24, 0]
-    edge = 48 / 47  # correction, because the centre of the last of 48 rows is half a pixel higher
+    # the centre of the last of 48 rows is half a pixel above the lower edge of the view
+    edge = 48 / 47
     floor = np.isclose(clean[DEPTH][below], 1.25 * edge, atol=1e-3)
     assert floor.sum() >= 3
     assert np.allclose(low[below][floor], 0.65 * edge, atol=1e-3)

@@ -71,7 +71,7 @@ def test_motion_blur_is_a_line_filter_to_half_a_level(size, severity, scene):
     blurred = cv2.filter2D(frame.astype(np.float64), -1, line / line.sum(), borderType=border)
     exact = (0.5 - 0.5 * severity) * frame + (0.5 + 0.5 * severity) * blurred
     out = corrupt(frame, "motion_blur", severity, key=key)
-    assert np.abs(out - exact).mean() < 0.4  # 0.25 of this is rounding to grey levels
+    assert np.abs(out - exact).mean() < 0.4  # rounding to grey levels alone gives 0.25
     assert abs((out - exact).mean()) < 0.1 and np.abs(out - exact).max() < 4
 
 
@@ -177,7 +177,7 @@ def test_defocus_is_the_gaussian_blur_it_says(sigma, scene):
     kernels.blur.gaussian(frame[None], *kernels.gaussian_weights(sigma), out)
     border = cv2.BORDER_REPLICATE
     exact = cv2.GaussianBlur(frame.astype(np.float64), (0, 0), sigma, borderType=border)
-    assert np.abs(out[0] - exact).mean() <= 0.3  # 0.25 of this is rounding to grey levels
+    assert np.abs(out[0] - exact).mean() <= 0.3  # rounding to grey levels alone gives 0.25
     assert abs((out[0] - exact).mean()) < 0.03 and np.abs(out[0] - exact).max() < 2
 
 

@@ -147,7 +147,7 @@ class ListBlock(nn.Module):
 
 
 class ListNet(nn.Module):
-    """An encoder with four :class:`ListBlock` modules, for which rows of pixels are tokens."""
+    """An encoder with four :class:`ListBlock` modules. Each row of pixels is one token."""
 
     def __init__(self) -> None:
         super().__init__()

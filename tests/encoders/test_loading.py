@@ -57,7 +57,7 @@ def test_load_model_explains_an_invalid_model(model, kwargs, says, monkeypatch):
 
 
 def drawn(width: int = 8) -> torch.nn.Module:
-    """Return an encoder with random weights, except for the classifier's weights."""
+    """Return an encoder with random weights. Only the weights of its classifier are zero."""
     result = TinyNet(width=width)
     torch.nn.init.zeros_(result.fc.weight)
     return result

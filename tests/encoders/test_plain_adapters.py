@@ -1,5 +1,7 @@
-"""Tests that ``plain_adapters.py`` gives the same results as ``load_adapters``, runs no stored
-code, and works as a copy."""
+"""Tests that ``plain_adapters.py`` gives the same results as ``load_adapters``.
+
+It must run no code from the folder of adapters, and must work if users copy the file.
+"""
 
 from __future__ import annotations
 

@@ -78,7 +78,7 @@ def test_new_adapter_changes_nothing(encoder, gate):
 
 @pytest.mark.parametrize("gate", [False, True])
 def test_adapter_corrects_each_frame_separately(encoder, gate):
-    """Frames do not influence each other, even if they are not on the first axis."""
+    """Frames do not influence each other, even if the batch axis is not the first axis."""
     model, frames, target, _, _ = encoder
     insert_adapters(model, [target], run=lambda n: model(frames[:n]), gate=gate)
     shaken(model)

@@ -50,7 +50,7 @@ def test_random_agent_differs_between_episodes_of_one_text(monkeypatch, tmp_path
 
 @pytest.fixture
 def walked(monkeypatch):
-    """Return a list to which the ids of all run episodes are added; every episode is a success."""
+    """Return a list that collects the id of each episode that is run; every episode succeeds."""
     ids: list[str] = []
 
     def walk(agent, world, episode, *others):

@@ -15,8 +15,11 @@ NAMES = ("one", "two", "three")
 
 
 def grid(*falls: tuple[int, int]):
-    """Return one column for each pair in ``falls``. In each column, 8 of 10 clean episodes succeed;
-    the pair gives the numbers of successes under missing data at 0.3 and 0.6."""
+    """Return a grid with one column per pair in ``falls``.
+
+    In each column, 8 of 10 clean episodes succeed. The pair contains the numbers of successes under
+    missing data at severity 0.3 and at severity 0.6.
+    """
     output = []
     for name, at in zip(NAMES, falls, strict=False):
         settings = {"name": name, "agent": name.ljust(12, "0")}

@@ -156,8 +156,8 @@ def test_keep_accepts_two_paths_of_one_file(tmp_path, monkeypatch):
 
 
 def test_keep_accepts_worlds_with_other_sensors_or_rules(tmp_path):
-    """The rows contain sensors and rule, so a folder may contain rows of agents with one camera and
-    with twelve."""
+    """Every row states its sensors and its success rule. One folder may therefore contain rows of
+    agents with one camera and rows of agents with twelve cameras."""
     for kind in ({}, {"size": 16}, {"rule": "near"}, {}):
         keep(tmp_path, of_config(**kind))
     with pytest.raises(ValueError, match=r"env\.world\.cells"):

@@ -465,8 +465,8 @@ def test_lists_with_common_episodes_share_a_table():
 
 
 def test_rows_at_severity_zero_are_not_clean_rows():
-    """If a corruption was also run at severity 0, the displayed severity once depended on the order
-    of a set."""
+    """A corruption may also be run at severity 0. In an earlier version, the displayed severity
+    then depended on the order of a set."""
     rows = column(8, {"flare": 0}) + [
         output | {"corruption": "flare", "severity": 0.0} for output in cell(8)
     ]

@@ -105,7 +105,7 @@ class Mortal(torch.nn.Module):
     """An agent that stops at once. In its third episode it kills its process, unless ``deaths``
     processes have been killed already."""
 
-    # defined, so that the fingerprint does not depend on the episode in which the process dies
+    # empty settings, because a fingerprint of the attributes would change with each episode
     settings = dict
 
     def __init__(self, folder, deaths=1):

@@ -1,4 +1,4 @@
-"""Tests that pictures of episodes agree with their rows, and of the choice of episodes."""
+"""Tests that pictures of episodes agree with their rows, and that the right episodes are drawn."""
 
 from __future__ import annotations
 

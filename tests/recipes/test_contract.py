@@ -1,4 +1,4 @@
-"""Tests of the messages of recipes for agents that implement only a part of the interface."""
+"""Tests of the errors that recipes raise if an agent implements only part of the interface."""
 
 from __future__ import annotations
 

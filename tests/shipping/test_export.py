@@ -191,7 +191,7 @@ def traced(place) -> Path:
 
 @pytest.fixture(scope="module")
 def exported(place) -> dict:
-    """The exported programs of `whole`, which are simple networks."""
+    """The exported programs of the agent `whole`. Simple networks replace the real programs."""
     return load_pt2(str(place / "hardened/whole/program.pt2")).exported_programs
 
 
@@ -234,7 +234,8 @@ def test_card_describes_the_agent_and_lists_every_file(place):
     text = (folder / "README.md").read_text()
     before, after = card["run_agent"], card["agent"]
     assert card["rows_agent"] == [ROWS] and before != after  # rounded to float16
-    assert f"Weights `{after}` (`{before}` before rounding), in rows the agent `{ROWS}`" in text
+    assert f"weights is `{after}` (`{before}` before rounding)." in text
+    assert f"Result rows name this agent `{ROWS}`." in text
     assert "Clean SR | 0.750 [" in text and "spatter" in text.lower()
     for kind in ("eager", "exported"):
         for name in ("perceive", "decide"):
@@ -552,7 +553,7 @@ def test_export_writes_nothing_if_reload_differs(place, exported, tmp_path, monk
 
 
 def test_check_detects_other_outputs(place, tmp_path):
-    """When the fixture exported ``whole``, the outputs were equal and the check passed."""
+    """The check passes with equal outputs, because the fixture ``place`` exports with it."""
     agent = loading.load_hardened(place / "hardened/whole")
     expected = programs.outputs(programs.networks(agent), programs.probe(agent, SIZE))
     expected["logits"] = expected["logits"] + 0.01
@@ -667,7 +668,7 @@ def test_card_states_uncommitted_changes(monkeypatch, tmp_path, change):
 
 def test_readme_states_what_is_known_of_the_commit(place):
     card = loading.read_card(place / "hardened/whole")
-    end = f"exported at commit `{card['commit']}`"
+    end = f"Exported at commit `{card['commit']}`"
     assert "uncommitted" in card
     assert f"{end}." in cards.readme(card | {"uncommitted": False})
     assert f"{end}, with uncommitted changes." in cards.readme(card | {"uncommitted": True})

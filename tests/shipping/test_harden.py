@@ -1,4 +1,4 @@
-"""Tests of hardening policies of other libraries without an expert: ``mitigate.harden``."""
+"""Tests of ``mitigate.harden``, which hardens policies of other libraries without an expert."""
 
 import gymnasium
 import numpy as np

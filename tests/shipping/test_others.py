@@ -83,8 +83,10 @@ class Silent:
 
 
 def test_attributes_are_compared_without_settings(tmp_path):
-    """Attributes are compared so that an evaluation and ``benchmark(load_hardened(...))`` compute
-    the same hash."""
+    """Attributes are compared with the stored settings, which then become the agent's settings.
+
+    As a result, an evaluation and ``benchmark(load_hardened(...))`` compute the same hash.
+    """
     config = tmp_path / "config.yaml"
     config.write_text(yaml.safe_dump({"agent": {"_target_": "mine.Silent", "gain": 1, "net": "a"}}))
     with pytest.warns(UserWarning, match=r"with gain=1, but the given agent has 5\.0"):

@@ -1,4 +1,4 @@
-"""Tests that estimates of the training time are as accurate as the measured times."""
+"""Tests that estimated training times are within 10 % of measured times."""
 
 from __future__ import annotations
 

@@ -1,5 +1,7 @@
-"""Tests that an invalid combination of agent, world and recipe is rejected before the first step,
-in one paragraph."""
+"""Tests that an invalid combination of agent, world and recipe is rejected before the first step.
+
+The error message must be one paragraph.
+"""
 
 from __future__ import annotations
 
@@ -34,7 +36,7 @@ OFF = "evaluation.enabled=false"
 
 
 def load(*options: str) -> TrainConfig:
-    """Return the typed options of a training run."""
+    """Return the options of a training run as a ``TrainConfig``."""
     return read(conf.load_config("train", [*options]))
 
 
@@ -327,7 +329,10 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """Return the stages of a training run after and before they are adapted to ``agent``."""
+    """Remove corruptions that ``agent`` does not read from the stages of a training run.
+
+    Return the new stages and the original stages.
+    """
     cfg = load(*options)
     before = copy.deepcopy(cfg.stages)
     plan.drop_unread_corruptions(cfg, agent)

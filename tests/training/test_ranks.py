@@ -1,4 +1,4 @@
-"""Tests that two ranks take the same training steps as one process with all pieces."""
+"""Tests that two ranks, which share the work, take the same training steps as one process."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ class Regression(Objective):
     def forward(self, batch):
         inputs = batch["inputs"]
         guess = self.line(inputs)
-        # number of inputs in the pieces of the first rank, or in all pieces
+        # the first of two ranks has 14 inputs; a single process has 34
         if len(inputs) in (14, 34):
             guess = guess + torch.cat([self.first(inputs[:4]), torch.zeros(len(inputs) - 4, 1)])
         values = {"loss": (guess - inputs.sum(1, keepdim=True)).square().mean()}
@@ -67,8 +67,8 @@ def torchrun(folder: Path, count: int) -> subprocess.CompletedProcess:
         "import os, sys, torch\nfrom pathlib import Path\n"
         "from mitigate.training import trainer\n"
         "from mitigate.training.ranks import Ranks\nfrom tests.training.test_ranks import train\n"
-        # Only one rank may find that bf16 is faster.
-        # All ranks therefore use the precision that the first rank chose.
+        # The two ranks choose different precisions, as they may on different processors.
+        # All ranks must use the precision that the first rank chose.
         "trainer.choose = lambda *_: ('fp32', 'bf16')[int(os.environ['RANK'])]\n"
         "folder = Path(sys.argv[1])\n"
         "with Ranks.of_environment() as ranks:\n"

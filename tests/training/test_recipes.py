@@ -36,7 +36,7 @@ LITTLE = {  # sizes that make the training data of a stage small
     "variants": 1,
 }
 RECIPES = sorted(path.stem for path in (conf.CONF / "recipe").rglob("*.yaml"))
-QUICK = ("ts_distill",)  # testing all other recipes takes long
+QUICK = ("ts_distill",)  # testing all other recipes takes a long time
 
 
 def some_slow(names, quick):

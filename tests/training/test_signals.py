@@ -1,4 +1,4 @@
-"""Tests that a signal ends training after saving, and that the run resumes to the same result."""
+"""Tests that a signal makes training save and stop, and that resuming gives the same result."""
 
 from __future__ import annotations
 

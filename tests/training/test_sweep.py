@@ -52,7 +52,7 @@ def test_list_is_one_value_and_not_a_sweep():
 
 @pytest.mark.parametrize("value", [[], ["runs=sweeps/default"], ["command=evaluate", "jobs=2"]])
 def test_sweep_without_combinations_shows_help_and_runs_nothing(value, monkeypatch, fake, capsys):
-    """The option ``runs=`` alone is no combination; ``make sweep`` always passes it."""
+    """The option ``runs=`` does not count as a combination; ``make sweep`` always passes it."""
     monkeypatch.setattr(sys, "argv", ["mitigate sweep", *value])
     assert sweep.main() == 2 and not fake
     printed = capsys.readouterr()

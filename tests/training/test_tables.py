@@ -269,7 +269,7 @@ def test_additional_evaluation_limits_episodes(tmp_path, table, requests, walked
 @pytest.mark.slow
 def test_null_column_or_evaluation_is_left_out(tmp_path):
     null = ["columns.base=null", "evaluations.pairs=null", "+evaluations.mine=null"]
-    # fewer columns, because the options of each column are composed and checked
+    # fewer columns, because composing and checking the options of each column takes time
     columns = less("table2", ["base", "da_per_frame"])
     cfg = load("table2", f"out={tmp_path}", "evaluations=beyond", *null, *columns)
     output = tables.cells(cfg)
@@ -324,7 +324,7 @@ def test_rows_of_another_severity_are_told(tmp_path):
 
 
 def test_clean_rows_alone_make_a_report(tmp_path):
-    """A table may have only clean rows at a severity, as the tables of ablations do."""
+    """A table may have no corrupted rows, as in the tables of ablations."""
     rows.write(tmp_path / "rows.jsonl", column(8, {}))
     cfg = config(tmp_path / "out", rows=[str(tmp_path / "rows.jsonl")])
     report = tables.make_table(cfg).read_text(encoding="utf-8")

@@ -3,7 +3,7 @@ evaluation and the renderer.
 
     make bench ARGS="--seconds 0.2 --steps 1"
 
-Training stages and one evaluation run in other processes. All other measurements run in this
+Training stages and one evaluation are run in separate processes. All other measurements run in this
 process, on one thread. ``--write`` inserts the tables into ``docs/benchmarks.md``; use it on an
 idle machine.
 """

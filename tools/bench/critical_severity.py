@@ -4,8 +4,8 @@
 coverage of the 95 % intervals for agents with known success curves (about 2 CPU minutes).
 
 A simulated agent succeeds in a clean episode with probability 0.9. Each of these episodes has a
-limit: under corruption, the agent succeeds at severities below the limit. A fraction of the
-episodes has no limit. In a fraction of all cases, success is random instead.
+limit: under corruption, the agent succeeds at severities below the limit. Some episodes have an
+infinite limit: the agent succeeds at every severity. In some cases, success is random instead.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ FIRST = 0.6  # severity at which a search starts
 LOSSES = (0.1, 0.5)
 GRID = np.linspace(0, 1, 21).round(2)
 RESAMPLES = 1000
-CENSORED = 1.0  # value that errors use for a critical severity above 1
+CENSORED = 1.0  # replaces a critical severity above 1 when errors are computed
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Curve:
     """Parameters of a simulated agent's success curve.
 
     Attributes:
-        mean, deviation: normal distribution of the limits.
-        tough: fraction of the episodes that have no limit.
-        random: fraction of the cases in which success is random.
+        mean, deviation: mean and standard deviation of the limits, which are normally distributed.
+        tough: fraction of the episodes that have an infinite limit.
+        random: fraction of the corrupted episodes in which success is random.
     """
 
     mean: float

@@ -25,8 +25,9 @@ GRADE = 3  # severity for the library imagecorruptions, from 1 to 5
 
 
 def peers(rgb_views: np.ndarray, depth_views: np.ndarray, severity: float) -> dict[str, Calls]:
-    """Return the functions of every library that can be imported; print a line for each other
-    library.
+    """Return the functions of every library that can be imported.
+
+    Print a line for each library that cannot be imported.
 
     Args:
         rgb_views: uint8 [V, H, W, 3].

@@ -5,8 +5,8 @@
 CI trains once with all instructions of the processor, and once with the instructions of an older
 processor (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
 (``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that other programs hardly
-influence the CPU seconds of a step. The cheapest step of a stage is used, because other programs
-only add time. The first step is a warm-up and is not used.
+influence the CPU seconds of a step. In each stage, the step with the fewest CPU seconds is used,
+because other programs can only make a step slower. The first step is a warm-up and is not used.
 """
 
 from __future__ import annotations
@@ -44,8 +44,9 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def step_costs(run: Path) -> dict[str, float]:
-    """Return the CPU seconds of each stage's cheapest step, without the first step, from
-    TensorBoard files.
+    """Return, by stage, the fewest CPU seconds of a step. The first step is ignored.
+
+    The CPU seconds are read from TensorBoard files.
 
     Raises:
         FileNotFoundError: If the folder contains no stages.
@@ -54,8 +55,8 @@ def step_costs(run: Path) -> dict[str, float]:
     stages = sorted({file.parent for file in run.glob("*/events.out.tfevents.*")})
     if not stages:
         raise FileNotFoundError(
-            f"{run} holds no stage with TensorBoard files. Name the folder of a training run, "
-            "which holds config.yaml."
+            f"{run} contains no stage with TensorBoard files. Name the folder of a training run, "
+            "which contains config.yaml."
         )
     return {stage.name: _cheapest(stage) for stage in stages}
 
@@ -75,7 +76,7 @@ def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, fl
 
 
 def _cheapest(stage: Path) -> float:
-    """Return the CPU seconds of a stage's cheapest step, without the first step."""
+    """Return the fewest CPU seconds of a step in a stage. The first step is ignored."""
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     events = EventAccumulator(str(stage), size_guidance={"scalars": 0})  # 0: keep all

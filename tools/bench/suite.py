@@ -47,7 +47,7 @@ class Cost:
 
     @property
     def best_peer(self) -> tuple[str, float] | None:
-        """Return the fastest other library and its milliseconds."""
+        """Return the fastest of the other libraries and its time in milliseconds."""
         return min(self.peers.items(), key=lambda item: item[1]) if self.peers else None
 
 

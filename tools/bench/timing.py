@@ -1,7 +1,7 @@
 """Measure the milliseconds of a call in the steady state, and of calls with new parameters.
 
-Other programs only make a call slower, so the time in the steady state is the minimum over
-many equal calls. Calls with new random parameters are not equal, so their median is used.
+Other programs can only make a call slower, so the time in the steady state is the minimum over
+many equal calls. Calls with new random parameters take different times, so their median is used.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from datetime import date
 from importlib import metadata
 from pathlib import Path
 
-# number of different calls that are repeated in the steady state, like the frames of an episode
+# number of different inputs that the timed calls of the steady state repeat in a cycle
 CYCLE = 8
 LEAST = 5  # minimum number of measured calls, even if they take longer than the given time
 PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")
 
 
 def steady(call: Callable[[int], object], seconds: float) -> float:
-    """Return the shortest time of ``call(i)`` in milliseconds, averaged over i < ``CYCLE``."""
+    """Return the mean over i < ``CYCLE`` of the shortest time of ``call(i)``, in milliseconds."""
     fastest = [float("inf")] * CYCLE
     call(0)  # compiles
     end = time.perf_counter() + seconds

@@ -3,9 +3,10 @@
     python -m tools.bench.training da_per_episode ts_distill --steps 8
 
 Each stage runs as ``make train`` runs it, with a worker process per core. The tool measures three
-times: of a whole step, of waiting for the batch, and of the forward pass, backward pass and update.
-Then the tool computes the same batches in its own process and times each part of the computation.
-``make bench`` runs the tool twice: with all processor instructions, and with AVX2 at most.
+durations: a whole step, the wait for the batch, and the computation (forward pass, backward pass
+and update). Then the tool computes the same batches in its own process and times each part of the
+computation. ``make bench`` runs the tool twice: with all processor instructions, and with AVX2 at
+most.
 """
 
 from __future__ import annotations
@@ -43,7 +44,7 @@ RECIPES = (
     "safeguard_lora",
 )
 CAPS = {"ONEDNN_MAX_CPU_ISA": "AVX2", "ATEN_CPU_CAPABILITY": "avx2"}
-# number of apartments; small, because generating them counts little in a long training run
+# number of apartments; in a long training run, the time to generate them is negligible
 LAYOUTS = 8
 NETWORK = "network"
 PARTS = {  # parts of computing a batch; each function is given by module, class (or None) and name

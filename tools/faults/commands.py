@@ -104,8 +104,9 @@ def resident_bytes(pid: int) -> int:
 
 @contextmanager
 def answering() -> Iterator[tuple[int, list[str]]]:
-    """Yield the port of a chat endpoint that answers each text with the same text, and the list of
-    requests.
+    """Yield the port of a chat endpoint that returns each text unchanged.
+
+    Also yield the list of the texts that it receives.
     """
     requests: list[str] = []
 
@@ -255,7 +256,7 @@ def break_commands(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     for name in faults:
         try:
             outcomes[name] = FAULTS[name](commands) or "survived"
-        except (ValueError, OSError) as error:  # the folder should be complete, but is damaged
+        except (ValueError, OSError) as error:  # an exported folder is damaged or incomplete
             outcomes[name] = str(error)
     shutil.rmtree(out, ignore_errors=True)
     return outcomes

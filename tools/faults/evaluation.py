@@ -74,7 +74,7 @@ def kill_worker(evaluation: Evaluation) -> str:
 
 
 def pause_worker(evaluation: Evaluation) -> str:
-    """Stop a worker process for some seconds."""
+    """Pause a worker process for three seconds."""
     command = evaluation.start_and_wait()
     pids = workers(command)
     if not pids:
@@ -107,8 +107,9 @@ def cut_row(evaluation: Evaluation) -> str:
 
 
 def kill_with_rows(evaluation: Evaluation) -> bytes:
-    """Kill the evaluation when it has written some rows, and return the rows; return b"" if it
-    ended before.
+    """Kill the evaluation after it has written some rows, and return the rows.
+
+    Return b"" if the evaluation ended before it could be killed.
     """
     command = evaluation.start_and_wait(least=3)
     if not command.runs():

@@ -69,7 +69,7 @@ class Command:
         return self.process.poll() is None
 
     def wait_for(self, condition: Callable[[], object], seconds: float = TIMEOUT) -> bool:
-        """Wait until ``condition()`` is true, the command ends or the time is over.
+        """Wait until ``condition()`` is true, the command ends or ``seconds`` have passed.
 
         Return whether the condition is true.
         """

@@ -75,7 +75,7 @@ class Training:
         return Command(self.arguments, log, environment, redirect)
 
     def start_and_wait(self, environment: dict[str, str] | None = None) -> Command:
-        """Start or resume the training run, and wait for a random time in it."""
+        """Start or resume the training run, and wait for a random time after a stage starts."""
         command = self.start(environment)
         command.wait_for(lambda: STAGE_START in command.output())
         command.wait_for(lambda: False, self.rng.uniform(0.0, max(2.0, 0.25 * self.seconds)))
@@ -237,7 +237,7 @@ def kill_worker(training: Training) -> str:
 
 
 def pause_workers(training: Training) -> str:
-    """Stop the worker processes for some seconds."""
+    """Pause the worker processes for three seconds."""
     command = training.start_and_wait()
     pids = workers(command)
     for number in (signal.SIGSTOP, signal.SIGCONT):
@@ -313,9 +313,7 @@ def close_stdout(training: Training) -> str:
 
 
 def print_in_ascii(training: Training) -> str:
-    """Train with an output encoding that lacks some characters until a checkpoint exists, and
-    stop.
-    """
+    """Train for a random time with an output encoding that is limited to ASCII, and stop."""
     environment = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
     return training.send_signal(training.start_and_wait(environment), signal.SIGTERM)
 

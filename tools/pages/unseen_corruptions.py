@@ -1,4 +1,7 @@
-"""Generate the page ``docs/unseen-corruptions.md`` with formulas, halves and strengths."""
+"""Generate the page ``docs/unseen-corruptions.md``.
+
+The page contains the formula, the half (validation or test) and the strength of each corruption.
+"""
 
 from __future__ import annotations
 

@@ -86,7 +86,7 @@ def half_of(text: str) -> str:
 
 
 def bank(name: str, half: str, authors: Sequence[str] = AUTHORS) -> list[dict[str, Any]]:
-    """Return the lines of a text collection that are from these authors and belong to one half."""
+    """Return the entries of a text collection that are by ``authors`` and in the given half."""
     lines = []
     for author in authors:
         file = FRESH / author / f"{name}.jsonl"

@@ -1,6 +1,4 @@
-"""Hooks for MkDocs that add pages from outside ``docs/`` and generated reference pages, and correct
-links.
-"""
+"""Hooks for MkDocs: add generated reference pages and pages from outside ``docs/``; fix links."""
 
 from __future__ import annotations
 
@@ -28,7 +26,7 @@ CODE = re.compile(
     r"<pre.*?</pre>|<code.*?</code>|<span class=\"doc doc-object-name.*?</span>", re.S
 )
 BREAK = re.compile(r"([_./=,:(\[]+)(?=\w)")  # characters after which a long name may be broken
-NAME = re.compile(r"(?<![&\w])[^\s<>&]{16,}")  # long names, outside tags and HTML entities
+NAME = re.compile(r"(?<![&\w])[^\s<>&]{16,}")  # long names that are not in a tag or an HTML entity
 CELL = re.compile(r"<td([^>]*)>(.*?)</td>", re.S)
 # a line of a help text: name and meaning
 OPTION = re.compile(r"^ {0,4}(\S+(?: \S+)*)(?: {2,}(.*))?$")

@@ -1,5 +1,6 @@
-"""Harden a policy of another library with several seeds, or add a guard to it. Compare the results
-before and after on known and unseen corruptions.
+"""Harden a policy of another library with several seeds, or add a guard to it.
+
+The success of the policy before and after is compared under known and unseen corruptions.
 
     python -m tools.third_party.results vizdoom_basic --seeds 0 1 2
     python -m tools.third_party.results vizdoom_basic --method ppo --set w_kl=0.1

@@ -205,8 +205,8 @@ def test_constructor_rejects_invalid_arguments():
 
 
 def test_state_separates_last_and_summed_attention():
-    """``last`` and ``sum`` once shared a tensor, so that training rollouts followed a different
-    policy."""
+    """In an earlier version, ``last`` and ``sum`` shared a tensor. As a result, training rollouts
+    followed a different policy."""
     new_agent = agent()
     state = State.start(new_agent.policy.read(new_agent.tokens(["go left", "go right"])))
     fresh = State(state.hidden[:1] + 1, state.last[:1] + 0.1, state.sum[:1] + 0.7)

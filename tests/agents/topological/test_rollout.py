@@ -93,7 +93,7 @@ def test_oracle_stops_at_the_goal():
 
 @pytest.mark.parametrize("metres", [0.2, 0.5, 1.5])
 def test_oracle_stops_only_where_it_counts(monkeypatch, metres):
-    """If success requires a smaller distance, the oracle only stops later."""
+    """The oracle continues until its distance to the goal counts as success."""
     free, _ = traces_of(1.0)
     monkeypatch.setattr(RoomWorld, "rule_metres", metres)
     bound, _ = traces_of(1.0)

@@ -1,5 +1,6 @@
-"""An agent's program for the real habitat-lab 0.3 and this file's simulator; it does not import
-mitigate.
+"""A program that runs an agent in the real habitat-lab 0.3, with the simulator in this file.
+
+The program does not import mitigate.
 
 usage: lab_agent.py OUT EPISODES.json.gz
 
@@ -63,7 +64,7 @@ from habitat.core.simulator import AgentState, SensorSuite, Simulator  # noqa: E
 
 @registry.register_simulator(name="Plane-v0")
 class Plane(Simulator):
-    """An infinite plane, whose frames are read by habitat-lab's RGB and depth sensors."""
+    """A simulator of one infinite plane, which habitat-lab's RGB and depth sensors observe."""
 
     def __init__(self, config):
         agent = config.agents.main_agent

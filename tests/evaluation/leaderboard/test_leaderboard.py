@@ -1,4 +1,4 @@
-"""Tests that entries have the same figures as their rows, and as a new run of a shipped agent."""
+"""Tests that the figures of leaderboard entries match their rows and a repeated evaluation."""
 
 from __future__ import annotations
 

@@ -33,8 +33,7 @@ def made_rows() -> list[dict]:
 
 
 def made_walk(rows: list[dict]) -> dict:
-    """Return the data of a page on which ``base`` runs the first episode again, clean and under
-    spatter."""
+    """Return the page's data about one episode, which ``base`` repeats clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,

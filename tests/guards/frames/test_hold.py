@@ -67,7 +67,7 @@ def test_hold_keeps_its_own_copy_of_a_frame():
 
 
 class Camera:
-    """A world whose first frame is white in the first episode and black in all later frames."""
+    """A world whose very first frame is bright; all later frames, in any episode, are black."""
 
     rule, sensors, done = "STOP", {}, False
 

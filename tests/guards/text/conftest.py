@@ -1,4 +1,4 @@
-"""Fixtures: a chat model of a few thousand weights, in a folder of transformers."""
+"""Fixtures: a tiny chat model, saved in the format of the transformers library."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Tests of the CI check that fails if training with fewer processor instructions is much slower."""
+"""Tests of the CI check that fails if training is much slower when it is limited to AVX2."""
 
 from __future__ import annotations
 
@@ -62,7 +62,7 @@ def test_main_ignores_noise_in_some_steps(tmp_path):
 @pytest.mark.parametrize(
     ("costs", "words"),
     [
-        ({}, "holds no stage with TensorBoard files"),
+        ({}, "contains no stage with TensorBoard files"),
         (
             {"perception": (1.0, 1.0), "imitation": (1.0, 1.0)},
             "logged the cost of 2 steps, fewer than 3",

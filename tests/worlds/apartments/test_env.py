@@ -25,8 +25,10 @@ def episodes():
 
 
 def actions_for(name: str, count: int) -> list[int]:
-    """Return random actions; the run of an episode is the seed, and about every tenth action is
-    STOP."""
+    """Return random actions; ``name``, the name of an episode's run, is the seed.
+
+    About every tenth action is STOP.
+    """
     return [int(a) for a in generator("walk", name).choice(4, count, p=[0.1, 0.5, 0.2, 0.2])]
 
 

@@ -1,7 +1,7 @@
 """A fake habitat-lab for tests: it makes the same calls in the same order, in a tiny world.
 
 The code runs on Python 3.6 to 3.13. The bridge wraps the same methods here as in habitat-lab 0.1.5
-to 0.3. Like there, the simulator and the task use the same class of sensor suites, a task resets
+to 0.3. As in habitat-lab, the simulator and the task use the same sensor-suite class, a task resets
 the simulator, and an Env updates the measures.
 """
 
