@@ -1,8 +1,8 @@
 """The four depth corruptions of the standard suite, for float32 panoramas [V, H, W] in metres.
 
-A pixel is invalid where z <= 0, NaN or infinite. Invalid pixels are returned unchanged and do not
-affect their neighbours. Only ``missing_data`` makes valid pixels invalid. All other valid depth is
-clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
+A pixel is invalid if its depth is 0, negative, NaN or infinite. Invalid pixels are returned
+unchanged and do not affect their neighbours. Only ``missing_data`` makes valid pixels invalid. All
+other valid depth is clipped to [0.001, z_max]. Formulas and sources: docs/corruptions.md.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from mitigate.corruptions.keying import (
 )
 from mitigate.corruptions.record import Record
 
-# half the side of the square in which an echo is searched for, as a fraction of min(H, W)
+# half the side length of the square in which an echo is searched for, as a fraction of min(H, W)
 ECHO_REACH = 0.03
 ECHO_GAP = 2.5  # metres
 ECHO_STRENGTH = 0.9
@@ -125,7 +125,7 @@ def _echo(views, reach, polynomial, z_max, out):
 
 
 def echo_reach(height: int, width: int) -> int:
-    """Return half the side of the square that ``multipath`` searches, in pixels."""
+    """Return half the side length, in pixels, of the square that ``multipath`` searches."""
     return max(1, round(ECHO_REACH * min(height, width)))
 
 
@@ -153,8 +153,10 @@ _U = np.uint64
 
 @njit(cache=True)
 def _add_noise(views, streams, base, square, z_max, table, out):
-    """Add noise to blocks of 256 pixels, so that the table look-ups are separate from the
-    vectorised arithmetic.
+    """Add noise in blocks of 256 pixels.
+
+    For each block, a first loop reads normal random numbers from the table. The arithmetic is in a
+    second loop, because the compiler can vectorise it only without table look-ups.
     """
     draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):

@@ -1,6 +1,6 @@
 """Define the range of a depth camera, and which of its pixels are valid.
 
-A pixel is invalid if z <= 0, NaN or infinite.
+A pixel is invalid if its depth is 0, negative, NaN or infinite.
 """
 
 from __future__ import annotations
@@ -86,15 +86,16 @@ def _is_near(pixels, limit):
 
 
 def check_unit(views: np.ndarray, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth [V, H, W] is far beyond z_max: then it is not in metres.
+    """Raise ValueError if nearly all depth values [V, H, W] are far beyond z_max.
 
-    Clipping such depth to the sensor's range would give a flat wall.
+    Such values are probably not in metres. Clipping them to the sensor's range would give a flat
+    wall.
     """
     if not _is_near(views.reshape(-1), np.float32(MAX_RANGES * sensor.z_max)):
         median = float(np.median(views[(views > 0) & (views < np.inf)]))
         raise ValueError(
             f"Depth must be in metres, but nearly all of it is far beyond the sensor's z_max of "
             f"{sensor.z_max:g} m (median {median:g}). If it is in millimetres, divide it by 1000, "
-            "or set unit=mm for a folder of PNG. If it is in metres, use a sensor with a larger "
-            "z_max."
+            "or set unit=mm for a folder of PNG files. If it is in metres, use a sensor with a "
+            "larger z_max."
         )

@@ -7,8 +7,8 @@ Bayer pattern, and the three channels of a row have the same row noise. Negative
 to 0, which brightens dark areas, as in real cameras.
 
 Sampling a channel needs two table look-ups. One table contains photon counts by signal level and
-quantile; the other one contains quantiles of read noise. The bits of one hash per pixel are the
-indices.
+quantile; the other one contains quantiles of read noise. One hash is computed per pixel. Its bits
+select the quantiles for all three channels.
 """
 
 from __future__ import annotations
@@ -27,12 +27,12 @@ from mitigate.corruptions.masks import low_light_mask
 WHITE = 15583.0  # sensor units at full scale, which are 14 bits minus the black level (Sony A7S2)
 DARKEST = 300.0  # exposure ratio at severity 1; ELD trains with ratios of 100 to 300
 GAMMA = 2.2
-# The camera calibration from the paper begins with the range of the gain K.
-# Two noise components then have (a, b) of ln(sigma) = a * ln(K) + b.
+# The calibration of the camera is from the paper: GAINS is the range of the gain K.
+# READ and ROW are the numbers (a, b) in ln(sigma) = a * ln(K) + b for read noise and row noise.
 GAINS = (0.0939, 6.011)
 READ = (0.4621, 0.5657)
 ROW = (0.5275, -0.5917)
-LEVELS = 4 * 255 + 1  # number of signal levels in the photon table, in quarters of a grey level
+LEVELS = 4 * 255 + 1  # signal levels in the photon table: grey levels 0 to 255 in steps of 1/4
 PHOTON_BITS = 8
 READ_BITS = 12
 

@@ -108,10 +108,10 @@ class Settings:
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
 
-    The frames of an episode are numbered in the order of their file names, in which digits are
-    compared as numbers ("9" is before "10"). A damaged file keeps its number. RGB and depth frames
-    are numbered separately. A file that is already in ``out`` is not written again. A temporal
-    fault repeats frames of earlier files of the episode.
+    The frames of an episode are numbered in the natural order of their file names: "9" is before
+    "10". A damaged file keeps its number. RGB and depth frames are numbered separately. A file
+    that is already in ``out`` is not written again. A temporal fault repeats frames of earlier
+    files of the episode.
 
     Args:
         source: Folder with frames.
@@ -287,7 +287,7 @@ def earlier_summary(out: Path, settings: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _check_episodes(out: Path, earlier: dict[str, Any], episodes: dict[str, list[str]]) -> None:
-    """Raise ValueError if the frames of an earlier run have other numbers now."""
+    """Raise ValueError if the numbers of the frames have changed since an earlier run."""
     try:
         recorded = [(n, int(e["frames"]), e["names"]) for n, e in earlier["episodes"].items()]
     except (ValueError, KeyError, TypeError, AttributeError) as error:

@@ -73,8 +73,8 @@ def modality(path: Path) -> str:
     if (bits, colour) in ((8, 2), (16, 0)):
         return RGB if colour == 2 else DEPTH
     raise LeftOutError(
-        f"is a {bits}-bit {COLOUR_TYPES.get(colour, 'unknown')} PNG: RGB must be 8-bit RGB without "
-        "alpha, depth 16-bit grey"
+        f"is a {bits}-bit {COLOUR_TYPES.get(colour, 'unknown')} PNG: an RGB frame must be 8-bit "
+        "RGB without alpha, and a depth frame must be 16-bit grey"
     )
 
 
@@ -158,8 +158,8 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         z_max: Maximum depth of the camera in metres.
 
     Raises:
-        ValueError: If most PNG depth values are at least ``z_max``, or no NPY depth value exceeds
-            1, so the values may be normalised depth.
+        ValueError: If most PNG depth values are at least ``z_max``, so the unit is probably wrong,
+            or no NPY depth value exceeds 1, so the values are probably normalised.
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
@@ -212,7 +212,7 @@ def _decode(path: Path) -> np.ndarray:
     except Exception as error:  # decoders raise many kinds of errors for untrusted files
         raise LeftOutError(f"cannot be decoded: {error}") from error
     if mode not in ("RGB", "I;16"):
-        raise LeftOutError(f"has the colours {mode}: RGB must be 8-bit RGB")
+        raise LeftOutError(f"has the colour mode {mode}: an RGB frame must be 8-bit RGB")
     return pixels
 
 
@@ -340,6 +340,6 @@ def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
 
 
 def natural(name: str) -> tuple:
-    """Return a sort key for names in which digits are compared as numbers."""
+    """Return a sort key for the natural order of names, in which "9" is before "10"."""
     parts = re.split(r"([0-9]+)", name)
     return tuple(int(p) if i % 2 else p for i, p in enumerate(parts)), name

@@ -13,8 +13,9 @@
   episode     folder (default): each folder is an episode, with frames in the order of their names;
               all: all frames are one episode
   unit        unit of depth in 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025. The
-              default is mm; then the command first checks that depth may be in mm (and in metres
-              in NPY). unit=m skips this check for NPY.
+              default is mm. Without this option, the command first checks whether the values
+              are plausible: as mm in PNG files, and as metres in NPY files. Any value of this
+              option, such as unit=m, skips the check.
   format      output format of a JPEG: png (default) keeps every pixel; same writes a JPEG with the
               same name, at quality 95. For the videos of a LeRobot dataset, png writes lossless
               H.264 in RGB, and same uses the codec of the original, which is lossy.

@@ -2,8 +2,8 @@
 
 The parts of a key are hashed to a 64-bit blake2b digest. An integer hash (splitmix64, Steele et al.
 2014) of the digest and a counter gives the random numbers. Global state, Python's ``hash()`` and
-stateful generators are not used. Therefore a frame gets the same pixels in any batch, process,
-order or resumed run.
+stateful generators are not used. Therefore the pixels of a frame do not depend on its batch, on the
+process, or on the order in which frames are corrupted. A resumed run gives the same pixels.
 
 Tables and masks are computed in float64 and then rounded to fixed point or float32. Kernels use
 only basic arithmetic. Therefore pixels do not depend on the last bit of functions such as ``exp``,
@@ -49,7 +49,7 @@ GOLDEN = 0x9E3779B97F4A7C15  # splitmix64 increment
 MIX_A, MIX_B = 0xBF58476D1CE4E5B9, 0x94D049BB133111EB  # splitmix64 multipliers
 MASK = (1 << 64) - 1
 # This is log2 of the size of the table of normal quantiles, which covers +-3.7.
-# The table has 16 KB and fits into the L1 cache.
+# The table takes 16 KB, so it fits into the L1 cache.
 NORMAL_BITS = 12
 FIELD_SIDE = 128  # number of cells along the shorter side of a random field, for all frame sizes
 # maximum number of cells along the longer side; for aspect ratios beyond 32:1, cells get longer
@@ -111,8 +111,9 @@ def as_key(key: Key | int | str) -> Key:
 
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
-    """Return the hash state of seed, episode and name, which callers copy and extend, and its
-    digest.
+    """Hash seed, episode and name; return the state of the hash function and the 64-bit digest.
+
+    The state is cached, so callers must copy it before they add the frame.
     """
     text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
     state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
@@ -120,9 +121,10 @@ def _episode_hash(seed: int, episode: str, name: str) -> tuple:
 
 
 def digest(key: Key, name: str, *, frame: bool = False) -> int:
-    """Return the 64-bit digest for the random number ``name``, either per episode or per frame.
+    """Return the 64-bit digest that seeds the random numbers called ``name``.
 
-    View number k of a frame uses ``scramble(digest, k)``.
+    The digest differs between episodes; with ``frame=True``, it also differs between frames. View
+    number k of a frame uses ``scramble(digest, k)``.
     """
     state, value = _episode_hash(int(key.seed), str(key.episode), name)
     if not frame:
@@ -133,8 +135,9 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Return output number ``counter`` of the splitmix64 stream with the seed ``value``; this
-    version uses Python integers.
+    """Return the output with the index ``counter`` of splitmix64 with the seed ``value``.
+
+    This version uses Python integers; ``mix`` is the compiled version.
     """
     z = (value + (counter + 1) * GOLDEN) & MASK
     z = ((z ^ (z >> 30)) * MIX_A) & MASK
@@ -143,9 +146,7 @@ def scramble(value: int, counter: int) -> int:
 
 
 def uniform(value: int, counter: int = 0) -> float:
-    """Return output number ``counter`` of the stream ``value`` as a uniform number in [0, 1) with
-    53 bits.
-    """
+    """Convert ``scramble(value, counter)`` to a uniform random number in [0, 1) with 53 bits."""
     return (scramble(value, counter) >> 11) * 2.0**-53
 
 
@@ -165,7 +166,7 @@ def _fill_streams(value, out):
 
 
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
-    """Return one digest per view of a frame for the random number ``name``, uint64 [views]."""
+    """Return one seed per view of a frame for the random numbers ``name``, uint64 [views]."""
     out = np.empty(views, np.uint64)
     _fill_streams(_U(digest(key, name, frame=True)), out)
     return out
@@ -195,7 +196,7 @@ def _fill_normals(value, table, out):
 
 
 def normals(value: int, count: int) -> np.ndarray:
-    """Return ``count`` standard normal numbers from the stream ``value``, float32 [count]."""
+    """Return ``count`` standard normal numbers, float32 [count]; ``value`` is the seed."""
     out = np.empty(count, np.float32)
     _fill_normals(_U(value), normal_table(), out)
     return out
@@ -273,9 +274,9 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
     frame exceeds 32:1, the cells are longer.
 
     Args:
-        value: Random stream.
-        height: Pixels.
-        width: Pixels.
+        value: Seed of the random numbers.
+        height: Height of the frame in pixels.
+        width: Width of the frame in pixels.
         correlation: Standard deviation of the smoothing kernel as a fraction of the shorter side.
 
     Returns:
@@ -291,7 +292,10 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_place(cells: int, share: float) -> int:
-    """Return the index, among the sorted cells, at which the highest fraction ``share`` begins."""
+    """Return the index of the smallest cell that is in the highest fraction ``share`` of the cells.
+
+    The cells are sorted in ascending order.
+    """
     return cells - round(share * cells)
 
 

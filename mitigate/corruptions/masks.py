@@ -93,11 +93,11 @@ def covered(views: np.ndarray, alpha: np.ndarray, colour: np.ndarray) -> np.ndar
 
 
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return the terms whose sum gives ``light_ramp``.
+    """Return one term per image row and one per column, from which ``light_ramp`` is computed.
 
     Returns:
-        The terms of the rows (float32 [H]), the terms of the columns (float32 [W]), and whether the
-        ramp is the square root of their sum.
+        One term per row (float32 [H]), one term per column (float32 [W]), and a flag. If the flag
+        is True, the ramp is the square root of the sum of both terms; otherwise, it is the sum.
     """
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
@@ -204,7 +204,8 @@ def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray,
     ``glow_table``.
 
     Returns:
-        The terms of the rows (float32 [H]) and of the columns (float32 [W]).
+        The squared vertical distance of each row (float32 [H]), and the squared horizontal distance
+        of each column (float32 [W]).
     """
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2

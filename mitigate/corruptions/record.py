@@ -16,7 +16,8 @@ import numpy as np
 from mitigate.corruptions.keying import Key
 
 MODALITIES = ("rgb", "depth", "instruction")
-FRAMES = "rgb+depth"  # modality of faults that affect both sensors, or the only available one
+# modality of faults that change RGB and depth; one of the two sensors is enough
+FRAMES = "rgb+depth"
 ACTION = "action"  # modality of motion faults
 OF_NO_FRAME = ("instruction", ACTION)  # modalities of corruptions that do not change frames
 TEMPORAL, CAMERA, MOTION = "temporal", "camera", "motion"
@@ -114,9 +115,7 @@ class Record:
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The modalities that are corrupted; a fault that affects both sensors corrupts those
-        available.
-        """
+        """The corrupted modalities; a fault of both sensors also works without one of them."""
         return tuple(self.modality.split("+"))
 
     @property

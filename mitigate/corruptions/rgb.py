@@ -19,14 +19,15 @@ from mitigate.corruptions.keying import Key, digest, scramble, uniform
 from mitigate.corruptions.record import Record
 
 BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernels are 3 to 14 % of W
-LONG_BLUR = 12.0  # minimum length in px of lines for which every second column is enough
+LONG_BLUR = 12.0  # lines of at least this length in px have taps only in every second column
 # maximum angle to the horizontal in degrees; it is small, because robots mostly turn in yaw
 BLUR_ANGLE = 10.0
 # sigma at severity 1 as a fraction of min(H, W); ImageNet-C disks have radii of 3 to 10 px at 224
 DEFOCUS_SIGMA = 5.0 / 224.0
 DEFOCUS_SPREAD = 0.2
 DEFOCUS_LEAST = 0.15  # minimum sigma in px; a narrower Gaussian has no effect
-# minimum sigma as a multiple of the tap distance; the mean error is then below 0.4 grey levels
+# If taps are more than one pixel apart, sigma is at least this multiple of the distance.
+# The mean error of the blur is then below 0.4 grey levels.
 LEAST_TAP_SIGMA = 1.15
 BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 
@@ -35,10 +36,11 @@ BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
     """Return the taps (dy, dx, weights) of a line with a length in px and an angle in radians.
 
-    The number of taps is a multiple of four. Only every ``step``-th column has taps. The weight of
-    a column is the fraction of it that the line covers, divided between the two nearest rows.
-    Weights are small integers. A fully covered column has the weight LINE_UNITS / length, which is
-    at least 2.
+    The number of taps is a multiple of four. Only every ``step``-th column has taps; it stands for
+    a strip of ``step`` pixels. The weight of a strip is proportional to the part of its width that
+    the line covers. This weight is split between the two rows that are nearest to the line. Weights
+    are small integers. A fully covered strip has the weight ``step * LINE_UNITS / length``, rounded
+    down, but at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step
@@ -123,8 +125,9 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
     """Return the arguments ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px; the
     kernel ends at 3 sigma.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The taps add the
-    remaining variance; their sigma is at least LEAST_TAP_SIGMA times their distance.
+    Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The weighted taps add
+    the remaining variance. A level of smoothing is used only if the sigma of the taps is still at
+    least LEAST_TAP_SIGMA times the distance between two taps.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:
@@ -139,7 +142,7 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
 
 
 def defocus_sigma(severity: float, key: Key, height: int, width: int) -> float:
-    """Return the sigma in pixels with which ``defocus`` blurs."""
+    """Return the sigma of the Gaussian blur of ``defocus`` in pixels."""
     spread = 1.0 + DEFOCUS_SPREAD * (2.0 * uniform(digest(key, "defocus")) - 1.0)
     return DEFOCUS_SIGMA * severity * spread * min(height, width)
 

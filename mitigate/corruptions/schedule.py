@@ -138,7 +138,8 @@ class Schedule:
         rates; the other modes keep uniform weights.
 
         Raises:
-            ValueError: If no rate of a corruption is known, or a rate is outside [0, 1].
+            ValueError: If a corruption has neither a new nor an earlier rate, or a rate is outside
+                [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]

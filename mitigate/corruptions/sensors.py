@@ -22,7 +22,8 @@ from mitigate.corruptions.keying import Key, digest, mix, normal_table, uniform,
 from mitigate.corruptions.record import Record
 
 PUBLISHED = 0.5  # severity at which errors have their published size
-BIAS = "systematic error"  # constant during an episode, if the camera has one
+# the error that is sampled once per episode, for cameras that have such an error
+BIAS = "systematic error"
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,7 @@ class Profile:
 
 # The Kinect for Xbox 360 uses structured light.
 # Axial and lateral noise are from Nguyen, Izadi and Lovell 2012.
-# They hold for surfaces that face the camera, with images that are 640 pixels wide.
+# The noise is valid for surfaces that face the camera, in images that are 640 pixels wide.
 # Steps of 1/8 pixel are from Barron and Malik 2013, and the range is from the datasheet.
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
@@ -63,14 +64,14 @@ KINECT_V1 = Profile(
 # Steps of 1/32 pixel and the range come from the datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
 # The camera scans with a laser.
-# Indoors, the datasheet gives a standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m.
-# It gives a mean error of 5 mm at 1 m and 14 mm at 9 m.
+# The datasheet gives an indoor standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m.
+# The datasheet gives a mean error of 5 mm at 1 m and 14 mm at 9 m.
 REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
 # The camera uses time of flight.
 # The datasheet gives a standard deviation of up to 17 mm and the range of the narrow mode.
-# It gives a systematic error of up to 11 mm + 0.1 %.
+# The datasheet gives a systematic error of up to 11 mm + 0.1 % of the depth.
 # Tolgyessy et al. 2021 confirm these values.
 AZURE_KINECT = Profile(sd=(0.017, 0.0, 0.0), offset=0.011, scale=0.001, far=3.86)
 

@@ -156,8 +156,10 @@ class FrameStream:
                 del past[0]
 
     def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
-        """Return the frame that arrives, with the other corruptions of the step at which it was
-        recorded.
+        """Return the frame that the agent receives in the time step of ``key``, fully corrupted.
+
+        The temporal faults in ``parts`` may select an older frame. All other corruptions are
+        applied with the key of the time step at which this frame was recorded.
         """
         frame_shown = key.frame
         for late in (part for part in parts if shows_past(part)):

@@ -214,8 +214,8 @@ def _check_pair(name: str) -> None:
         gated = registry.record(names[-1])
         if names[0] != GATE or gated.modality in OF_NO_FRAME or gated.family == TEMPORAL:
             raise ValueError(
-                f"{GATE!r} must be the first name of a pair. The second one must be a corruption "
-                f"of frames that is not a temporal fault, got {name!r}. An example is "
+                f"{GATE!r} must be the first name of a pair, and the second name must be a "
+                f"corruption of frames that is not a temporal fault, got {name!r}. An example is "
                 f"{GATE}+spatter."
             )
     if len(names) != 2 or names[0] == names[1]:
@@ -234,8 +234,8 @@ def check_gate(corruption: Corruption) -> Corruption:
     """
     if corruption.name == GATE:
         raise ValueError(
-            f"{GATE!r} must be the first name of a pair: it limits the second corruption to "
-            f"intervals. An example is {GATE}+spatter."
+            f"{GATE!r} must be the first name of a pair, such as {GATE}+spatter. The second "
+            "corruption of the pair is then active only in intervals."
         )
     return corruption
 
@@ -289,9 +289,9 @@ def corrupt(
         name: One of NAMES, or any other registered corruption of frames.
         severity: Severity in [0, 1]; 0 returns a bit-exact copy.
         key: Key of the random numbers. An int sets only the seed, and a str sets only the episode.
-        heading: Heading of the agent in radians, counter-clockwise, with which a flare keeps its
-            direction in the world. If the heading is None (unknown), a flare keeps its position in
-            view 0.
+        heading: Heading of the agent in radians, counter-clockwise, or None if it is unknown. If
+            the heading is known, a flare keeps its direction in the world; otherwise, it keeps its
+            position in view 0.
         sensor: Depth range, and the value that marks missing depth.
         hfov: Horizontal field of view in degrees; camera faults need it.
 

@@ -309,8 +309,8 @@ def _is_between(value: object, below: float) -> bool:
 def _metres(depth: np.ndarray) -> np.ndarray:
     """Set invalid depth to 0, and check that the values can be metres.
 
-    If the values cannot be metres, this raises a ValueError; its message is a predicate without a
-    subject.
+    If the values cannot be metres, this raises a ValueError. Its message begins with a verb,
+    because the caller puts the path of the file before it.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]

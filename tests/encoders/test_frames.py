@@ -213,7 +213,7 @@ def test_folder_frames_name_an_unreadable_picture(tmp_path, spoil):
         Image.new("L", (12, 12)).save(file)
     else:
         file.write_bytes(file.read_bytes()[:-200])
-    says = "has the colours L" if spoil == "grey" else "cannot be decoded"
+    says = "has the colour mode L" if spoil == "grey" else "cannot be decoded"
     with pytest.raises(ValueError, match=f"{file} {says}.*remove it from the folder"):
         collect(FolderFrames(str(tmp_path)), TRAIN, 1, 0)
 

@@ -1,10 +1,10 @@
 """Sample the primitives of a composition and their strengths, and compute random maps for
 primitives.
 
-A primitive is a function. Its arguments are views, a strength in (0, 1], and two random generators:
-``rng`` for the episode and ``now`` for the frame. It returns views of the same shape. Constants
-without a source were chosen by this project. They were fixed before any agent that was trained with
-them was evaluated under unseen corruptions.
+A primitive is a function that returns a changed copy of views, of the same shape. Its arguments are
+the views, a strength in (0, 1], and two random generators: ``rng`` for the episode and ``now`` for
+the frame. Constants without a source were chosen by this project. At that time, no agent trained
+with them had been evaluated under unseen corruptions.
 """
 
 from __future__ import annotations

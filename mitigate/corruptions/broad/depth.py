@@ -17,7 +17,7 @@ NAME = "broad_depth"
 
 
 def curve(views, strength, rng, now):
-    """Scale and offset depth, and add an error that is a sine of depth."""
+    """Scale and offset depth, and add a sine wave that is a function of depth."""
     scale, offset = 1.0 + 0.5 * strength * rng.uniform(-1, 1), 0.1 * strength * rng.uniform(-1, 1)
     waves, phase = rng.uniform(1.0, 8.0), rng.uniform(0, 2 * np.pi)
     wave = 0.04 * strength * rng.random() * np.sin(2 * np.pi * waves * views + phase)
@@ -130,8 +130,9 @@ def _fill(rng: np.random.Generator) -> float:
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view. Holes are filled with the maximum range before, and restored
-    afterwards.
+    """Apply ``change`` to each view.
+
+    Before the change, holes are filled with the maximum range. After it, they are holes again.
     """
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])

@@ -1,9 +1,10 @@
 """Faults are corruptions of timing, camera mounting and motion, which a single frame does not show.
 
-Each fault is a pure function ``draw(severity, key)``. A temporal fault samples the age of the frame
-that arrives. A camera fault samples the displacement of the camera. A motion fault samples how an
-action is executed. Faults keep no state: ``mitigate/corruptions/stream.py`` keeps the last frames,
-and ``mitigate/worlds/motion.py`` the last action.
+Most faults have a pure function ``draw(severity, key)``, which describes one time step. For a
+temporal fault, it returns how many frames old the frame is that the agent receives. For a camera
+fault, it returns the displacement of the camera. For a motion fault, it returns how the action is
+executed. Faults keep no state: ``mitigate/corruptions/stream.py`` keeps the last frames, and
+``mitigate/worlds/motion.py`` keeps the last action.
 """
 
 from mitigate.corruptions.faults import camera, motion, temporal

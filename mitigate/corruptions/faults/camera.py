@@ -4,11 +4,12 @@ The function ``draw(severity, key)`` of a record returns the displacement (a ``M
 constant in an episode. Some worlds render the frames of the displaced camera (``World.displaced``).
 All other frames are transformed by a homography. It is exact for a pinhole camera with square
 pixels whose rotation or field of view changes. Pixels that the original camera did not see are
-black, or have no depth reading. A change of height needs rendering.
+black, or have no depth reading. A change of height cannot be computed from a frame: the world must
+render it.
 
-The cameras of a panorama form a rigid rig: all views move together. For a camera that looks
-sideways, pitch of the rig is roll. In a pair of corruptions, the camera fault is applied first. The
-ranges are heuristic.
+The cameras of a panorama form a rigid rig: all views move together. If the rig pitches, a camera
+that looks sideways rolls. In a pair of corruptions, the camera fault is applied first. The ranges
+are heuristic.
 """
 
 from __future__ import annotations
@@ -37,7 +38,7 @@ _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the las
 
 @dataclass(frozen=True)
 class Mount:
-    """A displacement of the camera, or of the rig of a panorama.
+    """A displacement of the camera (or of the rig of a panorama), or a change of its field of view.
 
     Attributes:
         height: Metres up.
@@ -198,7 +199,7 @@ def camera_yaw(severity: float, key: Key) -> Mount:
 
 
 def camera_fov(severity: float, key: Key) -> Mount:
-    """Return the displacement of a camera with a wider or narrower field of view."""
+    """Return a change of the horizontal field of view, which becomes wider or narrower."""
     return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
 
 

@@ -44,20 +44,21 @@ class Movement:
 
 
 def motion_slip(severity: float, key: Key) -> Movement:
-    """Return a movement that is too short, by a random fraction that differs in each step."""
+    """Return a ``Movement`` that is too short by a random fraction, which differs in each step."""
     remaining = 1.0 - severity * SLIP * uniform(digest(key, "motion_slip", frame=True))
     return Movement(gain=remaining, turn=remaining)
 
 
 def motion_drift(severity: float, key: Key) -> Movement:
-    """Return a movement that drifts to one side; the side is constant in an episode."""
+    """Return a ``Movement`` that drifts to one side; the side is constant in an episode."""
     side = 1.0 if uniform(digest(key, "motion_drift")) < 0.5 else -1.0
     return Movement(drift=severity * side)
 
 
 def motion_gain(severity: float, key: Key) -> Movement:
-    """Return a movement whose gains for forward steps and turns have constant errors, sampled
-    separately.
+    """Return a ``Movement`` with wrong gains for forward steps and for turns.
+
+    The two errors are sampled separately, and are constant in an episode.
     """
     value = digest(key, "motion_gain")
     gain, turn = (1.0 + severity * GAIN * (2.0 * uniform(value, i) - 1.0) for i in range(2))
@@ -65,12 +66,12 @@ def motion_gain(severity: float, key: Key) -> Movement:
 
 
 def dropped_action(severity: float, key: Key) -> Movement:
-    """Return the function that moves the robot, and that may ignore the command of this step."""
+    """Return a ``Movement`` that drops the action with a probability of 0.5 * severity."""
     return Movement(dropped=_happens(severity, key, "dropped_action"))
 
 
 def repeated_action(severity: float, key: Key) -> Movement:
-    """Return a movement that may execute the previous command instead of the current one."""
+    """Return a ``Movement`` that repeats the previous action with probability 0.5 * severity."""
     return Movement(repeated=_happens(severity, key, "repeated_action"))
 
 

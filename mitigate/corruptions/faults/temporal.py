@@ -1,10 +1,13 @@
 """Temporal faults: frames that arrive late, repeatedly or not at all.
 
-The function ``draw(severity, key)`` of a record returns the age, in frames, of the frame that
-arrives; the current frame has age 0. The age depends only on the severity and the key, so the
-arriving frame is a pure function of severity, key and the sequence of frames. Other corruptions of
-an old frame use the key of the step at which it was taken, so its noise is as old as its image. All
-views and both sensors fail together, except in ``depth_lag``.
+The function ``draw(severity, key)`` of a record returns the age, in frames, of the frame that the
+agent receives; the current frame has age 0. The age depends only on the severity and the key, so
+the received frame is a pure function of severity, key and the sequence of frames. Other corruptions
+of an old frame use the key of the step at which it was taken, so its noise is as old as its image.
+All views and both sensors fail together, except in ``depth_lag`` and ``exposure_flicker``.
+
+Three faults work differently. ``dropped_frames`` and ``exposure_flicker`` change pixels.
+``intermittent`` returns whether the other corruption of its pair is active.
 
 All durations are heuristic: no published model fits all robots. Each step of an episode gives one
 frame. In the apartments and in Habitat, a step is 0.25 m or 15 degrees.
@@ -26,8 +29,8 @@ BURST_PERIOD, LONGEST_BURST = 8, 6  # in frames; each period has one burst
 ACTIVE_PERIOD, ACTIVE = 20, 10  # in frames; each period has one interval of ``intermittent``
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
 GAMMA = 2.2  # exponent of a power law that approximates sRGB
-OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # maximum age in frames that a fault can sample
-# as the first name of a pair, it limits the second corruption to intervals
+OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # maximum age in frames that a fault can return
+# name of the fault that makes the second corruption of a pair active only in intervals
 GATE = "intermittent"
 
 
@@ -39,11 +42,11 @@ def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) 
     interval does not depend on the interval's length.
 
     Args:
-        name: Name of the random number.
-        period: Frames per period.
+        name: Name that is hashed with the key to get the random numbers of this fault.
+        period: Length of a period in frames.
         longest: Maximum length of an interval in frames.
-        length: Frames per interval.
-        key: Seed, episode and frame.
+        length: Length of an interval in frames.
+        key: Key of the current time step.
     """
     phase = int(period * uniform(digest(key, name)))
     number, place = divmod(key.frame + phase, period)
@@ -53,15 +56,13 @@ def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) 
 
 
 def frozen_frame(severity: float, key: Key) -> int:
-    """Return the age of the frame that arrives; a freeze repeats the last frame before it."""
+    """Return the age of the received frame; a freeze repeats the frame before it."""
     length = round(severity * LONGEST_FREEZE)
     return _frames_inside("frozen_frame", FREEZE_PERIOD, LONGEST_FREEZE, length, key)
 
 
 def repeated_frames(severity: float, key: Key) -> int:
-    """Return the age of the frame that arrives; a burst of lost frames repeats the last frame
-    before it.
-    """
+    """Return the age of the received frame; a burst of lost frames repeats the frame before it."""
     length = round(severity * LONGEST_BURST)
     return _frames_inside("burst", BURST_PERIOD, LONGEST_BURST, length, key)
 
@@ -107,7 +108,8 @@ def intermittent(severity: float, key: Key) -> bool:
 
 _drawn = partial(Record.drawn, TEMPORAL)
 _applied = partial(Record.of, source="heuristic", version="1", family=TEMPORAL)
-_INTERVALS = {"episode": "phase", "frame": "start"}  # what an interval's place depends on
+# the random values from which the position of an interval is computed
+_INTERVALS = {"episode": "phase", "frame": "start"}
 RECORDS = (
     _drawn(
         FRAMES,

@@ -23,8 +23,9 @@ def check_text(text: str) -> None:
 def is_english(language: str | None, text: str = "") -> bool:
     """Return whether a text is in English, by its language code or language name.
 
-    The codes "en" and "en-US", for example, mean English, in upper or lower case. If no language is
-    given (None or empty), at least half of the letters in ``text`` must be Latin.
+    A text is in English if its code or name begins with "en", in upper or lower case: for example
+    "en", "en-US" or "English". If no language is given (None or empty), at least half of the
+    letters in ``text`` must be Latin.
     """
     if language:
         return language.lower().startswith("en")

@@ -48,11 +48,12 @@ from mitigate.corruptions.suite import SUITE_VERSION, Corruption, corrupt
 
 UNUSED = ("episode", "unit", "no_reading")  # options that apply only to folders of frames
 MAX_LISTED = 5  # maximum number of files that are printed
-# keys in the info of a feature with which lerobot describes the encoder of the original video
+# keys (after the prefix "video.") in a feature's info that describe how the video was encoded
 ENCODER_KEYS = ("g", "crf", "preset", "fast_decode", "extra_options", "video_backend")
 
 
-Instant = tuple[float, int, int]  # time of a frame in its video, its episode and its number there
+# a frame: its time in the video file, the number of its episode, and its index in the episode
+Instant = tuple[float, int, int]
 
 
 @dataclass
@@ -92,8 +93,8 @@ def run(
     """Write a corrupted copy of a dataset.
 
     The key of a frame is the seed, the name of the episode (such as "episode-000003") and the frame
-    number in the episode. Therefore all cameras get the same random numbers at one time. The
-    metadata keeps the statistics of the original dataset.
+    number in the episode. Therefore all cameras get the same random numbers in the same time step.
+    The metadata keeps the statistics of the original dataset.
 
     Args:
         source: Folder of the dataset.

@@ -155,7 +155,7 @@ class Dataset:
             )
 
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
-        """Read the features of a file of data/ that hold numbers, such as state and action.
+        """Read the numeric features, such as state and action, from a file in data/.
 
         Returns:
             For each feature of ``signals``, an array float64 [N, size].

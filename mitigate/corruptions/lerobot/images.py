@@ -31,8 +31,8 @@ def decode(data: object, camera: Camera) -> tuple[np.ndarray, str]:
         The image (uint8 [H, W, 3], uint16 [H, W] or float32 [H, W]) and the format of the file.
 
     Raises:
-        ValueError: The image is damaged, or has a wrong format, type or size. The message is a
-            predicate without a subject, which the caller adds.
+        ValueError: If the image is damaged, or has a wrong format, type or size. The message begins
+            with a verb, because the caller puts the name of the image before it.
     """
     if not isinstance(data, bytes):
         raise ValueError(
@@ -65,7 +65,7 @@ def metres(stored: np.ndarray, camera: Camera) -> np.ndarray:
 
 
 def store_depth(depth: np.ndarray, stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Convert corrupted metres to the type and unit of ``stored``.
+    """Convert corrupted depth from metres to the type and unit of ``stored``.
 
     Pixels that the corruption did not change keep their stored values.
     """

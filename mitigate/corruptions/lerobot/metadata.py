@@ -137,8 +137,10 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | str:
-    """Return the camera of a feature, or the reason why it cannot be used, as a predicate without
-    subject.
+    """Return the camera of a feature, or the reason why it cannot be used.
+
+    The reason begins with a verb ("has 2 dimensions instead of 3"), so that it can follow the name
+    of the camera.
     """
     shape, names = feature["shape"], feature.get("names")
     info = {

@@ -2,9 +2,10 @@
 ``mitigate/corruptions/keying.py``.
 
 There are few random numbers per row or view, such as angles and offsets, so the functions of the
-numpy suite sample them on the host. Random numbers per pixel are hashed on the device. Devices have
-no unsigned 64-bit integers, so a word is stored as an int64 with the same bits. Sums and products
-wrap around, and right shifts are masked.
+numpy suite sample them on the host. Random numbers per pixel are computed on the device with an
+integer hash. Devices have no unsigned 64-bit integers, so a word is stored as an int64 with the
+same bits. Sums and products wrap around, so their bits are those of unsigned integers. A right
+shift would copy the sign bit, so ``shifted`` sets the new bits to 0.
 """
 
 from __future__ import annotations
@@ -70,7 +71,7 @@ class Rows:
         return np.array(self.severities) * factor
 
     def digests(self, name: str, *, frame: bool = False) -> list[int]:
-        """Return one digest per row for the random number ``name``."""
+        """Return, for each row, the digest that seeds the random numbers called ``name``."""
         return [digest(key, name, frame=frame) for key in self.keys]
 
 
@@ -111,8 +112,7 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return the random 32-bit words of each view from which the random number ``name`` is
-    computed.
+    """Return the random 64-bit words of each view for the random numbers called ``name``.
 
     There is one word per counter; the result is int64 [B, V, *counters.shape].
     """
@@ -135,8 +135,9 @@ def _normal_table(device: torch.device) -> Tensor:
 
 
 def normals(words: Tensor, count: int) -> Tensor:
-    """Convert words, which give four numbers each, to ``count`` standard normal numbers, float32
-    [..., count].
+    """Convert random words to ``count`` standard normal numbers, float32 [..., count].
+
+    Each word (int64) gives four numbers.
     """
     quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits of a word come first
     places = (quarters >> 4) & 0xFFF

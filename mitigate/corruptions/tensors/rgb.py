@@ -112,7 +112,8 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
     decode = on_device([np.pad(t.decode, (0, span - t.decode.size)) for t in tables], views)
     offsets = on_device([256 * table.offset + 128 for table in tables], views).int()[number]
 
-    # computed in integers, because another signal level may change the grey level by more than one
+    # Integers give the same signal levels as in the numpy suite.
+    # A signal level that is wrong by one may change the grey level by more than one.
     light = UNIT - (darkness(views, rows) * UNIT + 0.5).clamp_(max=UNIT - 1.0).int()
     lines = torch.arange(views.shape[2], device=views.device).unsqueeze(1)
     place = shifted(view_words(rows, "row_noise", views, lines), 52)
@@ -169,16 +170,16 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 
 
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
-    """Return the kernel that ``blur.gaussian`` still has to apply along one axis, float64 [n].
+    """Return the kernel of ``blur.gaussian`` along one axis, without its first smoothing levels.
 
-    The kernel is applied after the smoothing at the levels below ``first``. Its taps are 2^first
-    pixels apart, and their sum is 1.
+    The kernel (float64 [n]) completes the blur after smoothing at the levels below ``first``. Its
+    taps are 2^first pixels apart, and their sum is 1.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)
     half, count = rgb.gaussian_weights(sigma)
     weights = half.astype(float)
-    weights[0] *= 2.0  # the table contains half of the centre weight
+    weights[0] *= 2.0  # the first of the weights is half the weight of the centre tap
     taps = np.concatenate([weights[:0:-1], weights])
     kernel = np.zeros((taps.size - 1) * 2 ** (count - first) + 1)
     kernel[:: 2 ** (count - first)] = taps / taps.sum()

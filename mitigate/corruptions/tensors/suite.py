@@ -194,7 +194,10 @@ def _check_frames(frames: Tensor, name: str, modality: str) -> None:
 
 
 def _check_unit(frames: Tensor, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth of a row is far beyond z_max, like ``check_unit``."""
+    """Raise ValueError if nearly all depth values of a row are far beyond z_max.
+
+    This is ``depth_sensor.check_unit`` for a batch.
+    """
     pixels = frames.flatten(1)
     sample = pixels[:, :: pixels.shape[1] // UNIT_SAMPLES + 1]
     valid = is_valid(sample)

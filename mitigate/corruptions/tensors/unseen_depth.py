@@ -47,7 +47,11 @@ def misalignment(views: Tensor, rows: Rows) -> Tensor:
 
 
 def wiggling(views: Tensor, rows: Rows) -> Tensor:
-    """Add a sine of depth; depth is rounded to the cells of the numpy table."""
+    """Add a sine wave that is a function of depth.
+
+    The numpy version reads this error from a table. To get the same error, the argument of the sine
+    is rounded to the depths in that table.
+    """
     phases = on_device([uniform(value) for value in rows.digests("wiggling")], views, 3)
     amplitudes = on_device(rows.scaled(calibration.WIGGLE), views, 3)
     clean = views.clamp(0.0, rows.sensor.z_max)

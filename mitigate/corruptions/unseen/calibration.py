@@ -54,9 +54,7 @@ def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
 
 
 def depth_offset(severity: float, key: Key, width: int) -> tuple[int, int]:
-    """Return the offset (down, right) in pixels of the source from which ``misalignment`` takes
-    depth.
-    """
+    """Return the offset (down, right), in pixels, at which ``misalignment`` reads each pixel."""
     value = digest(key, "misalignment")
     reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
     return round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0)), round(reach)

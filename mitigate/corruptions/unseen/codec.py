@@ -18,8 +18,8 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 # possible sides of a block in pixels, as in the transforms of H.264 and H.265
 BLOCKS = (4, 8, 16, 32)
 BLOCKS_ACROSS = 28  # number of blocks along the shorter side; blocks have 8 px at 224
-DEAD_ZONE = 0.40  # width of the dead zone as a fraction of white, at severity 1
-CHROMA = 2.0  # dead zone of the colour channels, relative to the dead zone of grey
+DEAD_ZONE = 0.40  # patterns of a smaller amplitude (as a fraction of white) are lost, at severity 1
+CHROMA = 2.0  # limit of the amplitude in the colour channels, relative to the limit in grey
 SLICES = 14  # number of slices per frame height; a macroblock has 16 px at 224
 LOST = 0.8  # fraction of lost slices at severity 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
@@ -136,8 +136,10 @@ def dead_zones(severity: float, side: int) -> np.ndarray:
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set those DCT coefficients of image blocks to 0 that lie in a dead zone of width 0.4 *
-    severity.
+    """Remove patterns with an amplitude below 0.4 * severity (1 is white) from image blocks.
+
+    The DCT coefficients of these patterns are set to 0. In the two colour channels, the limit of
+    the amplitude is twice as high.
     """
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)

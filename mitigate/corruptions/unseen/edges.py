@@ -19,8 +19,8 @@ from mitigate.corruptions.keying import Key, digest, mix, uniform, view_streams
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 FATTENING = 0.08  # reach as a fraction of the shorter side, at severity 1
-# A flying pixel mixes depth from a square around it.
-# This is half the side of that square, as a fraction of the shorter side of the frame.
+# A flying pixel gets a depth between the nearest and the farthest depth in a square around it.
+# This is half the side length of that square, as a fraction of the shorter side of the frame.
 FOOTPRINT = 0.03
 # baseline in metres at severity 1; the baseline of a Kinect is 0.075, the baseline of a ZED 0.12
 BASELINE = 0.50
@@ -42,8 +42,10 @@ def _fatten(views, reach, share, z_max, out):
 
 
 def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set each pixel to the smallest depth within a distance of 0.08 * severity of the shorter
-    side, as stereo matching with a window does.
+    """Set each pixel to the smallest depth in a square around it.
+
+    Window-based stereo matching makes this error. Half the side length of the square is 0.08 *
+    severity times the shorter side of the frame.
     """
     reach = FATTENING * severity * min(views.shape[1:])
     out, whole = np.empty_like(views), math.floor(reach)
@@ -68,7 +70,7 @@ def _fly(views, streams, reach, least, z_max, out):
 
 
 def footprint(height: int, width: int) -> int:
-    """Return half the side, in pixels, of the square from which ``flying_pixels`` mixes depth."""
+    """Return half the side length, in pixels, of the square that ``flying_pixels`` searches."""
     return max(1, round(FOOTPRINT * min(height, width)))
 
 
@@ -84,8 +86,11 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 
 @njit(cache=True)
 def _shade(views, offset, side, missing, z_max, out):
-    """Remove pixels that no projector ray reaches; the ray to column x at depth z has the position
-    x + offset / z in its row.
+    """Remove pixels that no projector ray reaches.
+
+    Columns are counted from the side on which the projector is. In an image row, the ray to column
+    x at depth z has the position x + offset / z. A pixel is lit if this position is greater than
+    the positions of all pixels before it.
     """
     width = views.shape[2]
     for v in range(views.shape[0]):

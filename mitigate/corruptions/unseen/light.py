@@ -16,8 +16,9 @@ from mitigate.corruptions.keying import Key, cached, digest, field, scramble, un
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at severity 1, and their relative spread
-CAST = 2.0  # stops between red and blue at severity 1; Afifi & Brown 2019 use 2800 to 10000 K
-TINT = 0.5  # colour cast between green and the other two colours, as a multiple of CAST
+# maximum stops between red and blue at severity 1; Afifi & Brown 2019 use 2800 to 10000 K
+CAST = 2.0
+TINT = 0.5  # maximum stops between green and the mean of red and blue, as a fraction of CAST
 HAZE_DEPTH = 1.5  # optical depth at severity 1 where haze is average
 # pairs of a correlation length (as a fraction of the shorter side) and a weight
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))
@@ -40,7 +41,7 @@ def _amplified(stops: float) -> np.ndarray:
 
 
 def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
-    """Return the tables of ``white_balance`` for red, green and blue, each uint8 [256]."""
+    """Return three tables (uint8 [256]) of ``white_balance``, for red, green and blue."""
     angle = 2.0 * math.pi * uniform(digest(key, "white_balance"))
     warm, green = 0.5 * CAST * math.cos(angle), 0.5 * CAST * TINT * math.sin(angle)
     stops = (warm - green, green, -warm - green)
@@ -48,16 +49,14 @@ def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
 
 
 def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply red, green and blue by gains, as for a wrong light colour that is fixed per
-    episode.
+    """Multiply red, green and blue by gains that are fixed per episode, as if the white balance
+    were wrong.
     """
     return _by_table(views, balance_tables(severity, key))
 
 
 def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
-    """Return the tables of ``overexposure`` for the three colours, which are equal, each uint8
-    [256].
-    """
+    """Return three equal tables (uint8 [256]) of ``overexposure``, one per colour."""
     spread = 1.0 + STOPS_SPREAD * (2.0 * uniform(digest(key, "overexposure")) - 1.0)
     return [_amplified(STOPS * spread * severity)] * 3
 

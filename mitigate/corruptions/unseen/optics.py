@@ -16,7 +16,8 @@ from mitigate.corruptions.keying import Key, cached, digest, field, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 GHOST = 0.5  # weight of the ghost image at severity 1
-# limits of the ghost image's offset, as fractions of the width, the width and the height
+# The ghost image is moved sideways by a fraction GHOST_NEAR to GHOST_FAR of the width.
+# It is moved up or down by at most a fraction GHOST_DOWN of the height.
 GHOST_NEAR, GHOST_FAR, GHOST_DOWN = 0.06, 0.16, 0.04
 DROPS = 0.06  # correlation length of the wet surface as a fraction of the shorter side
 BEND = 0.045  # rms displacement as a fraction of the shorter side, at severity 1
@@ -29,7 +30,7 @@ SCRATCH_COLOUR = (226, 226, 222)
 
 
 def ghost_offset(key: Key, height: int, width: int) -> tuple[int, int]:
-    """Return the offset (down, right) of the ghost image in pixels."""
+    """Return the offset (down, right), in pixels, at which the ghost image reads each pixel."""
     value = digest(key, "ghosting")
     away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
     across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))
@@ -101,7 +102,7 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 *
-    severity of the shorter side.
+    severity times the shorter side.
     """
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))

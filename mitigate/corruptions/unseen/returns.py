@@ -30,7 +30,7 @@ RIPPLE = 0.06  # amplitude per metre at severity 1; the standard deviation of z 
 RIPPLE_CORRELATION = 0.04  # correlation length as a fraction of the shorter side
 RANGE_LEFT = 0.10  # fraction of z_max that remains at severity 1
 WRONG = 0.30  # fraction of pixels with wrong depth at severity 1
-SPECKLE = 0.02  # side of a patch of wrong depth, as a fraction of the image's shorter side
+SPECKLE = 0.02  # side length of a patch of wrong depth, as a fraction of the shorter side
 GLOSS_CORRELATION = 0.08  # correlation length as a fraction of the shorter side
 # a pixel is floor if it is farther below the camera than this fraction of the camera's height
 FLOOR = 0.92
@@ -83,13 +83,14 @@ def _mismatch(views, streams, cell, least, z_max, out):
 
 
 def speckle_side(height: int, width: int) -> int:
-    """Return the side of the patches of ``mismatches`` in pixels."""
+    """Return the side length, in pixels, of the square patches that ``mismatches`` changes."""
     return max(1, round(SPECKLE * min(height, width)))
 
 
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction 0.3 * severity of the pixels to random depths; they form square patches whose
-    side is 0.02 of the image's shorter side.
+    """Set a fraction 0.3 * severity of the pixels to random depths.
+
+    These pixels form square patches with a side length of 0.02 times the shorter side of the image.
     """
     cell = speckle_side(*views.shape[1:])
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
@@ -104,12 +105,12 @@ def gloss_offset(key: Key, view: int, width: int) -> int:
 
 
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction ``severity`` of the floor to the depth of the mirror image in the floor."""
+    """Give a fraction ``severity`` of the floor the depth of what it reflects, like a mirror."""
     _, height, width = views.shape
     smooth, cells = field(digest(key, "glossy_floor"), height, width, GLOSS_CORRELATION)
     gloss = smooth >= top_share(cells, severity)
-    # This is how far each pixel is below a level camera at a depth of one metre.
-    # The unit is half the width that the image covers at that depth.
+    # A pixel at depth z shows a point that is z * slope below the level camera.
+    # The unit of this distance is half the width that the image covers at a depth of one metre.
     slope = ((np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)).astype(np.float32)
     depth = np.where(valid(views), views, 0) * slope[:, None]
     out = clip_valid(views, views, sensor)

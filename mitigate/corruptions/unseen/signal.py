@@ -81,15 +81,14 @@ def _strike(views, streams, least, out):
 
 
 def impulse_limit(severity: float) -> int:
-    """Return the threshold for the 32-bit hash of a pixel, below which ``impulse_noise`` changes
-    it.
-    """
+    """Return the threshold of ``impulse_noise``: pixels with a 32-bit hash below it change."""
     return round(IMPULSES * severity * 2**32)
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set the colours of a fraction 0.3 * severity of the pixels of every frame to 0 or 255,
-    separately per channel.
+    """Set random pixels to 0 or 255, separately per channel.
+
+    The fraction of changed pixels is 0.3 * severity in every frame.
     """
     out, count = np.empty_like(views), len(views)
     least = _U(impulse_limit(severity))
