@@ -16,7 +16,7 @@ from torch.utils.hooks import RemovableHandle
 
 from mitigate.core.observation import HFOV_DEGREES, VIEWS
 
-# absolute second differences below these values count as 0 (heuristic; values span about 1)
+# absolute second differences below these count as 0 (heuristic, for a value range of about 1)
 FLAT = (1e-3, 1e-2)
 TEXTURES = 4 + 4 * (3 + len(FLAT))  # number of outputs of :func:`textures` per channel
 HIDDEN = 32  # width of a gate's hidden layer (heuristic)
@@ -165,12 +165,12 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 
 
 class Gate(nn.Module):
-    """Compute one logit per frame from the bottleneck, which scales the adapter's correction.
+    """Compute one logit per frame; its sigmoid scales the adapter's correction.
 
-    The input consists of the mean and the root mean square of each of the ``middle`` channels over
-    a frame. The gate should be closed for clean frames, so that their features do not change. A
-    recipe may add a loss for this purpose (``recipes/encoder.py``). The gate is always trained
-    together with the adapter.
+    The logit is computed from the adapter's bottleneck: the mean and the root mean square of each
+    of its ``middle`` channels over the frame. The gate should be closed for clean frames, so that
+    their features do not change. A recipe may add a loss for this purpose (``recipes/encoder.py``).
+    The gate is always trained together with the adapter.
     """
 
     def __init__(self, middle: int) -> None:

@@ -221,8 +221,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
     Raises:
         FileNotFoundError: If a file is missing.
-        ValueError: If a file is damaged, the model already has adapters, it lacks a module, or the
-            adapters were trained on a different backbone or dtype.
+        ValueError: If a file is damaged; if the model already has adapters, or lacks a module that
+            the file names; or if the adapters were trained on a different backbone or dtype.
     """
     folder = Path(folder)
     reject_adapted(model)
@@ -239,7 +239,7 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
         if not shapes:
             raise ValueError("it lists no adapters")
     except (OSError, ValueError, KeyError, TypeError, AttributeError) as error:
-        raise ValueError(f"The adapters in {folder} are cut short or damaged ({error}).") from error
+        raise ValueError(f"The adapters in {folder} are truncated or damaged ({error}).") from error
     sha = backbone_sha(model)
     if sha != expected:
         raise ValueError(
@@ -375,7 +375,7 @@ def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
     encoder.
     """
     controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
-    # maps an adapter's name to the name of the module that encloses both, and the gate's name
+    # adapter name: (name of the module that encloses the adapter and its gate, name of the gate)
     gates: dict[str, tuple[str, str]] = {}
     for name, gate in adapters.items():
         if not isinstance(gate, FrameGate):

@@ -86,7 +86,7 @@ class Agent:
         raise NotImplementedError(f"{type(self).__name__} defines no act(observation)")
 
     def begin(self, instruction: str) -> Any:
-        """Return the agent's memory for a new episode; up to ``together`` episodes run at once."""
+        """Return the memory of a new episode; at most ``together`` episodes run in parallel."""
         raise NotImplementedError(f"{type(self).__name__} defines no begin(instruction)")
 
     def act_all(
@@ -151,7 +151,9 @@ class SideBySide(Agent):
     ) -> list[int]:
         """Return one action per episode, for up to ``together`` episodes.
 
-        Raises the errors of ``agents/observation.py``.
+        Raises:
+            KeyError, TypeError, ValueError: If an observation is invalid
+                (``agents/observation.py``).
         """
         # the batch is always filled up to ``together``, so that sums are rounded identically
         padding = self.together - len(memories)
@@ -171,7 +173,7 @@ def check_started(started: bool) -> None:
         raise RuntimeError("Start the episode first: agent.reset(instruction).")
 
 
-# members that :func:`as_agent` does not copy once, such as ``aim``, whose value may change
+# members that the wrapper of :func:`as_agent` forwards at each access, because ``aim`` may change
 _READ_LATER = ("reset", "act", "system_prompt", "aim")
 OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name not in _READ_LATER]
 
@@ -185,7 +187,7 @@ def as_agent(agent: Any) -> Agent:
 
 
 class _AgentView(Agent):
-    """Wrapper that makes an object of a user's class an :class:`Agent`."""
+    """Wrapper that turns an object of any class into an :class:`Agent`."""
 
     def __init__(self, agent: Any) -> None:
         self._agent = agent

@@ -102,7 +102,10 @@ class TextReader(nn.Module):
         self.text_norm = nn.LayerNorm(width)
 
     def concept_features(self, concepts: Tensor) -> list[Tensor]:
-        """Return features [..., width] of things, near things and other concepts [..., C]."""
+        """Return three features [..., width]: of things, of near things and of other concepts.
+
+        ``concepts`` holds the probability of each concept, [..., C].
+        """
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         parts = ((self.seen, THINGS), (self.close, NEAR), (self.kinds, slice(NEAR.stop, None)))
         return [layer(concepts[..., part] @ meaning[part]) for layer, part in parts]

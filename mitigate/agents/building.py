@@ -98,7 +98,7 @@ def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[st
     """Return ``node``; settings that are null or missing are taken from ``weights``.
 
     Examples of such settings are the adapters and the vocabulary. If ``weights`` is None, ``node``
-    is returned unchanged. Raises the errors of :func:`stored_settings`.
+    is returned unchanged. Raises the same errors as :func:`stored_settings`.
     """
     if weights is None:
         return node
@@ -140,7 +140,7 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
         return []
     try:
         kind = loading.kind_of(loading.config_of(find(weights)))
-    except (OSError, ValueError):  # loading the weights reports the error later
+    except (OSError, ValueError):  # the error is raised again when the weights are loaded
         return []
     name = "" if kind == loading.TARGET else settings.named(kind)
     return [f"agent={name}"] if name else []

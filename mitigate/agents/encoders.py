@@ -21,7 +21,7 @@ from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH, RGB
 
 SIZE = 64  # side in pixels of the views that the shipped agents were trained on
-# metres at which depth is clipped; farther surfaces do not matter: a move has at most 3 m
+# depth is clipped at this many metres, because free space is predicted only up to 3 m
 DEPTH_RANGE = 5.0
 GRID = 4  # number of rows and columns of the last feature map for views of 64 pixels
 # free space: number of direction bins over 90 degrees, number of distance bins, metres per bin
@@ -50,8 +50,8 @@ class Block(nn.Module):
 def halved(x: Tensor) -> Tensor:
     """Return the same result as ``F.avg_pool2d(x, 2)``, bit for bit.
 
-    Without gradients, the result is computed as a sum of four slices. This takes a third of the
-    time on a CPU, because torch 2.13 pools one value at a time.
+    Without gradients, the result is computed as a sum of four slices. On a CPU, this is three times
+    as fast as ``F.avg_pool2d``, which computes one value at a time (torch 2.13).
     """
     if torch.is_grad_enabled() or x.shape[-1] % 2 or x.shape[-2] % 2:
         return F.avg_pool2d(x, 2)
@@ -60,16 +60,15 @@ def halved(x: Tensor) -> Tensor:
 
 
 class Encoder(nn.Module):
-    """Base network of a stem and residual stages that reduces views of ``size`` pixels to a 4x4
-    map.
+    """Base class of encoders: a stem and residual stages turn a view into a 4x4 feature map.
 
-    Frames of a different size are resized.
+    Views are first resized to ``size`` x ``size`` pixels.
 
     Attributes:
         channels: channels of the input.
         widths: channels of the stem and of each stage.
-        resize: mode of ``F.interpolate`` with which frames are resized. stride: ``size`` must be a
-        multiple of this number of pixels.
+        resize: mode of ``F.interpolate`` with which views are resized.
+        stride: ``size`` must be a multiple of this number of pixels.
     """
 
     channels: int
@@ -122,7 +121,7 @@ class RGBEncoder(Encoder):
 
     channels, resize = 3, "area"
     widths: tuple[int, ...] = (32, 48, 96, 160)
-    kernel = (GRID, GRID)  # size of the convolution that gathers the last map
+    kernel = (GRID, GRID)  # kernel size of the convolution that reduces the last map
 
     def __init__(self, width: int, size: int = SIZE) -> None:
         super().__init__(size)
@@ -158,7 +157,7 @@ class DepthEncoder(Encoder):
         self.embed = nn.Linear(self.joined * last, width)
 
     def columns(self, depth: Tensor) -> Tensor:
-        """Return the last map without its rows, ``[n, widths[-1], 1, 4]``."""
+        """Return one feature vector per image column, ``[n, widths[-1], 1, 4]``."""
         return F.relu(self.rows(self.maps(depth_channels(self.sized(depth)))))
 
     def forward(self, depth: Tensor) -> Any:
@@ -195,8 +194,9 @@ def agreement(logits: Tensor, target: Tensor) -> Tensor:
 
 
 def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
-    """Return the output of ``see``: the features "views", and if ``truth`` is given, losses and
-    figures.
+    """Return the output of ``see``, which contains the features "views".
+
+    If ``truth`` is given, the output also contains the loss "labels" and metrics (``figures``).
     """
     out = Output(features={"views": views})
     if truth is None:

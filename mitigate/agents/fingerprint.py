@@ -32,10 +32,10 @@ from mitigate.core.observation import Observation, Sensor
 # attribute of shipped classes that holds a name; it stays the same if a module is moved
 KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
-# hooks of this module are known: its adapters are modules, so state_dict() holds them
+# hooks of this module are recorded by name, because state_dict() contains the adapters they call
 _OWN_HOOKS = "mitigate.agents.adapters"
-# These attributes are left out: those of torch modules, of adapters, and of adapters.py.
-# For adapters, these are the handle of the hook and the last output.
+# The fingerprint skips the attributes that torch itself adds to modules.
+# It also skips the hook handle of an adapter and the last logits of a gate (``judged``).
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -78,7 +78,7 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For a shipped agent, this includes the attributes that have other values than in a new agent
+    For a shipped agent, this includes the attributes whose values differ from those of a new agent
     with the same settings. For an agent whose ``settings()`` is missing or inherited, this
     includes all its attributes.
     """
@@ -152,8 +152,9 @@ def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
 def _entries(
     agent: Any, nets: Mapping[str, nn.Module], attributes: bool
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return a text for each attribute, layer and hook by its place, and reasons for unreadable
-    state.
+    """Return descriptions of the attributes, layers and hooks, and reasons for unreadable state.
+
+    Both results are dicts whose keys are dotted paths in the agent.
 
     Args:
         agent: the agent.
@@ -191,7 +192,11 @@ def _entries(
 def _add_hooks(
     module: nn.Module, place: str, entries: dict[str, Any], unreadable: dict[str, str]
 ) -> None:
-    """Add hooks that describe themselves with ``fingerprint()``; all other hooks are unreadable."""
+    """Add a description of each forward hook of ``module`` to ``entries``.
+
+    A hook is described by its method ``fingerprint()``, or by its name if ``adapters.py`` defines
+    it. Any other hook is added to ``unreadable``.
+    """
     if type(module).__module__.startswith("torch.jit"):
         unreadable[place] = "a TorchScript module"
         return

@@ -11,7 +11,8 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-RATE = 4.0  # decay rate k of a view's weight with its relative deviation (chosen on val_seen)
+# how fast a view's weight falls as the view deviates from the mean (chosen on val_seen)
+RATE = 4.0
 # largest exponent (heuristic); the weight is at least exp(-3) = 0.05 times that of a typical view
 CAP = 3.0
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
@@ -19,7 +20,7 @@ _TINY = 1e-6
 
 
 def reliability(views: Tensor, rate: float = RATE, cap: float = CAP) -> Tensor:
-    """Return weights of views that decrease as a view's feature magnitude deviates from the mean.
+    """Return the weights of views; a feature magnitude far from the mean gives a lower weight.
 
     In the formulas, m_v = |f_v| is the Euclidean norm of a view's features, and M is the mean of
     m_v over the views:
@@ -28,7 +29,7 @@ def reliability(views: Tensor, rate: float = RATE, cap: float = CAP) -> Tensor:
 
     Args:
         views: features ``[..., V, F]``.
-        rate: k, >= 0.
+        rate: the decay rate, >= 0.
         cap: the largest exponent, >= 0.
 
     Returns:
@@ -95,7 +96,8 @@ def weigher(
     """
     if learned and rate is not None:
         raise ValueError(
-            f"rate must be null for a learned reliability, which has only a cap, got {rate}."
+            f"rate must be null if the reliability is learned, got {rate}. Leave out rate; cap may "
+            "be set."
         )
     if learned:
         return LearnedReliability(width, cap)

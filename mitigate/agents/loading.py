@@ -44,7 +44,7 @@ LONGEST_PATH = 1000
 # number of weights up to which an agent is built without a check (128 MiB; heuristic)
 FREE_WEIGHTS = 1 << 25
 TARGET = schema.KINDS[0]
-# for each package of models that are not agents and need no export, its documentation page
+# packages whose models are not navigation agents, and the documentation page of each package
 PAGES = {
     "mitigate.encoders": "docs/encoder.md",
     "mitigate.guards.frames": "docs/restoration.md",
@@ -63,15 +63,15 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
 
     Args:
         folder: a hardened folder (as in :func:`load_hardened`), shipped weights
-            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. The folder is
-            searched first in the current folder, then in this project.
-        agent: an agent of a user's class with the settings of the trained agent, into which the
-            weights are loaded in place. If it is None, a new agent of a shipped kind is built.
+            (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. A relative path is
+            looked up first in the current folder, then in this project.
+        agent: an agent of a user's class, built with the settings of the trained agent. The weights
+            are loaded into it in place. If it is None, a new agent of a shipped kind is built.
 
     Raises:
-        FileNotFoundError, ValueError: Weights are missing or damaged; the settings of their agent
-            are missing; the agent is of a user's class, but ``agent`` is missing; or ``agent`` has
-            different settings. The error message names the file.
+        FileNotFoundError, ValueError: If the weights are missing or damaged; if the settings of
+            their agent are missing; if the trained agent is of a user's class and ``agent`` is
+            None; or if ``agent`` has different settings. The error message names the file.
         TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
     place = find(folder)
@@ -105,14 +105,14 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     Args:
         folder: a folder such as ``checkpoints/hardened/ts_distill``.
         base: if the folder holds only adapters, the file or folder of the weights to which they
-            belong. If None, the path in the card is used. This path is looked up below the current
-            folder, the folders above ``folder``, and the checkout.
-        agent: an agent of a user's class with the settings of the exported agent, into which the
-            weights are loaded in place. If this agent has no ``settings()``, it receives the
-            settings in the folder. If it is None, a new agent of a shipped kind is built.
+            belong. If None, the path in the card is used. This path is looked up relative to the
+            current folder, the parent folders of ``folder``, and the checkout.
+        agent: an agent of a user's class, built with the settings of the exported agent. The
+            weights are loaded into it in place. If this agent has no ``settings()``, it receives
+            the settings in the folder. If it is None, a new agent of a shipped kind is built.
 
     Raises:
-        FileNotFoundError, ValueError: The folder is incomplete, or differs from its card.
+        FileNotFoundError, ValueError: If the folder is incomplete, or differs from its card.
         TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
     folder = Path(folder)
@@ -196,8 +196,9 @@ def config_of(weights: Path) -> Path:
 
 
 def reject_other_models(run: Path) -> None:
-    """Raise ValueError if the model of a run, or in the run's folder ``agent``, is not a navigation
-    agent.
+    """Raise ValueError if a folder holds a model that is not a navigation agent.
+
+    ``run`` is the folder of a run, or its subfolder ``agent``.
     """
     config = run / CONFIG
     node = settings.read(config).get("agent") if config.is_file() else None
@@ -245,8 +246,8 @@ def check_same(agent: Any, config: Path, again: str) -> None:
 def give_settings(agent: Any, config: Path, again: str) -> None:
     """If an agent has no ``settings``, set them to the settings in ``config``.
 
-    ``building.build_agent`` does the same, so the fingerprints are equal. Raises the errors of
-    :func:`check_same`.
+    ``building.build_agent`` does the same, so the fingerprints are equal. Raises the same errors
+    as :func:`check_same`.
     """
     if stated_settings(agent) is None:
         known = {k: v for k, v in _settings_in(config, again).items() if k != "_target_"}
@@ -285,7 +286,7 @@ def is_ours(target: str) -> bool:
 def agent_settings(config: Path, target: str = TARGET) -> dict[str, Any]:
     """Return the constructor arguments in ``config`` for an agent of the kind ``target``.
 
-    Raises the errors of :func:`build_from`.
+    Raises the same errors as :func:`build_from`.
     """
     known = schema.schema_of(target)
     values = settings.read_agent(config, target, known)
@@ -305,7 +306,7 @@ def is_hardened(folder: str | Path) -> bool:
 def adapters_only(folder: str | Path) -> bool:
     """Return whether ``folder`` is hardened and holds only adapters, which refer to base weights.
 
-    Raises the errors of :func:`read_card`.
+    Raises the same errors as :func:`read_card`.
     """
     return is_hardened(folder) and bool(read_card(Path(folder))["adapters_only"])
 
@@ -331,8 +332,8 @@ def _fill(agent: Any, folder: Path, card: dict[str, Any], weights: Path) -> None
     checkpoint.load_weights(agent, weights)
     if adapters.load_adapters(agent, folder) != adapted:
         raise ValueError(
-            f"{folder} holds adapters for different modules than agent.adapters names. Build the "
-            f"agent with its {CONFIG}."
+            f"The adapters in {folder} belong to other modules than those in agent.adapters. Build "
+            f"the agent with the {CONFIG} of this folder."
         )
 
 
@@ -355,7 +356,7 @@ def check_hardened(folder: Path) -> dict[str, Any]:
     for name in (*weights, *needed):
         if name not in manifest.files:
             raise ValueError(
-                f"{folder / manifest.source} does not list {name}, which must be there. {_AGAIN}"
+                f"{folder / manifest.source} must list {name}, but does not list it. {_AGAIN}"
             )
     unlisted = [n for n in KNOWN if n not in manifest.files and os.path.lexists(folder / n)]
     if unlisted:
@@ -368,7 +369,10 @@ def check_hardened(folder: Path) -> dict[str, Any]:
 
 
 def read_card(folder: Path) -> dict[str, Any]:
-    """Return the card of the hardened ``folder``; raise the errors of :func:`check_hardened`."""
+    """Return the card of the hardened ``folder``.
+
+    Raises the same errors as :func:`check_hardened`.
+    """
     file = folder / CARD
     if not file.is_file():
         raise FileNotFoundError(

@@ -19,9 +19,9 @@ _SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 
 
 def networks(agent: Any) -> dict[str, nn.Module]:
-    """Return the networks that ``agent`` is or holds, by their place in the agent; leave out
-    networks inside other networks.
+    """Return a dict that maps dotted paths in ``agent`` to networks.
 
+    If ``agent`` is a network itself, its path is "". Submodules of a network are not listed.
     Attributes, containers, closures and the global variables that methods refer to are searched,
     without running the agent's code.
     """

@@ -16,9 +16,12 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.text import UNKNOWN, Vocabulary
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# metres (heuristic): indoors, some pixel of twelve views is always nearer, such as the floor
+# Depth is rejected if every value exceeds FARTHEST metres (heuristic).
+# Indoors, at least the floor is always nearer than that.
 FARTHEST = 50.0
-NEAREST = 1.0  # metres (heuristic): in almost every room, some pixel is farther away
+# A panorama causes a warning if its depth never exceeds NEAREST metres (heuristic).
+# In almost every room, at least one surface is farther away.
+NEAREST = 1.0
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 

@@ -124,7 +124,7 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     usable = [name for name, site in sites.items() if isinstance(site, Site)]
     raise ValueError(
         "The encoder has no list of at least four blocks. Name the modules to adapt: "
-        f"agent.adapters.targets=[...]. Possible are {', '.join(usable[:24]) or 'none'}."
+        f"agent.adapters.targets=[...]. Possible modules: {', '.join(usable[:24]) or 'none'}."
     )
 
 

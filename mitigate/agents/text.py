@@ -1,8 +1,8 @@
 """Define the words that agents know: concepts of views, and the vocabulary of instructions.
 
-The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner multiplies
-the probability of each concept with the text embedding of its word, so that views and instructions
-share one embedding space.
+The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner and
+the recurrent policy multiply the probability of each concept by the text embedding of its word. So
+the concepts of views and the words of instructions share one embedding space.
 
 A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
@@ -55,8 +55,8 @@ class Vocabulary:
         words: lower-case words without the special tokens. None means ``WORDS``.
 
     Raises:
-        ValueError: If a word is repeated or has characters other than a to z, or the word for a
-            concept is missing.
+        ValueError: If a word is repeated or contains characters other than a to z, or if the word
+            for a concept is missing.
     """
 
     def __init__(self, words: Sequence[str] | None = None) -> None:
@@ -64,7 +64,7 @@ class Vocabulary:
         wrong = [word for word in self.words if not re.fullmatch("[a-z]+", word)]
         if wrong or len(set(self.words)) < len(self.words):
             raise ValueError(
-                "words of a vocabulary must be unique and have only the letters a to z, got "
+                "words of a vocabulary must be unique and contain only the letters a to z, got "
                 f"{', '.join(map(repr, wrong[:4])) or 'repeated words'}."
             )
         self.ids = {word: index for index, word in enumerate((*SPECIAL, *self.words))}

@@ -224,7 +224,7 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     except (SafetensorError, OSError, KeyError) as error:
         problem = f"cannot be read: {short(str(error), 200)}"
     raise ValueError(
-        f"The weights {file} ({file.stat().st_size} bytes) are cut short or damaged: {file.name} "
+        f"The weights {file} ({file.stat().st_size} bytes) are truncated or damaged: {file.name} "
         f"{problem}. {_again(file)}"
     )
 

@@ -79,7 +79,7 @@ def weights_below(folder: Path) -> list[str]:
 
 
 def places(path: str | Path) -> list[Path]:
-    """Return the candidates for ``path``, in the order in which they are searched.
+    """Return the candidates for ``path``, in the order in which they are tried.
 
     The candidates are in the current folder, the package mitigate-weights, the checkout, and the
     folder that ``MITIGATE_WEIGHTS`` names.
@@ -99,7 +99,7 @@ def open_text(path: Path | str) -> io.TextIOWrapper:
     """Open ``path`` for reading as UTF-8; skip a byte order mark.
 
     A gzip file is recognised by its first two bytes, not by its name. Reading raises BadGzipFile if
-    the gzip file is damaged or cut short, or if it unpacks to too many bytes (``RATIO``).
+    the gzip file is damaged or truncated, or if it unpacks to too many bytes (``RATIO``).
 
     Raises:
         FileNotFoundError: If the file does not exist; the message lists the nearest names.
@@ -136,7 +136,7 @@ class _Unpacked(gzip.GzipFile):
         try:
             content = read(size)
         except (EOFError, zlib.error) as error:
-            raise gzip.BadGzipFile(f"the gzip data are cut short or damaged ({error})") from error
+            raise gzip.BadGzipFile(f"the gzip data are truncated or damaged ({error})") from error
         self._unpacked += len(content)
         if self._unpacked > self._limit:
             raise gzip.BadGzipFile(

@@ -281,7 +281,7 @@ def check(
 
     Raises:
         FileNotFoundError: If a file is missing.
-        ValueError: If a file was changed or cut short, or the manifest is damaged.
+        ValueError: If a file was changed or truncated, or the manifest is damaged.
     """
     folder = Path(folder)
     manifest = read_manifest(folder, again)
@@ -311,7 +311,7 @@ def _compare(
                 raise ValueError(f"{file} {pointer}.")
             raise ValueError(
                 f"{file} does not have the sha256 that {manifest.source} states: it was changed or "
-                f"cut short. {again}"
+                f"truncated. {again}"
             )
 
 

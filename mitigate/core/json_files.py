@@ -42,7 +42,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
     except (ValueError, RecursionError) as error:
         if pointer := lfs_problem(path):
             raise ValueError(f"{path} {pointer}.") from error
-        raise ValueError(f"{path} is cut short or damaged ({error!s:.200}). {again}") from error
+        raise ValueError(f"{path} is truncated or damaged ({error!s:.200}). {again}") from error
 
 
 def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, Any]:
@@ -78,7 +78,7 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the pairs (key, value) of the JSON object in ``path``; keep only one value in memory.
 
     If the value of the key ``streamed`` is a list, an iterator over its items is yielded instead of
-    the list. Raises ValueError if the file is not text, is malformed or cut short, does not contain
+    the list. Raises ValueError if the file is not text, is malformed or truncated, does not contain
     a JSON object, or contains anything after the object.
     """
     with open_text(path) as file:
@@ -181,6 +181,6 @@ class _JsonFile:
             raise ValueError(f"{self._path} {pointer}.")
         raise ValueError(
             f"{self._path} is not complete JSON: {problem}, near character "
-            f"{self._before + self._at}. It is cut short, damaged or another kind of file: "
+            f"{self._before + self._at}. It is truncated, damaged or another kind of file: "
             "download or write it again."
         )

@@ -68,7 +68,7 @@ def modality(path: Path) -> str:
     except OSError as error:
         raise LeftOutError(f"cannot be read: {error.strerror}") from error
     if len(head) < 26 or not head.startswith(PNG_START):
-        raise LeftOutError("is not a PNG file: it is cut short or damaged")
+        raise LeftOutError("is not a PNG file: it is truncated or damaged")
     bits, colour = struct.unpack("BB", head[24:26])
     if (bits, colour) in ((8, 2), (16, 0)):
         return RGB if colour == 2 else DEPTH

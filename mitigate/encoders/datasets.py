@@ -26,7 +26,7 @@ class DatasetFrames:
     """The frames of one camera of a LeRobot dataset.
 
     Each episode is a scene. The last scenes are held out. If there is only one episode, it is split
-    into blocks of consecutive frames, which replace scenes.
+    into blocks of consecutive frames, and each block counts as a scene.
 
     Args:
         path: folder of the dataset.

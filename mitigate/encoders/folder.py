@@ -85,7 +85,7 @@ def card(folder: str | Path) -> dict[str, Any]:
             "`agent` of a run of `make train RECIPE=encoder`."
         )
     if damage := folders.problem(file):
-        raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
+        raise ValueError(f"{file} is truncated or damaged: it {damage}. {_AGAIN}")
     return read_object(file, _AGAIN)
 
 

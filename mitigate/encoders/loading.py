@@ -29,7 +29,7 @@ from mitigate.core import checkpoint
 from mitigate.core.files import find, lfs_problem
 from mitigate.core.names import escaped, unknown
 
-# how to write an exported program, for messages
+# error messages show this example of how to export a program
 EXPORT = "torch.export.save(torch.export.export(model, (frames,), dynamic_shapes=...), path)"
 INSTALLED = "pkg://"  # pkg://package/path names a file in an installed package
 # keys under which checkpoints may store weights
@@ -99,7 +99,7 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 def describe(error: Exception, line: int = 0) -> str:
     """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
 
-    ``line`` is the index of the line of the error's message that is included.
+    Only one line of the error's message is included: the line with the index ``line``.
     """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
@@ -257,7 +257,8 @@ def _is_compressed(path: Path) -> bool:
 class PassedOver:
     """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``.
 
-    torch sets items only on ``OrderedDict``, not on objects of other classes.
+    Objects of other classes would not work, because ``torch.load(weights_only=True)`` sets items
+    only on ``dict``, ``OrderedDict`` and ``Counter``.
     """
 
     def __new__(cls, *_: Any) -> Any:

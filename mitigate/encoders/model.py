@@ -346,7 +346,7 @@ class Encoder(nn.Module):
                 "and agent.transform.size, and export programs with a dynamic number of frames."
             ) from error
         if isinstance(output, Tensor) and self.output is not None:
-            # a tensor has no items, so a number such as 3 must be the name of a module
+            # the model returns a single tensor, so a number names a module instead of an item
             self.output = str(self.output)
         features: Any = self(frames)
         result = type(features).__name__

@@ -44,8 +44,8 @@ def attach(model, folder, check=True):
         ``model`` itself.
 
     Raises:
-        ValueError: If the folder is damaged, it does not match the model, or the model already has
-            adapters.
+        ValueError: If the folder is damaged or does not match the model, or if the model already
+            has adapters.
         OSError: If a file is missing.
     """
     hooks = [hook for m in model.modules() for hook in m._forward_hooks.values()]
@@ -73,7 +73,7 @@ def attach(model, folder, check=True):
         raise ValueError(
             f"The adapters in {folder} were trained with weights of sha256 "
             f"{settings['backbone_sha256']}, but this model has {backbone_sha(model)}. Load "
-            "weights with the first hash. For another precision, call attach(..., check=False)."
+            "weights with the first hash. If only the dtype differs, call attach(..., check=False)."
         )
     adapters = {name: _Adapter(folder, name, shape, tensors) for name, shape in shapes.items()}
     for name, adapter in adapters.items():
@@ -134,7 +134,7 @@ class _Adapter:
 
 
 def _shapes(shape):
-    """Return the shapes of an adapter's tensors, by name, as its settings determine them."""
+    """Return a dict from tensor name to shape, for an adapter with the settings ``shape``."""
     channels = shape["channels"]
     middle = shape.get("middle") or max(4, channels // shape["reduction"])
     kernel = () if shape.get("kind") == "tokens" else (shape["kernel"],) * 2

@@ -31,12 +31,13 @@ from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
 # This is the minimum number of held-out blocks if all frames are in one folder (heuristic).
-# The blocks replace scenes in confidence intervals.
+# The bootstrap for confidence intervals resamples these blocks instead of scenes.
 FEWEST_UNSEEN = 5
 # minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
 NEAR = 0.05
-NEAREST = 0.02  # in metres; at least ``NEAR`` of the valid depth must be farther (heuristic)
-EVERY = 2  # step between the views of a panorama that are used
+# at least a fraction ``NEAR`` of the valid depth must exceed this many metres (heuristic)
+NEAREST = 0.02
+EVERY = 2  # only every second view of a panorama is used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
@@ -90,8 +91,9 @@ class WorldFrames:
     ) -> None:
         if not isinstance(world, Placeable):
             raise ValueError(
-                f"{type(world).__name__} must render from arbitrary poses (scenes, enter, point, "
-                "put). Add these, or save its frames as PNG and use env=frames env.path=FOLDER."
+                f"{type(world).__name__} must be able to render from arbitrary poses. Define its "
+                "members scenes, enter, point and put (mitigate/worlds/world.py), or save its "
+                "frames as PNG and use env=frames env.path=FOLDER."
             )
         if sensor not in world.sensors:
             raise ValueError(
@@ -138,8 +140,8 @@ class FolderFrames:
 
     Each folder with frames is a scene. If ``mitigate run`` recorded the folder, the recorded scenes
     are used instead. If all frames are in one folder, they are split into blocks of consecutive
-    frames, which replace scenes. Files that cannot be used are reported. Depth that is not a
-    positive number becomes 0.
+    frames, and each block counts as a scene. Files that cannot be used are reported. Depth that is
+    not a positive number becomes 0.
 
     Args:
         path: the folder.
@@ -154,8 +156,8 @@ class FolderFrames:
 
     Raises:
         FileNotFoundError: If the folder does not exist or contains no frame.
-        ValueError: If an argument is out of range, there are too few frames, or a file is
-            unreadable, is not depth in metres, or has a different size than the first file.
+        ValueError: If an argument is out of range; if there are too few frames; or if a file is
+            unreadable, does not hold depth in metres, or differs in size from the first file.
     """
 
     files = True
@@ -219,9 +221,9 @@ class FolderFrames:
         if not scenes:
             other = count_suffixes(plan.other_files) or "none"
             raise FileNotFoundError(
-                f"{self.path} contains no {self.sensor} frames, but {plan.other_modality} frames "
-                f"of the other sensor, {self.left_out}, and other files: {other} "
-                "(docs/encoder.md lists the formats)."
+                f"{self.path} contains no {self.sensor} frames (frames of the other sensor: "
+                f"{plan.other_modality}; {self.left_out}; other files: {other}). docs/encoder.md "
+                "lists the formats."
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")
@@ -307,10 +309,10 @@ def _is_between(value: object, below: float) -> bool:
 
 
 def _metres(depth: np.ndarray) -> np.ndarray:
-    """Set invalid depth to 0, and check that the values can be metres.
+    """Set invalid depth to 0, and check that the other values are plausible as metres.
 
-    If the values cannot be metres, this raises a ValueError. Its message begins with a verb,
-    because the caller puts the path of the file before it.
+    If they are not, this raises a ValueError. Its message begins with a verb, because the caller
+    puts the path of the file before it.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]

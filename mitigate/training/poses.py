@@ -90,7 +90,7 @@ class Poses(DrawsBySuccess):
         empty.
 
         Args:
-            label: entry of the world's truth to use as targets.
+            label: ground-truth entry of the world to use as targets.
             every: use every n-th view of a panorama. The value 2 is useful because neighbouring
                 views overlap.
         """

@@ -26,7 +26,7 @@ _NAME = re.compile(r"step-(\d{8})\.pt")
 
 
 class Damaged(ValueError):
-    """A checkpoint is cut short, or its bytes have changed."""
+    """A checkpoint is truncated, or its bytes have changed."""
 
 
 def checkpoints(folder: Path) -> list[Path]:
@@ -62,7 +62,7 @@ def load(path: Path) -> dict[str, Any]:
 
     Raises:
         FileNotFoundError: If the file is missing.
-        Damaged: If the file is cut short or its bytes have changed.
+        Damaged: If the file is truncated or its bytes have changed.
         ValueError: If the file is not a checkpoint of this trainer, or if it is intact but cannot
             be read.
     """
@@ -72,7 +72,7 @@ def load(path: Path) -> dict[str, Any]:
     has_sum = checksums.sidecar(path).is_file()
     problem = checksums.problem(path) if has_sum else _zip_problem(path)
     if problem:
-        raise Damaged(_broken(path, f"{problem}: the file or its checksum is cut short or damaged"))
+        raise Damaged(_broken(path, f"{problem}: the file or its checksum is truncated or damaged"))
     try:
         state = torch.load(path, map_location="cpu", weights_only=True)
     except Exception as error:  # torch may raise any kind of error for a file that it did not write
@@ -81,7 +81,7 @@ def load(path: Path) -> dict[str, Any]:
             cause = " ".join(str(error).split())[:300]
             what = f"The checkpoint {path} is intact, but cannot be read: {cause}"
             raise ValueError(what) from error
-        raise Damaged(_broken(path, "is cut short, damaged or not a torch file")) from error
+        raise Damaged(_broken(path, "is truncated, damaged or not a torch file")) from error
     missing = [k for k in REQUIRED if k not in state] if isinstance(state, dict) else REQUIRED
     if missing:
         raise ValueError(_broken(path, f"has no {', '.join(missing)}: another program wrote it"))
@@ -109,7 +109,7 @@ def load_newest(folder: Path) -> tuple[Path, dict[str, Any]] | None:
         return path, state
     if damaged:
         raise Damaged(
-            f"Every checkpoint in {folder} is cut short or damaged ("
+            f"Every checkpoint in {folder} is truncated or damaged ("
             f"{', '.join(path.name for path in damaged)}); none was deleted. If you have copies of "
             f"the checkpoints, restore them. If only the {checksums.SUFFIX} files are damaged, "
             f"delete the {checksums.SUFFIX} files. To train from the start, delete the folder. "

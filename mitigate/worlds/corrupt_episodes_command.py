@@ -298,7 +298,7 @@ def notices(summary: dict[str, Any]) -> list[str]:
             "(of the file) or tokenizer=NAME (of the agent)"
         )
     if cut := summary["tokens"].get("cut_short"):
-        lines.append(f"warning: {cut} instructions have more tokens than before and were cut short")
+        lines.append(f"warning: {cut} instructions have more tokens than before and were truncated")
     return lines
 
 

@@ -360,6 +360,6 @@ def test_load_rejects_invalid_folders(tmp_path, spoil):
         with torch.no_grad():
             model.fc.bias.add_(1)
     error = FileNotFoundError if spoil == "missing" else ValueError
-    with pytest.raises(error, match="is missing|cut short|are damaged|trained on a backbone"):
+    with pytest.raises(error, match="is missing|truncated|are damaged|trained on a backbone"):
         load_adapters(model, tmp_path)
     assert not adapters.adapted(model)

@@ -92,7 +92,7 @@ def test_run_names_a_damaged_marker(run, skips, tmp_path):
     file.parent.mkdir(parents=True)
     file.write_text('{"seed": ')
     result = run(tmp_path / "o", "conditions=[clean]", f"{skips} {{out}}/results.json")
-    assert f"{file} is cut short or damaged" in result.stderr
+    assert f"{file} is truncated or damaged" in result.stderr
 
 
 @pytest.mark.parametrize(

@@ -89,7 +89,7 @@ JSON = {
 def test_json_is_plain_data_or_value_error(tmp_path, raw):
     path = tmp_path / "card.json"
     path.write_bytes(raw)
-    with pytest.raises(ValueError, match="is cut short or damaged .* Fetch it again") as error:
+    with pytest.raises(ValueError, match="is truncated or damaged .* Fetch it again") as error:
         json_files.read_json(path, "Fetch it again.")
     assert "\n" not in str(error.value) and len(str(error.value)) < 600
     path.write_text(json.dumps({"a": [1, 0.5, None, True, "x"]}))

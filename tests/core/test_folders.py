@@ -98,7 +98,7 @@ def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
         raise AssertionError(f"{path} was read")
 
     monkeypatch.setattr(folders, "sha256", read)
-    with pytest.raises(ValueError, match="changed or cut short"):
+    with pytest.raises(ValueError, match="changed or truncated"):
         folders.check(folder)
 
 
@@ -152,7 +152,7 @@ def test_mixture_of_old_and_new_folder_is_rejected(tmp_path, monkeypatch):
     monkeypatch.setattr(os, "replace", replace_one)
     with pytest.raises(Killed):
         write_files(folder, one="2", two="2")
-    with pytest.raises(ValueError, match="changed or cut short"):
+    with pytest.raises(ValueError, match="changed or truncated"):
         folders.check(folder)
     monkeypatch.undo()
     assert folders.check(write_files(folder, one="2", two="2"))

@@ -123,7 +123,7 @@ def test_weights_cut_short(evaluation, weights, tmp_path):
     whole = (weights / checkpoint.WEIGHTS).read_bytes()
     (tmp_path / checkpoint.WEIGHTS).write_bytes(whole[: len(whole) // 2])
     text = evaluation(f"checkpoint={tmp_path}")
-    for part in (checkpoint.WEIGHTS, "cut short or damaged", "Fetch or train them again"):
+    for part in (checkpoint.WEIGHTS, "truncated or damaged", "Fetch or train them again"):
         assert part in text
 
 

@@ -233,7 +233,7 @@ def test_bad_files_are_skipped_and_keep_their_number(run, tmp_path):
         "2.png": "8-bit RGB with alpha PNG: an RGB frame must be 8-bit RGB without",
         "3.jpg": "cannot be decoded",
         "4.png": "8-bit grey PNG",
-        "5.png": "cut short",
+        "5.png": "truncated",
         "6.jpg": "has the colour mode L",
         "8.png": "cannot be read",
     }.items():

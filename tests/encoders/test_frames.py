@@ -232,7 +232,7 @@ def test_folder_frames_explain_an_empty_folder(tmp_path):
     with pytest.raises(FileNotFoundError, match="There is no folder"):
         FolderFrames(str(tmp_path / "none"))
     (tmp_path / "notes.txt").write_text("x")
-    with pytest.raises(FileNotFoundError, match="contains no rgb frames, .* 1 .txt"):
+    with pytest.raises(FileNotFoundError, match="contains no rgb frames .*other files: 1 .txt"):
         FolderFrames(str(tmp_path))
     write(tmp_path, "0.png", 0)
     with pytest.raises(ValueError, match="must come from different scenes"):

@@ -370,7 +370,7 @@ def test_replay_rejects_a_file_or_a_folder_in_use(tmp_path, lab, mitigate):
     assert status == 1 and "out must be a folder" in errors and "read lab" not in printed + errors
     out.unlink()
     out.mkdir()
-    for text, words in (("[1]", "was not written by a replay"), ("{", "is cut short or damaged")):
+    for text, words in (("[1]", "was not written by a replay"), ("{", "is truncated or damaged")):
         (out / "replay.json").write_text(text)
         status, _, errors = mitigate("replay", lab, *options)
         assert status == 1 and words in errors and "Name another folder (out=...)" in errors

@@ -282,7 +282,7 @@ def test_evaluation_and_training_take_a_folder_of_adapters(place):
     node = building.settings_of(node_of({}), folder)
     agent = building.build_agent(node, weights=folder, seed=0)
     assert checkpoint.weights_sha(agent) == loading.check_hardened(Path(folder))["run_agent"]
-    with pytest.raises(ValueError, match="different modules"):
+    with pytest.raises(ValueError, match="other modules"):
         building.build_agent(node_of(TINY), weights=folder, seed=0)
 
 
@@ -369,7 +369,7 @@ def test_changed_file_is_rejected_by_name(copied, name, spoil):
 @pytest.mark.parametrize(
     ("text", "problem"),
     [
-        (lambda t: t[: len(t) // 2], "cut short or damaged"),
+        (lambda t: t[: len(t) // 2], "truncated or damaged"),
         (lambda t: t.replace('"seed": 3', '"seed": 4'), "sha256"),
         (lambda t: "[]", "must hold a JSON object"),
         (lambda t: "[" * 100_000, "card.json"),
@@ -391,7 +391,7 @@ def test_folder_without_a_card_is_rejected(tmp_path):
 @pytest.mark.parametrize("name", ["model.safetensors", "program.pt2", "config.yaml"])
 def test_card_that_lacks_a_file_is_rejected(copied, name):
     relist(copied, lambda files: files.pop(name))
-    part = "not listed in" if name == "program.pt2" else f"does not list {name}"
+    part = "not listed in" if name == "program.pt2" else f"must list {name}"
     with pytest.raises(ValueError, match=part):
         loading.load_hardened(copied)
 

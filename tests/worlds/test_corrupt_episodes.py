@@ -97,7 +97,7 @@ def test_run_tokenizes_with_the_vocabulary_of_the_file(tmp_path):
     (got,) = raw(tmp_path / "long.json.gz")
     assert len(got["instruction"]["instruction_tokens"]) == 40
     assert summary["tokens"]["cut_short"] == 1
-    assert "cut short" in episodes_command.notices(summary)[0]
+    assert "truncated" in episodes_command.notices(summary)[0]
 
 
 def test_run_uses_a_named_tokenizer(tmp_path):

@@ -52,18 +52,19 @@ TURNS = 18
 AGAIN = 8  # number of actions until the agent plans again
 LEG = 1.5  # distance in metres that the agent goes straight before it checks its route again
 STUCK = 0.05  # a forward step that moves less than this distance (metres) was blocked
-# A step that moves less than SLID metres slid along an obstacle.
-# After BUMPS such steps the agent gives up.
+# If a forward step moves less than SLID metres, the agent has slid along an obstacle.
+# After BUMPS such steps on the way to the object, the agent acts as if it had arrived.
 SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
-WORTH = 6.0  # metres of path that outweigh a frontier value of 1 (chosen on val_seen_ogn)
-# minimum evidence for going to the object: FOUND before LAST actions, MAYBE after them
+# weight of a frontier's value, relative to the path cost in metres (chosen on val_seen_ogn)
+WORTH = 6.0
+# minimum evidence for going to the object: FOUND until action number LAST, then MAYBE
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
 # the agent stops if the predicted probability that the object is near exceeds this
 NEAR_ENOUGH = 0.4
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-# extra metres of path allowed per metre nearer to the object's centre (heuristic)
+# weight of a cell's distance to the object's centre, relative to its path cost (heuristic)
 MIDDLE = 3.0
 # rooms in which each object is likely; L3MVN asks a language model for these
 LIKELY = {
@@ -183,8 +184,10 @@ class FrontierAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return one low-level action.
 
-        Raises RuntimeError if ``reset`` was not called before, and the errors of
-        ``agents/observation.py``.
+        Raises:
+            RuntimeError: If ``reset`` was not called first.
+            KeyError, TypeError, ValueError: If the observation is invalid
+                (``agents/observation.py``).
         """
         check_started(self._started)
         return self.answers([observation], [self], 1)[0]

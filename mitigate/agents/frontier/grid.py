@@ -252,8 +252,10 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """Return the 8-connected graph of open cells. The cost of an edge is its length times the mean
-    price of its two cells.
+    """Return the 8-connected graph of open cells.
+
+    ``price`` is the cost per metre in each cell. The cost of an edge is its length times the mean
+    ``price`` of its two cells.
     """
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []

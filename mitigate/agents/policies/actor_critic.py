@@ -59,8 +59,8 @@ class Joint(Distribution):
         except NotImplementedError:
             names = ", ".join(type(part).__name__ for part in self.parts)
             raise ValueError(
-                f"The entropy of the policy's distribution ({names}) is unknown. Leave out the "
-                "bonus for entropy: w_entropy=0."
+                f"The entropy of the policy's distribution ({names}) is unknown. Disable "
+                "the entropy bonus: w_entropy=0."
             ) from None
 
 
@@ -74,8 +74,8 @@ class ActorCritic(nn.Module):
 
     Args:
         policy: the policy. It is not copied.
-        frames: an example of the policy's frames by sensor, [1, ...]; it determines the input size
-            of a new critic.
+        frames: an example frame [1, ...] for each sensor; the frames determine the input size of a
+            new critic.
         module: name of the module of the network whose output a new critic reads.
 
     Raises:
@@ -94,8 +94,8 @@ class ActorCritic(nn.Module):
         network: Any = policy.network
         if isinstance(policy, StableBaselinesPolicy) and not hasattr(network, "predict_values"):
             raise ValueError(
-                f"{policy.name} has no critic of states, which method='ppo' needs and PPO and A2C "
-                "have. Use method='self_distil'."
+                f"{policy.name} has no state-value critic, which method='ppo' needs. Policies of "
+                "PPO and A2C have one. For this policy, use method='self_distil'."
             )
         with torch.no_grad():
             self.actions(frames)
@@ -107,7 +107,7 @@ class ActorCritic(nn.Module):
         self.critic.to(policy.device)
 
     def actions(self, frames: Mapping[str, np.ndarray]) -> Joint:
-        """Return the distribution of the actions for frames [B, ...] by sensor."""
+        """Return the action distribution; ``frames`` maps each sensor to an array [B, ...]."""
         answer = self.policy.answers(frames)[0]
         if isinstance(answer, Tensor):
             raise ValueError(
@@ -118,7 +118,7 @@ class ActorCritic(nn.Module):
         return Joint(answer)
 
     def values(self, frames: Mapping[str, np.ndarray]) -> Tensor:
-        """Return the values [B, 1] of frames [B, ...] by sensor."""
+        """Return the critic's values [B, 1]; ``frames`` maps each sensor to an array [B, ...]."""
         return self.critic(self._features(frames))
 
     @torch.no_grad()
@@ -158,5 +158,5 @@ def _new_critic(size: int) -> nn.Module:
 
 
 def _per_action(values: Tensor) -> Tensor:
-    """Return values [B, ...], one per number in an action, summed over each action to [B]."""
+    """Return the sum [B] of ``values`` [B, ...] over the components of each action."""
     return values.flatten(1).sum(1) if values.dim() > 1 else values

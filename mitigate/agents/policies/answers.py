@@ -1,4 +1,4 @@
-"""Define the answers of policies to a batch of frames, and compare two answers."""
+"""Define what policies return for a batch of frames, and losses between two such answers."""
 
 from __future__ import annotations
 

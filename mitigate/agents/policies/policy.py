@@ -100,7 +100,7 @@ class Policy(Agent, nn.Module):
 
     @property
     def version(self) -> str:
-        """Class name and hash of the weights, which name this policy in result rows."""
+        """Version for fingerprints: the class name of the policy and the hash of its weights."""
         return f"{self.name}-{checkpoint.weights_sha(self.network)}"
 
     @property
@@ -155,7 +155,8 @@ class Policy(Agent, nn.Module):
         for each position in the window.
 
         Args:
-            frames: frames by sensor, [B * length, ...]; the frames of a window are consecutive.
+            frames: maps each sensor to an array [B * length, ...]; the frames of a window are
+                consecutive.
             length: frames per window. A recurrent policy starts each window with an empty memory.
         """
         arrays = {name: frames[name] for name in self.sensors}

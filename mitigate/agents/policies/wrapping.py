@@ -102,11 +102,11 @@ def load_policy(policy: Any, folder: str | Path) -> Any:
 
     Args:
         policy: a policy with the architecture of the hardened policy. If the folder holds adapters,
-            it must be the original policy, because adapters fit only its weights.
+            ``policy`` must have the original weights, because the adapters fit only these.
         folder: the folder ``agent`` of the run.
 
     Raises:
-        FileNotFoundError, ValueError: The weights are missing or damaged, or they do not fit.
+        FileNotFoundError, ValueError: If the weights are missing, damaged, or do not fit.
     """
     network = policy if isinstance(policy, nn.Module) else policy.policy
     if (Path(folder) / adapters.SETTINGS).is_file():

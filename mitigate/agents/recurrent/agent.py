@@ -335,8 +335,10 @@ class RecurrentAgent(SideBySide, nn.Module):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the likeliest action.
 
-        Raises RuntimeError if ``reset`` was not called before, and the errors of
-        ``agents/observation.py``.
+        Raises:
+            RuntimeError: If ``reset`` was not called first.
+            KeyError, TypeError, ValueError: If the observation is invalid
+                (``agents/observation.py``).
         """
         check_started(self._walk is not None)
         return self.answers([observation], [self._walk], 1)[0]  # type: ignore[list-item]

@@ -47,8 +47,12 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Replace the last action by ``action`` (-1 for no action) and by the motion that really
-        happened.
+        """Correct the last step, in which the agent did not make the motion that it chose.
+
+        Args:
+            action: replaces the last action; -1 means no action.
+            metres: distance that the agent really moved forward.
+            radians: angle that the agent really turned to the left.
         """
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
@@ -248,8 +252,8 @@ class Policy(TextReader):
 
         Returns:
             A dict with the entries "logits" [E, T, 4]; "distance" [E, T], the predicted metres to
-            the goal divided by 5; "grounding" [E, T, 4], one logit per column that it shows the
-            goal's landmark; and "state" [E, T, width].
+            the goal divided by 5; "grounding" [E, T, 4], one logit per column, which predicts
+            whether the column shows the goal's landmark; and "state" [E, T, width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

@@ -63,7 +63,7 @@ PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
 # It also predicts the views that show the goal's landmark ("grounding").
 # Perception predicts the concepts in each view, and where space is free ("waypoints").
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
-_SCALE = 5.0  # unit of the planner's distance, in metres
+_SCALE = 5.0  # the planner predicts distances in metres divided by this number
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
 # names of the frozen modules of the ImageNet encoder
 BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")

@@ -9,8 +9,8 @@ target here is the free space itself.
 
 ``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
 its ImageNet weights. It is an example of the pretrained encoders that users have, such as ResNet-50
-or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied. A
-checkpoint contains only tensors that are not public, such as adapters.
+or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied.
+Checkpoints contain only the other tensors, such as those of adapters.
 """
 
 from __future__ import annotations

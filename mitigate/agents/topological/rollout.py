@@ -119,7 +119,7 @@ class LiveWalk:
     Args:
         world: any world.
         episode: the episode to run.
-        labels: entries of the world's truth to store with each observation, if the world has them.
+        labels: ground-truth entries to store with each observation; missing entries are skipped.
         clean: also keep the frames before corruption.
 
     Raises:

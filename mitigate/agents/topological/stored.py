@@ -42,7 +42,7 @@ from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 from mitigate.worlds.world import depth_sensor, expert_of
 
 SPACING = 0.5  # metres between poses
-# fields of a schedule that decide which rollouts use a corrupted variant, not what it contains
+# fields of a Schedule that do not affect the content of a variant, with fixed values
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
 WORTH = 4  # minimum number of scenes per process (heuristic); one scene takes about 5 s
 ON_GPU = 8  # maximum number of processes that encode on one GPU; each takes 0.5 GB
@@ -268,7 +268,8 @@ class Store:
     Args:
         agent: the agent whose encoders are used.
         world: function that returns a world. The world must render from any pose and have an
-            expert. The entry "seen" of its truth must list the objects visible in each view.
+            expert. Its ground truth must have the entry "seen", which marks the objects that are
+            visible in each view.
         root: parent folder of the stores, which has one subfolder per set of encoders.
         schedule: samples the corruption of each variant. Its ``clean_share`` is the fraction of
             rollouts on clean scenes.
@@ -276,7 +277,7 @@ class Store:
         seed: corruption seed.
 
     Raises:
-        ValueError: If the number of variants is above 0, but no schedule samples corruptions.
+        ValueError: If ``variants`` is above 0, but no schedule samples corruptions.
     """
 
     def __init__(

@@ -131,7 +131,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
             network: Any = load_network(AutoModelForImageTextToText, folder, precision)
             progress.advance()
         sha = torch.tensor(list(bytes.fromhex(files_sha256(folder))), dtype=torch.uint8)
-        # as a buffer, the sha256 is part of the fingerprint
+        # the sha256 is stored as a buffer, so that the fingerprint includes it
         self.register_buffer("base_sha256", sha)
         network.requires_grad_(False)
         self.network: Any = _with_lora(network, lora) if lora else network
@@ -166,7 +166,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
         for part, name in ((self.system_prompt or "", "system prompt"), ("probe of the text", "")):
             if part not in prompt:
                 raise ValueError(
-                    f"The chat template of {self.model} omits the {name or 'text of the user'}. "
+                    f"The chat template of {self.model} omits the {name or 'user message'}. "
                     "Choose an instruction-tuned model"
                     + (", or set agent.system_prompt=null." if name else ".")
                 )
@@ -309,7 +309,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
             self.network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
             for file in draft.iterdir():
                 if file.name not in (CONFIG, PEFT_WEIGHTS):
-                    file.unlink()  # this is PEFT's template of a README
+                    file.unlink()  # the README template that PEFT writes
             base = {"model": self.model, "sha256": self._base()}
             write_text(draft / BASE, json.dumps(base, indent=1) + "\n")
 
@@ -332,8 +332,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
             base = read_object(file.parent / BASE, "Fetch the folder again, or train again.")
             if base.get("sha256") != self._base():
                 raise ValueError(
-                    f"The adapter {folder} was trained on the model {str(base.get('model')):.200} "
-                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to it."
+                    f"The adapter {folder} was trained on the model {str(base.get('model')):.200}, "
+                    f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to the "
+                    "model on which the adapter was trained."
                 )
         tensors = load_tensors(file)
         shapes, expected = (
@@ -366,8 +367,8 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
     padded on the right, and causal attention ignores later tokens.
 
     Args:
-        network: a causal model of transformers.
-        inputs: the model's inputs for the prompt, a batch of 1.
+        network: a causal language model of the transformers library.
+        inputs: the model's inputs for the prompt, with batch size 1.
         ids: token ids [n, L] of the answers.
         mask: bool [n, L], False for padding.
     """

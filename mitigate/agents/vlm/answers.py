@@ -18,8 +18,12 @@ LONGEST = 200
 
 
 class Answer(NamedTuple):
-    """An answer of the model: its ``text``, and the low-level ``action`` that it stands for,
-    repeated.
+    """An allowed answer of the model.
+
+    Attributes:
+        text: the answer itself, such as "forward 75 cm".
+        action: the low-level action that the answer stands for.
+        repeats: how often the action is taken.
     """
 
     text: str
@@ -61,8 +65,8 @@ def answers_of(style: str) -> tuple[Answer, ...]:
 def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
     """Return the answer whose text is exactly ``text``, or None if there is no such answer.
 
-    Case, spaces, and a full stop at the end do not matter. A sentence that contains an answer and
-    other words is not an answer. A distance that is not in ``answers`` is not an answer either.
+    Case, spaces, and a full stop at the end do not matter. The result is None if ``text`` contains
+    other words besides an answer, or a distance or an angle that no answer has.
     """
     words = re.sub(r"(?<=\d)(?=[a-z])", " ", text.lower().strip().removesuffix("."))  # "75cm"
     return {answer.text: answer for answer in answers}.get(" ".join(words.split()))

@@ -1,7 +1,8 @@
 """Define the conversation of a vision-language agent: its memory, frames and prompt.
 
-A decision shows the model the instruction, up to ``history`` earlier frames and the current view,
-and asks for one of the allowed answers. All agents of this package send the same conversation.
+For each decision, the model receives the instruction, up to ``history`` earlier frames and the
+current view, and chooses one of the allowed answers. All agents of this package send the same
+conversation.
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ def views_of(count: int, history: int) -> list[int]:
 
 
 def question(task: str, answers: Sequence[Answer], instruction: str) -> str:
-    """Return the text of the user: ``task`` with the allowed answers and the instruction."""
+    """Return the user message: ``task`` with the allowed answers and the instruction."""
     listed = ", ".join(f'"{answer.text}"' for answer in answers)
     return task.replace("{answers}", listed).replace("{instruction}", instruction)
 
@@ -68,9 +69,9 @@ class AnsweringAgent(Agent):
     Args:
         answers: a style in ``ANSWERS``: "actions" or "navid".
         history: maximum number of earlier frames that the model sees.
-        task: text of the user; "{instruction}" and "{answers}" in it are replaced.
-            None means ``TASK``.
-        system_prompt: text of the system, or None to send none.
+        task: the user message, in which "{instruction}" and "{answers}" are replaced. None means
+            ``TASK``.
+        system_prompt: the system message, or None to send no system message.
 
     Raises:
         ValueError: If ``answers`` is unknown, ``history`` is out of range, or ``task`` lacks
@@ -144,8 +145,10 @@ class AnsweringAgent(Agent):
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
         """Return the next low-level action.
 
-        Raises RuntimeError if ``reset`` was not called, and raises the errors of
-        ``agents/observation.py`` for invalid observations.
+        Raises:
+            RuntimeError: If ``reset`` was not called first.
+            KeyError, TypeError, ValueError: If the observation is invalid
+                (``agents/observation.py``).
         """
         check_started(self._memory is not None)
         return self.act_all([observation], [self._memory])[0]  # type: ignore[list-item]

@@ -61,11 +61,11 @@ def run_episode(
 ) -> tuple[list[int], list[np.ndarray]]:
     """Run a training episode, and add its frames to ``memory``.
 
-    If the expert decides, its action is repeated for as long as the expert keeps choosing it, but
-    at most as often as the longest answer allows. The training target of a decision is the longest
-    answer whose actions all agreed with the expert. If the first action already disagreed, the
-    target is the shortest answer with the expert's action. The agent's STOP is never executed, so
-    that the agent also learns from later steps.
+    If the expert decides, its action is repeated while the expert keeps choosing it. The number of
+    repetitions is at most that of the longest answer. The training target of a decision is the
+    longest answer whose actions all agreed with the expert. If the first action already disagreed,
+    the target is the shortest answer with the expert's action. The agent's STOP is never executed,
+    so that the agent also learns from later steps.
 
     Args:
         world: the world.
@@ -93,7 +93,7 @@ def run_episode(
         if target not in longest:
             raise ValueError(
                 f"Episode {episode.episode_id}: the expert takes the action {target}, but the "
-                f"answers of a vision-language agent are the actions {sorted(longest)}."
+                f"answers of a vision-language agent stand for the actions {sorted(longest)}."
             )
         answer = longest[target]
         expert_decides = rng.random() < expert_share
@@ -129,7 +129,7 @@ def piece_of(
 
 
 def join_pieces(pieces: Sequence[Piece], answers: int) -> AnswerDecisions:
-    """Return all decisions of ``pieces`` as one batch; ``answers`` is the number of answers."""
+    """Join the decisions of ``pieces`` in one batch; the agent has ``answers`` allowed answers."""
     views: list[list[int]] = []
     texts: list[str] = []
     names: list[str] = []

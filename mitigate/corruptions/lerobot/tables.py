@@ -66,7 +66,7 @@ def open_table(path: Path) -> Iterator[Any]:
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
-            f"{path} cannot be read as parquet: it is cut short or damaged ({cause}). If it was "
+            f"{path} cannot be read as parquet: it is truncated or damaged ({cause}). If it was "
             f"recorded, call dataset.finalize(). {FIX}"
         ) from error
 

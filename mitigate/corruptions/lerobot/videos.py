@@ -108,7 +108,7 @@ def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
                 raise
             cause = escaped(" ".join(str(error).split()))
             raise ValueError(
-                f"{path} cannot be decoded: it is cut short or damaged ({cause}). {FIX}"
+                f"{path} cannot be decoded: it is truncated or damaged ({cause}). {FIX}"
             ) from error
 
 

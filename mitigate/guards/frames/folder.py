@@ -56,7 +56,7 @@ def card(folder: str | Path) -> dict[str, Any]:
         )
     damage = folders.problem(folder / CARD)
     if damage:
-        raise ValueError(f"{folder / CARD} is cut short or damaged: it {damage}. {_AGAIN}")
+        raise ValueError(f"{folder / CARD} is truncated or damaged: it {damage}. {_AGAIN}")
     content = read_json(folder / CARD, _AGAIN)
     wrong = _wrong(content)
     if wrong:
@@ -111,7 +111,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     wrong = folders.problem(file)
     # The error of load_weights would advise the user to delete the checksum, which is required.
     if wrong:
-        raise ValueError(f"{file} is cut short or damaged: it {wrong}. {_AGAIN}")
+        raise ValueError(f"{file} is truncated or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:
         raise ValueError(

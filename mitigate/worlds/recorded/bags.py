@@ -305,7 +305,7 @@ def _repair_advice(path: Path) -> str:
         if first != start:
             return f"{file} is not a {file.suffix} file: it starts with {first!r}. Copy it again."
         metadata = "" if path.is_file() else "`ros2 bag reindex` writes metadata.yaml again. "
-        return f"{metadata}If {file.name} is cut short or damaged, repair a copy with {program}."
+        return f"{metadata}If {file.name} is truncated or damaged, repair a copy with {program}."
     return "Copy the folder again: it has no file with messages."
 
 

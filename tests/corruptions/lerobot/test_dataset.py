@@ -192,7 +192,7 @@ def test_a_missing_or_damaged_table_is_named(folder, file):
         list(rows_of(open_dataset(folder), open_dataset(folder).choose_episodes(None)))
 
     path.write_bytes(content[: len(content) // 2])
-    with pytest.raises(ValueError, match="cut short or damaged.*finalize"):
+    with pytest.raises(ValueError, match="truncated or damaged.*finalize"):
         read()
     path.unlink()
     with pytest.raises(FileNotFoundError, match=r"lacks the file|has no files meta/episodes"):

@@ -139,7 +139,7 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
         "entries/whole.json: base, as its rows say",
         "nowhere.json, not a valid entry",
     ]
-    wrong = "entries/cut.json is cut short", "entries/folder.json", "lost, File name too long"
+    wrong = "entries/cut.json is truncated", "entries/folder.json", "lost, File name too long"
     for line, words in zip(printed[6:], [*wrong, "old.json: format must", "nowhere"], strict=True):
         assert words in line
     assert command.main(["check", "entries/whole.json"]) == 0

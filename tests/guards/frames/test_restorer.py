@@ -260,7 +260,7 @@ def card_with(**changed):
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        (damaged_weights, "cut short or damaged"),
+        (damaged_weights, "truncated or damaged"),
         (damaged_sum, "cannot be compared with its manifest .* Fetch the folder again"),
         (no_sum, "not listed in the manifest.json"),
         (card_with(hash="0" * 12), "do not match its card"),

@@ -98,7 +98,7 @@ def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
     """
     damage = folders.problem(file)
     if damage:
-        raise ValueError(f"{file} is cut short or damaged: it {damage}. {_AGAIN}")
+        raise ValueError(f"{file} is truncated or damaged: it {damage}. {_AGAIN}")
     config = read_json(file, _AGAIN)
     for name, kind in kinds.items():
         value = config.get(name) if isinstance(config, dict) else None
