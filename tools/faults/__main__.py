@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         results = pool.map(lambda name: inject_faults(name, options), options.recipes)
         for name, new in zip(options.recipes, results, strict=True):
             outcomes[name] = new
-            # if the evaluation without faults fails, its only outcome is UNBROKEN
+            # if the run without faults fails, its only outcome is UNBROKEN
             before = {} if report.UNBROKEN in new else stored.get(name, {})
             stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
             write_bytes(file, json.dumps(stored, indent=1).encode())

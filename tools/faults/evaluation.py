@@ -13,6 +13,7 @@ from pathlib import Path
 
 from tools.faults.disk import filled, small_disk
 from tools.faults.processes import Command, descendants, workers
+from tools.faults.report import UNBROKEN
 from tools.faults.training import NOTICE_TIME, STATUS, TRIES, check_one_rejected
 
 OPTIONS = ("checkpoint=checkpoints/base", "episodes=8", "suite=quick", "workers=2")
@@ -266,10 +267,10 @@ def break_evaluation(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
     unbroken = Evaluation(out / "unbroken", rng)
     problem = unbroken.start().problem(0)
     if problem:
-        return {"unbroken": problem}
+        return {UNBROKEN: problem}
     expected = unbroken.rows()
     if not expected:
-        return {"unbroken": f"it wrote no {ROWS}"}
+        return {UNBROKEN: f"it wrote no {ROWS}"}
     outcomes = {}
     for name in faults:
         for attempt in range(TRIES):

@@ -22,6 +22,7 @@ from mitigate.core import checksums
 from mitigate.training import states
 from tools.faults.disk import filled, small_disk
 from tools.faults.processes import TIMEOUT, Command, workers
+from tools.faults.report import UNBROKEN
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
 RECIPE_OPTIONS = {  # options that make a recipe faster, or without which it cannot run
@@ -349,10 +350,10 @@ def break_training(recipe: str, out: Path, seed: int, faults: list[str]) -> dict
     unbroken = Training(recipe, out / recipe / "unbroken" / "run", rng)
     problem = unbroken.finish()
     if problem:
-        return {SAME: f"the undisturbed training: {problem}"}
+        return {UNBROKEN: problem}
     expected = unbroken.weights()
     if not expected:
-        return {SAME: f"no weights in {unbroken.folder / 'agent'}"}
+        return {UNBROKEN: f"no weights in {unbroken.folder / 'agent'}"}
     outcomes: dict[str, str] = {}
     with small_disk(out / recipe / "broken", DISK):
         broken = Training(recipe, out / recipe / "broken" / "run", rng, unbroken.seconds)

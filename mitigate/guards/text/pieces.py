@@ -60,7 +60,7 @@ _ABBREVIATION = re.compile(
 # number of characters before a sentence boundary that are searched for an abbreviation
 ABBREVIATED = 10
 # minimum number of words of a clause; a shorter clause is joined to the previous one
-LONGEST_CLAUSE = 2
+MIN_WORDS = 2
 
 
 @dataclass(frozen=True)
@@ -100,7 +100,7 @@ def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
     opened = False  # whether the last clause is one capitalised word that begins a new sentence
     for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
         first = text[piece.start]
-        short = len(piece.of(text).split()) < LONGEST_CLAUSE and first not in "([{<"
+        short = len(piece.of(text).split()) < MIN_WORDS and first not in "([{<"
         joined = opened or short and not first.isupper()
         opened = short and first.isupper() and bool(clauses)
         if clauses and joined and script(piece.of(text)) == script(clauses[-1].of(text)):
