@@ -45,12 +45,12 @@ COMMANDS = {
     ),
     "evaluate": Command(
         "mitigate.evaluation.evaluate",
-        "measure the success of an agent, clean and under every corruption",
+        "measure the success of an agent on clean input and under every corruption",
         "checkpoint=checkpoints/base split=val_seen",
     ),
     "harden": Command(
         "mitigate.shipping.harden_command",
-        "make a trained policy of another library robust, without an expert",
+        "make a trained policy from another library robust, without an expert",
         "policy=my_policy:load world=my_policy:make_world severity=0.6",
     ),
     "controls": Command(

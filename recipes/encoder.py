@@ -1,7 +1,7 @@
 """Harden an image encoder with frames only. The encoder learns to output the clean features for
 corrupted frames.
 
-    L = w_feat mean of (f(corrupted) - f0(clean))^2 / v + w_gate BCE(gates, corrupted or not)
+    L = w_feat * mean((f(corrupted) - f0(clean))^2 / v) + w_gate * BCE(gates, is_corrupted)
 
 f0 is the original encoder, and v is the variance of its clean features between frames. Therefore
 features that do not depend on the frame have a loss of 1. No label, action, instruction or policy

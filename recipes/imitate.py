@@ -30,8 +30,8 @@ class Imitate(OnEpisodes):
         agent: the agent, which is trained in place.
         rollouts: the source of its decisions.
         train_parts: names of the agent's ``parts()``, or "adapters"; other parts stay frozen.
-            "policy" selects all parts except the encoders, and None selects all parts except the
-            adapters.
+            "policy" means all parts except the encoders. If it is None, all parts except the
+            adapters are trained.
         losses: weights of auxiliary losses by name, which override the agent's defaults.
 
     Raises:

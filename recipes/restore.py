@@ -1,8 +1,8 @@
 """Train a restorer on pairs of corrupted and clean frames, without an agent, labels or actions.
 
-    L = mean over scales of |out - clean|
+    L = mean_scales(|out - clean|)
         + w_grad * |gradient(out) - gradient(clean)|
-        + w_right * mean of e / (e + TOLERANCE), with e = |out - clean| per pixel
+        + w_right * mean_pixels(e / (e + TOLERANCE)), where e = |out - clean|
 
 The last term counts wrong pixels instead of measuring their error. It keeps the restorer from
 changing correct pixels next to drops, stripes or noise. In the first term, the error is multiplied

@@ -171,7 +171,11 @@ class SelfDistil(Objective):
         }
 
     def schedule_at(self, step: int) -> Schedule:
-        """Return the schedule of a step: rising severity, and mostly clean frames at the end."""
+        """Return the corruption schedule that applies at training step ``step``.
+
+        With ``curriculum``, the maximum severity rises during training, and most frames are clean
+        at the end.
+        """
         if not self.curriculum:
             return self.schedule
         progress = step / max(1, self.steps)

@@ -46,7 +46,7 @@ def run(folder: Path, *command: str) -> None:
 
 @pytest.fixture(scope="module")
 def files(tmp_path_factory) -> Iterator[Path]:
-    """The folder in which a user has saved the files of the page."""
+    """The folder in which a user has saved the files on the page."""
     folder = tmp_path_factory.mktemp("mine")
     (folder / "corridor.py").write_text(CODE)
     for name, text in CONFIGS.items():
@@ -62,7 +62,7 @@ def files(tmp_path_factory) -> Iterator[Path]:
 
 @pytest.fixture(scope="module")
 def folder(files) -> Path:
-    """The folder of :func:`files` after all commands of the page: train, evaluate and export."""
+    """Run all commands on the page (train, evaluate, export) and return their folder."""
     for command in COMMANDS:
         run(files, *shlex.split(command)[1:])
     return files

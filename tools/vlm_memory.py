@@ -2,9 +2,9 @@
 
 The language model is built on torch's meta device, which needs no memory for weights, and processes
 one decision. The tensors that autograd keeps for the backward pass are counted exactly. The image
-encoder is frozen, so autograd keeps none of its tensors; only its weights are counted. Memory of
-the CUDA context, of temporary tensors and of fragmentation is not included. Nothing is measured on
-a GPU.
+encoder is frozen, so autograd keeps none of its tensors; only its weights are counted. The
+estimate excludes the CUDA context, temporary tensors, and memory lost to fragmentation. Nothing is
+measured on a GPU.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 # %% [markdown]
 # # Measure and harden a policy in a gymnasium environment
 #
-# This tutorial wraps a gymnasium environment as a world. It measures a policy of another library (a
+# This tutorial wraps a gymnasium environment as a world. It measures a policy from another library (a
 # torchrl actor) under three corruptions, and then makes the policy robust. The tutorial takes about
 # a minute on a CPU.
 #

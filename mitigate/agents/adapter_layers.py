@@ -349,8 +349,10 @@ class RingAdapter(Adapter):
         parts = [x, y, self.score(y)]
         grid = neighbour_grid(x.shape[-2], x.shape[-1], 360 / self.views, self.hfov).to(x.device)
         maps = self.aligned(torch.cat([part.float() for part in parts], 1), grid)
-        unseen = (grid.abs() > 1).any(-1)  # shape [2, h, w]; each view sees all its cells
+        # bool [2, h, w]: whether a cell is outside the left or the right neighbour's field of view
+        unseen = (grid.abs() > 1).any(-1)
         scores = torch.stack([each[:, -1] for each in maps], 1)
+        # the padding adds the view itself, which sees all of its own cells
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)
         fused = maps[0] * weights[0]

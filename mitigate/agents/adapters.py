@@ -85,14 +85,14 @@ def insert_adapters(
         middle: channels of the bottlenecks; overrides ``reduction``.
 
     Returns:
-        The names of the adapted modules, in the order of the model.
+        The names of the adapted modules, in the order in which they occur in the model.
 
     Raises:
         TypeError: If the targets are a single string instead of a list.
-        ValueError: There are no targets; a target matches no module or is not a regular
-            expression; the channels of a module are unknown; a module has a child called
-            "adapter"; a gate controls no adapter; or the model has adapters already. In each case,
-            the model is not changed.
+        ValueError: If there are no targets; a target matches no module or is not a regular
+            expression; the channels of a module are unknown; a module has a child called "adapter";
+            a gate controls no adapter; or the model has adapters already. In each case, the model
+            is not changed.
     """
     reject_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
@@ -272,7 +272,7 @@ def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adap
     memory allocation.
 
     Raises:
-        TypeError, RuntimeError: The settings and the tensors do not match.
+        TypeError, RuntimeError: If the settings and the tensors do not match.
     """
     arguments = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
@@ -302,7 +302,7 @@ def _key(name: str) -> str:
 
 
 def adapters_of(model: nn.Module) -> list[Adapter]:
-    """Return the adapters and gates of ``model``, in the order of the model."""
+    """Return the adapters and gates of ``model``, in the order in which they occur in it."""
     return [*adapted(model).values()]
 
 

@@ -1,9 +1,9 @@
 """Load agents from folders of shipped weights, training runs and hardened exports.
 
 No code in a folder is run. Files are compared with the manifest (``core/folders.py``). Weights are
-safetensors files, and settings are plain YAML, which is checked by the schema of the agent's class.
-Only classes in ``schema.KINDS`` are built. If the agent is of another class, the user builds it,
-and the functions here load the weights into it (``agent=``).
+safetensors files. Settings are plain YAML, which is checked against the schema of the agent's
+class. Only classes in ``schema.KINDS`` are built. If the agent is of another class, the user builds
+it, and the functions here load the weights into it (``agent=``).
 
 ``mitigate export`` writes a *hardened* folder. Its ``card.json`` records how the agent was trained
 and the hash of its weights; see ``checkpoints/README.md``.
@@ -65,12 +65,12 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         folder: a hardened folder (as in :func:`load_hardened`), shipped weights
             (``checkpoints/recurrent/base``), or the folder ``agent`` of a run. A relative path is
             looked up first in the current folder, then in this project.
-        agent: an agent of a user's class, built with the settings of the trained agent. The weights
+        agent: a user-defined agent, built with the settings of the trained agent. The weights
             are loaded into it in place. If it is None, a new agent of a shipped kind is built.
 
     Raises:
         FileNotFoundError, ValueError: If the weights are missing or damaged; if the settings of
-            their agent are missing; if the trained agent is of a user's class and ``agent`` is
+            their agent are missing; if the trained agent is user-defined and ``agent`` is
             None; or if ``agent`` has different settings. The error message names the file.
         TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
@@ -107,7 +107,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         base: if the folder holds only adapters, the file or folder of the weights to which they
             belong. If None, the path in the card is used. This path is looked up relative to the
             current folder, the parent folders of ``folder``, and the checkout.
-        agent: an agent of a user's class, built with the settings of the exported agent. The
+        agent: a user-defined agent, built with the settings of the exported agent. The
             weights are loaded into it in place. If this agent has no ``settings()``, it receives
             the settings in the folder. If it is None, a new agent of a shipped kind is built.
 
@@ -130,8 +130,9 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     sha = checkpoint.weights_sha(filled)
     if sha != card["agent"]:
         raise ValueError(
-            f"The weights in {folder} make an agent with the hash {sha}, but {CARD} names "
-            f"{short(card['agent'])}. {_AGAIN} Convert an agent to another dtype afterwards."
+            f"An agent with the weights in {folder} must have the hash {short(card['agent'])} "
+            f"({CARD}), got {sha}. {_AGAIN} Convert an agent to another dtype only "
+            "after its weights are loaded."
         )
     give_settings(filled, folder / CONFIG, _AGAIN)
     return filled.eval()
@@ -212,7 +213,7 @@ def reject_other_models(run: Path) -> None:
         )
 
 
-# agents of a user's class ------------------------------------------------------------------------
+# user-defined agents -----------------------------------------------------------------------------
 
 
 def check_same(agent: Any, config: Path, again: str) -> None:

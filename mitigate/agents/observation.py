@@ -35,7 +35,7 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
         world: name of the world, for messages.
 
     Raises:
-        ValueError: RGB or depth is missing, or the number of views differs.
+        ValueError: If RGB or depth is missing, or the number of views differs.
     """
     contract = as_agent(agent)
     declared = contract.sensors
@@ -80,7 +80,7 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
 
     Raises:
         KeyError: If the entry is missing.
-        TypeError: RGB is not uint8, or depth is not floating point.
+        TypeError: If RGB is not uint8, or depth is not floating point.
         ValueError: If the shape is not the expected shape, or depth is in millimetres.
     """
     array = _entry(observation, name)

@@ -36,8 +36,8 @@ CRASH = (
     "let the agent stop (with Habitat), or call episode.finish(success=False) (docs/bridge.md)."
 )
 DIFFERENT = (
-    "a process died or gave up before its first step, or the command draws its episodes at random "
-    "(fix its seed, and choose some by episodes=)."
+    "a process died or gave up before its first step, or the command samples its episodes "
+    "at random (fix its seed, and choose some by episodes=)."
 )
 NOT_LOADED = (
     "no Python process of it loaded the hook. Does a script replace PYTHONPATH (let it append), "
@@ -298,8 +298,10 @@ class Attempt:
         return ""
 
     def _check_episodes(self, reports: Reports) -> str:
-        """Return a description of the problem if episodes are missing or unfinished or lack a
-        result, or "" if there is no problem.
+        """Check that all episodes are present, finished, and have a result.
+
+        Returns:
+            A description of the problem, or "" if there is none.
         """
         cell = self.cell
         if reports.lost:
@@ -322,7 +324,8 @@ class Attempt:
         if extra:
             return (
                 f"{counted(len(extra), 'episode')} ended under it that the clean run lacks, such "
-                f"as {extra[0]}: there, {DIFFERENT} Run again; clean is measured again, too."
+                f"as {extra[0]}: there, {DIFFERENT} Run again; the clean condition is "
+                "measured again, too."
             )
         if problem := cell.rule_problem():
             return problem

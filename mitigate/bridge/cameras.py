@@ -22,7 +22,7 @@ from mitigate.guards.guard import Guards
 # maximum size of all frames in a call, in bytes (heuristic); 24 cameras of 1080 x 1920 need 5e8
 MAX_BYTES = 1 << 30
 MAX_CAMERAS = 256  # maximum number of cameras per call (heuristic)
-MAX_MEDIAN = 100.0  # if the median depth is larger (metres), a range must be declared (heuristic)
+MAX_MEDIAN = 100.0  # if the median depth (metres) is above this, a range is required (heuristic)
 CHANNELS = {RGB: (3,), DEPTH: (1,)}
 _NAME_WITH_YAW = re.compile(r"(?:rgb|depth)_(\d+(?:\.\d+)?)")
 _LEVEL = 1e-3  # a camera is level if its pitch and roll are smaller than this (radians)
@@ -169,7 +169,7 @@ class Group:
 
     @property
     def shape(self) -> tuple[int, ...]:
-        """Shape of the array of all views; views without a camera are filled with zeros."""
+        """Shape of the array that holds all views; views without a camera are filled with zeros."""
         return (1 + max(self.views), *self.cameras[0].shape)
 
     def stream(self) -> FrameStream:
@@ -407,7 +407,7 @@ def _views(memory: Any, offsets: Mapping[str, int], group: Group) -> np.ndarray:
 
 
 def _make_groups(cameras: Sequence[Camera], kind: str, turn: str) -> list[Group]:
-    """Return the groups of a kind of camera, sorted by decreasing size and then by name.
+    """Return the camera groups of one kind, sorted by decreasing size and then by name.
 
     This order makes random numbers independent of the order in which cameras are described.
     """

@@ -31,7 +31,8 @@ from mitigate.worlds.measures import RULES
 
 LOG = "output.txt"
 TAIL = 12  # number of lines of the command's output that an error message repeats
-MAX_HASHED = 1 << 30  # for larger files (bytes) that the command names, only the size is compared
+# size in bytes above which a file that the command names is compared by size only, not by hash
+MAX_HASHED = 1 << 30
 SCHEMA: Mapping[str, tuple[Callable[[Any], bool], str]] = {
     "condition": (lambda value: isinstance(value, str) and value != "", "a name"),
     "severity": (
@@ -70,7 +71,7 @@ def read_done(folder: Path) -> dict[str, Any] | None:
     """Return the entries of a finished condition, or None if it is not finished.
 
     Raises:
-        ValueError: ``done.json`` is damaged or belongs to a different condition, or the events
+        ValueError: If ``done.json`` is damaged or belongs to a different condition, or the events
             changed after it was written. The message names the file and the next step.
     """
     file = folder / DONE

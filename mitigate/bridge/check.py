@@ -1,7 +1,7 @@
 """``mitigate run --check -- COMMAND``: run a program up to its first frames, and stop it.
 
-The check prints the cameras, the instruction and the applicable conditions, and draws corrupted
-frames.
+The check prints the cameras, the instruction and the applicable conditions, and writes a
+picture of corrupted frames.
 """
 
 from __future__ import annotations
@@ -109,13 +109,13 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         print(f"  {other.name}: {applies}")
         applicable += [p for p in other.corruption.parts if _sensors(p) and not _shows_past(p)]
     if not rig.groups:
-        print("no frame is named or described as rgb or depth: nothing to draw", flush=True)
+        print("no frame is named or described as rgb or depth: nothing to plot", flush=True)
         return None
     kinds = {group.cameras[0].kind for group in rig.groups}
     for kind in sorted({_sensors(part)[0] for part in applicable} - kinds):
-        print(f"the first call has no {kind} frame: no {kind} corruption is drawn")
+        print(f"the first call has no {kind} frame: no {kind} corruption is plotted")
     drawn = [part for part in dict.fromkeys(applicable) if kinds.intersection(_sensors(part))]
-    print(f"check: drawing {counted(len(drawn), 'corruption')}", flush=True)
+    print(f"check: plotting {counted(len(drawn), 'corruption')}", flush=True)
     figure = draw_sheet(rig, frames, drawn, reports.first, config.seed)
     path = write_figure(out / "sheet.png", figure)
     print(f"wrote {path}: the first frame of the agent under each condition", flush=True)
@@ -128,7 +128,7 @@ def _sensors(part: Corruption) -> list[str]:
 
 
 def _shows_past(part: Corruption) -> bool:
-    """Return whether a corruption is a temporal fault that cannot be drawn with only one frame.
+    """Return whether a corruption is a temporal fault that cannot be shown with a single frame.
 
     Most of these faults repeat earlier frames. The fault ``intermittent`` has no effect of its own:
     it determines when another corruption acts.
@@ -219,10 +219,10 @@ def draw_sheet(
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Draw a row of clean frames and one row per corruption, for the largest group of cameras.
+    """Plot a row of clean frames and one row per corruption, for the largest group of cameras.
 
-    An intermittent corruption is drawn at the first call in which it acts. The pictures omit
-    faults that repeat earlier frames.
+    If a corruption does not change every frame, its picture shows the first call that it changes.
+    Faults that repeat earlier frames are left out.
 
     Args:
         rig: The cameras.
@@ -266,7 +266,7 @@ def _views(group: Group, frames: Mapping[str, np.ndarray]) -> np.ndarray:
 
 
 def _draw_row(axes: Sequence[Axes], names: Sequence[str], group: Group, views: np.ndarray) -> None:
-    """Draw each name with its cameras below it, and the frames to the right of both."""
+    """Plot each name with its cameras below it, and the frames to the right of both."""
     for axis in axes:
         axis.axis("off")
     drawn = list(zip(group.cameras, group.views, strict=True))[:MAX_DRAWN]

@@ -132,7 +132,7 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
     A distance that is NaN, or a path that contains NaN, is treated as unknown and omitted.
 
     Raises:
-        ValueError: A field is invalid. Metrics must be finite numbers that are allowed in rows
+        ValueError: If a field is invalid. Metrics must be finite numbers that are allowed in rows
             (only ``distance_to_goal`` may be infinite), the SPL must lie in [0, 1], counts and
             distances must be >= 0, and the path must be a list of points [2] or [3].
     """

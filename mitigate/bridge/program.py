@@ -1,4 +1,4 @@
-"""Run the user's program and end all processes that come from it.
+"""Run the user's program, and end it and all its descendant processes.
 
 ``Command`` starts the program under a supervisor, a second process that runs this file::
 
@@ -100,7 +100,7 @@ class Command:
         return self._status
 
     def running(self) -> list[int]:
-        """Return the pids of all running processes of the command."""
+        """Return the pids of all running processes that belong to the command."""
         known = descendants(self.process.pid)
         return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 

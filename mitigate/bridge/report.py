@@ -33,7 +33,7 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
     """Write ``rows.jsonl``, the table and its figures, and print the table.
 
     Args:
-        cells: The conditions of this call, beginning with clean.
+        cells: The conditions of this call, beginning with the clean condition.
         out: The run's folder.
 
     Raises:
@@ -74,7 +74,7 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
     different agent, seed or split.
 
     Raises:
-        ValueError: The file holds rows of a condition or episode that is not in ``new_rows``. In
+        ValueError: If the file holds rows of a condition or episode that is not in ``new_rows``. In
             this case, the file is not changed.
     """
     before = rows.read(file) if file.exists() else []

@@ -109,7 +109,8 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
             other Envs ran in parallel.
 
     Raises:
-        ValueError: Another line is damaged. The message names the file, the line and the next step.
+        ValueError: If another line is damaged. The message names the file, the line and the next
+            step.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -260,7 +261,11 @@ def _missing(end: dict[str, Any], rule: Rule) -> str:
 
 
 def count_missing(reports: Reports, rule: str) -> dict[str, int]:
-    """Return how many episodes lack each argument that ``rule`` needs, or an empty dict."""
+    """Count the episodes that lack an argument that ``rule`` needs.
+
+    Returns:
+        A dict from the argument to the number of episodes; it is empty if no episode lacks one.
+    """
     counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
     return {name: count for name, count in counts.most_common() if name}
 

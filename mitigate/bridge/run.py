@@ -1,9 +1,9 @@
 """Run a program of another project under the corruption suite: ``mitigate run suite=full --
 COMMAND``.
 
-The command runs unchanged, once per condition, starting with clean. The frames and instructions of
-its processes are corrupted (``hook/mitigate_hook.py``). Rows and a table with PRS are written to
-the output folder. If the same command is run again, it skips finished conditions.
+The command runs unchanged, once per condition; the first condition is "clean". The frames and
+instructions of its processes are corrupted (``hook/mitigate_hook.py``). Rows and a table with PRS
+are written to the output folder. If the same command is run again, it skips finished conditions.
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ def run(config: RunConfig, command: Sequence[str]) -> Path:
         command: The user's command and its arguments.
 
     Raises:
-        ValueError: An option is invalid, or the command failed under some conditions. In that case,
-            the error is raised after all other conditions have been measured.
+        ValueError: If an option is invalid, or the command failed under some conditions. In that
+            case, the error is raised after all other conditions have been measured.
     """
     plan = make_plan(config, command)
     cells = make_cells(plan)
@@ -99,7 +99,7 @@ def _measure(plan: Plan, cells: Sequence[Cell]) -> None:
     problems += run_all(plan, applicable)
     _warn_changed_files([clean, *applicable], out, known if all_done else ())
     problems += _describe_removed(applicable, problems)
-    if not clean.is_done():  # a corrupted condition had episodes that clean lacks
+    if not clean.is_done():  # a corrupted condition had episodes that the clean condition lacks
         raise ValueError("\n".join(problems) or f"{clean.name}: {clean.reason_to_repeat()}")
     try:
         write_report([clean, *applicable], out)

@@ -1,6 +1,6 @@
 """The server of the bridge, with one process per connection, so that connections are independent.
 
-A ``Listener`` serves one command of the user while it runs. A process that connects must send the
+A ``Listener`` serves one user command while it runs. A process that connects must send the
 listener's token. A fork of the listener serves each connection, so that corruptions use all cores
 and an error ends only one environment, with a message.
 """

@@ -1,6 +1,6 @@
 """Build the objects that configs describe; only this module instantiates ``_target_`` nodes.
 
-Only configs of this checkout and of the user (``--config-dir``) are ever built. A config that came
+Only configs in this checkout and in the user's ``--config-dir`` are ever built. A config that came
 with downloaded weights is only read as data, because a ``_target_`` in it could run any code.
 """
 

@@ -181,7 +181,7 @@ def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> No
 
 
 def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
-    """Return whether shape and kind of numbers are equal; the precision may differ."""
+    """Return whether shapes match and both are bool, both integer, both float or both complex."""
     kinds = [
         (x.dtype == torch.bool, x.is_complex(), x.is_floating_point()) for x in (value, expected)
     ]

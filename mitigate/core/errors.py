@@ -83,7 +83,7 @@ def own_place(error: BaseException) -> str:
 
 
 def too_large_message(error: Exception) -> str:
-    """Return a paragraph if a setting or file that is too large caused the error, else ""."""
+    """Return an explanation if the error was caused by too large a setting or file, else ""."""
     cause = " ".join(str(error).split())[:200]
     if isinstance(error, MemoryError) or "allocate memory" in cause:
         what = "more memory than available"

@@ -217,11 +217,13 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
 
 
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
-    """Return the manifest of ``folder``, or the list of files in the card of an older folder, or
-    None.
+    """Return the manifest of ``folder``, or None if it has none.
+
+    The manifest of a folder in an older format is the list of files in its card.
 
     Raises:
-        ValueError: The manifest or the card is invalid. The message ends with the advice ``again``.
+        ValueError: If the manifest or the card is invalid. The message ends with the advice
+            ``again``.
     """
     folder = Path(folder)
     file = folder / MANIFEST

@@ -31,8 +31,8 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
     """Return the value in the untrusted JSON file ``path``.
 
     Raises:
-        ValueError: The file has more than ``most`` bytes, holds a number that is not finite, or is
-            damaged. Each message ends with the advice ``again``.
+        ValueError: If the file has more than ``most`` bytes, holds a number that is not finite, or
+            is damaged. Each message ends with the advice ``again``.
         UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     try:
@@ -49,8 +49,8 @@ def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, A
     """Return the JSON object in ``path``; it is read with :func:`read_json`.
 
     Raises:
-        ValueError: The file is damaged or holds a different kind of value, such as null or a list.
-            The message names the file and ends with ``again``.
+        ValueError: If the file is damaged or holds a different kind of value, such as null or a
+            list. The message names the file and ends with ``again``.
     """
     value = read_json(path, again, most)
     if not isinstance(value, dict):

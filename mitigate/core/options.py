@@ -84,7 +84,7 @@ def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]
 
 
 def values(options: Sequence[str], key: str) -> list[str]:
-    """Return the values to which ``options`` set ``key``, without quotes and escapes.
+    """Return the values that ``options`` assign to ``key``, without quotes and escapes.
 
     If ``key`` is set several times, the last value counts. A sweep (``key=a,b``) has several
     values. The list is empty if ``key`` is not set or Hydra cannot parse the options.

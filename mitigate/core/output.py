@@ -212,8 +212,8 @@ def delete_folder(folder: Path | str) -> None:
     """Delete ``folder`` with its content, if it exists. Links are never followed.
 
     Raises:
-        UnsafePathError: ``folder`` is a symbolic link, a FIFO or a file, or its path goes through a
-            symbolic link inside an output folder. Nothing was deleted.
+        UnsafePathError: If ``folder`` is a symbolic link, a FIFO or a file, or its path goes
+            through a symbolic link inside an output folder. Nothing was deleted.
         FolderLostError: If the output folder was removed or replaced.
     """
     check(folder)

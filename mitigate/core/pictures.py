@@ -1,4 +1,4 @@
-"""Draw observations and paths for logs and reports."""
+"""Plot observations and paths for logs and reports."""
 
 from __future__ import annotations
 
@@ -11,14 +11,14 @@ import numpy as np
 from mitigate.core.observation import DEPTH, RGB, VIEWS, Z_MAX
 
 AHEAD_IN_THE_MIDDLE = (6, 7, 8, 9, 10, 11, 0, 1, 2, 3, 4, 5)
-NO_READING = (255, 255, 255)  # the colour in which invalid depth is drawn
+NO_READING = (255, 255, 255)  # colour of invalid depth
 
 
 def side_by_side(views: np.ndarray) -> np.ndarray:
     """Join views side by side.
 
     Args:
-        views: uint8 [V, H, W, 3], or depth in metres [V, H, W, 1], which is drawn in grey.
+        views: uint8 [V, H, W, 3], or depth in metres [V, H, W, 1], which is shown in grey.
 
     Returns:
         uint8 [H, V * W, 3].
@@ -38,8 +38,8 @@ def strip(views: np.ndarray) -> np.ndarray:
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """Return a picture uint8 [H, W, 3] of an observation's RGB frame, or else of its depth, or
-    None.
+    """Return a picture (uint8 [H, W, 3]) of an observation's RGB frame, or of its depth frame if it
+    has no RGB. Return None if it has neither.
     """
     entries = observation or {}
     frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
@@ -56,7 +56,7 @@ def draw_path(
     label: str | None = None,
     style: str = "-",
 ) -> None:
-    """Draw a path on matplotlib axes; it is [n, 2], in metres on the floor plan."""
+    """Plot a path [n, 2], in metres on the floor plan, on matplotlib axes."""
     points = np.asarray(path)
     axes.plot(points[:, 0], points[:, 1], style, color=colour, lw=2, label=label, zorder=6)
     axes.plot(*points[0], "o", color=colour, ms=6, zorder=7)
@@ -64,7 +64,7 @@ def draw_path(
 
 
 def depth_picture(depth: np.ndarray, far: float = Z_MAX) -> np.ndarray:
-    """Draw depth [H, W] as uint8 RGB [H, W, 3].
+    """Convert depth [H, W] in metres to a picture, uint8 RGB [H, W, 3].
 
     Near points are bright, points at ``far`` metres are dark, and missing values are white.
     """

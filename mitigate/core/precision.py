@@ -105,7 +105,7 @@ def current(device: torch.device) -> str:
 
 
 def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
-    """Return whether the CPU has instructions for bf16 and oneDNN may use them.
+    """Return whether the CPU has bf16 instructions and oneDNN is allowed to use them.
 
     Args:
         capabilities: result of ``torch.cpu.get_capabilities``, or None to read it on this machine.

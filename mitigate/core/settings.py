@@ -20,7 +20,7 @@ from mitigate.core.output import UnsafePathError
 
 LARGEST = 1 << 16  # maximum size of a file in bytes (heuristic); the config of a run has about 4000
 DEEPEST = 16  # maximum nesting of lists and mappings (heuristic; the config of a run has 8)
-GREATEST = 1 << 53  # largest allowed integer; floats represent larger integers inexactly (IEEE 754)
+GREATEST = 1 << 53  # largest allowed integer; not every larger one is exact as a float (IEEE 754)
 UNRESOLVED = ("${", "???")  # OmegaConf resolves values with ${ and treats ??? as missing
 _SHOWN = 60  # maximum length of a key or value in a message, in characters
 _WARNING = "Settings that come with weights are plain data: do not use this folder."

@@ -42,7 +42,7 @@ class Task(Protocol):
         ...
 
     def work(self, jobs: Sequence[Any]) -> Iterator[Any]:
-        """Yield the result of each job of a group, in order."""
+        """Yield the results of a group's jobs, in order."""
         ...
 
     def name(self, job: Any) -> str:
@@ -77,7 +77,7 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
     """Return the number of processes to start.
 
     Args:
-        requested: number from the options; None uses one per core.
+        requested: number from the options. If None, there is at most one per core.
         jobs: number of jobs.
         worth: minimum number of jobs per process; with fewer jobs, starting a process takes longer
             than it saves.

@@ -35,7 +35,7 @@ class Record:
         apply: A pure function. For RGB, its arguments are views (uint8 [V, H, W, 3]), severity in
             (0, 1], key, and heading or None. For depth, they are views (float32 metres [V, H, W]),
             severity, key, and a DepthSensor. It returns a new array of the same shape as the views.
-            The value is None for corruptions of instructions, which ``corrupt_instruction``
+            The value is None for instruction corruptions, which ``corrupt_instruction``
             applies, and for faults with ``draw``.
         severity: What the severity (called s) controls, in a few words.
         label: Title in tables; by default, it is made from ``name``.

@@ -36,11 +36,11 @@ BLACK, WHITE = (0, 0, 0), (255, 255, 255)
 def line_taps(length: float, angle: float, step: int = 1) -> tuple:
     """Return the taps (dy, dx, weights) of a line with a length in px and an angle in radians.
 
-    The number of taps is a multiple of four. Only every ``step``-th column has taps; it stands for
-    a strip of ``step`` pixels. The weight of a strip is proportional to the part of its width that
-    the line covers. This weight is split between the two rows that are nearest to the line. Weights
-    are small integers. A fully covered strip has the weight ``step * LINE_UNITS / length``, rounded
-    down, but at least 2.
+    The number of taps is a multiple of four. Only every ``step``-th column has taps; each of these
+    columns represents a strip of ``step`` pixels. The weight of a strip is proportional to the part
+    of its width that the line covers. This weight is split between the two rows that are nearest to
+    the line. Weights are small integers. A fully covered strip has the weight ``step * LINE_UNITS /
+    length``, rounded down, but at least 2.
     """
     half = 0.5 * length * math.cos(angle)
     units = max(2.0, math.floor(step * blur.LINE_UNITS / length)) / step

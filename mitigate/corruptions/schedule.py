@@ -45,8 +45,8 @@ class Schedule:
         severity_depth: Severity of depth corruptions; None means ``severity``.
         clean_share: Fraction of frames (``per_frame``) or episodes that stay clean, in [0, 1].
         names: Corruptions to choose from.
-        broad_share: Fraction in [0, 1] of the corrupted frames or episodes. In this fraction, a
-            random composition (``broad``) of the same modality replaces the sampled corruption.
+        broad_share: Fraction in [0, 1] of the corrupted frames or episodes that get a random
+            composition (``broad``) of the same modality instead of the sampled corruption.
         alpha: Exponent (>= 0) in the weights of ``success_distributed``.
         floor: Term (>= 0) that is added to the weights; if it is above 0, every corruption can be
             sampled.

@@ -55,7 +55,7 @@ def mount_of(corruption: Corruption, key: Key) -> Mount | None:
 def _draw(part: Corruption, key: Key) -> Any:
     """Return what a fault does in the time step of ``key``."""
     draw = registry.record(part.name).draw
-    assert draw is not None, "only faults are drawn"
+    assert draw is not None, "only faults have a function draw"
     return draw(part.severity, key)
 
 

@@ -51,7 +51,7 @@ def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
             f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
-            f"RGB. Corruptions of RGB: {', '.join(registry.known('rgb'))}. For depth with 3 "
+            f"RGB. RGB corruptions: {', '.join(registry.known('rgb'))}. For depth with 3 "
             "columns, add a last axis of 1: frame[..., None]."
         )
     if frame.dtype != np.float32:
@@ -98,7 +98,7 @@ SENSOR = DepthSensor()
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
     """Return ``name`` if it is allowed; otherwise raise ValueError with the nearest allowed name.
 
-    By default, all corruptions of frames are allowed, including plugins.
+    By default, all frame corruptions are allowed, including plugins.
     """
     if name in (NAMES if allowed is None else allowed):
         return name
@@ -215,7 +215,7 @@ def _check_pair(name: str) -> None:
         if names[0] != GATE or gated.modality in OF_NO_FRAME or gated.family == TEMPORAL:
             raise ValueError(
                 f"{GATE!r} must be the first name of a pair, and the second name must be a "
-                f"corruption of frames that is not a temporal fault, got {name!r}. An example is "
+                f"frame corruption that is not a temporal fault, got {name!r}. An example is "
                 f"{GATE}+spatter."
             )
     if len(names) != 2 or names[0] == names[1]:
@@ -281,12 +281,12 @@ def corrupt(
     """Corrupt the frame of one modality at one time step.
 
     Args:
-        frame: For corruptions of RGB, uint8 [H, W, 3] or [V, H, W, 3]. For corruptions of depth,
+        frame: For RGB corruptions, uint8 [H, W, 3] or [V, H, W, 3]. For depth corruptions,
             float32 metres [H, W], [H, W, 1], [V, H, W] (W is not 3) or [V, H, W, 1]. V is the
             number of views of one time step (at most 36), which share one mask. View number k has a
             yaw of -30 * k degrees and no pitch. The first axis is not a batch axis: corrupt the
             time steps of a batch one at a time, each with its own key.
-        name: One of NAMES, or any other registered corruption of frames.
+        name: One of NAMES, or any other registered frame corruption.
         severity: Severity in [0, 1]; 0 returns a bit-exact copy.
         key: Key of the random numbers. An int sets only the seed, and a str sets only the episode.
         heading: Heading of the agent in radians, counter-clockwise, or None if it is unknown. If
@@ -325,7 +325,7 @@ def corrupt(
     if record.modality == "rgb" and frame.dtype.kind == "f" and frame.shape[-1:] != (3,):
         raise ValueError(
             f"{name} needs an RGB frame [H, W, 3], but {frame.dtype} {list(frame.shape)} looks "
-            f"like depth. Corruptions of depth: {', '.join(registry.known('depth'))}."
+            f"like depth. Depth corruptions: {', '.join(registry.known('depth'))}."
         )
     views = rgb_views(frame) if rgb else depth_views(frame, sensor, name)
     if severity == 0.0:
@@ -335,7 +335,7 @@ def corrupt(
         mount = record.draw(severity, key)
         degrees = _check_camera(name, mount, hfov)
         return warp(views, mount, degrees, None if rgb else sensor).reshape(frame.shape)
-    assert record.apply is not None, "corruptions of frames have a function"
+    assert record.apply is not None, "frame corruptions have a function"
     arguments = (severity, key, heading if rgb else sensor)
     if name not in registry.plugin_records():
         return record.apply(views, *arguments).reshape(frame.shape)
@@ -381,7 +381,7 @@ def corrupt_observation(
 ) -> dict:
     """Corrupt the frames of an observation (``core/observation.py``).
 
-    This function ignores corruptions of instructions, which ``corrupt_instruction`` applies, and
+    This function ignores instruction corruptions, which ``corrupt_instruction`` applies, and
     motion faults, which ``mitigate/worlds/motion.py`` applies.
 
     Args:

@@ -30,13 +30,13 @@ class DatasetFrames:
 
     Args:
         path: folder of the dataset.
-        camera: name of the camera. None selects the only camera of ``sensor``.
+        camera: name of the camera. If None, the only camera of ``sensor`` is used.
         sensor: "rgb" or "depth".
-        size: side in pixels to which frames are resized. None keeps their size.
+        size: side in pixels to which frames are resized. If None, frames are not resized.
         held_out: fraction of the scenes that are held out.
         block: maximum frames per block if there is only one episode. Blocks are smaller if five
             blocks could not be held out otherwise.
-        episodes: numbers of the episodes to read. None reads all.
+        episodes: numbers of the episodes to read. If None, all episodes are read.
         tolerance: maximum seconds between a row and its video frame.
 
     Raises:

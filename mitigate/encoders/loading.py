@@ -48,7 +48,7 @@ def load_model(model: str, kwargs: Mapping[str, Any] | None = None) -> nn.Module
         kwargs: arguments of the callable.
 
     Raises:
-        FileNotFoundError, ValueError: The model cannot be loaded; the message names the
+        FileNotFoundError, ValueError: If the model cannot be loaded; the message names the
             alternatives.
     """
     path = find(model)
@@ -97,7 +97,7 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 
 
 def describe(error: Exception, line: int = 0) -> str:
-    """Describe an error of the user's code: "KeyError: 'x', in net.py, line 3".
+    """Describe an error in the user's code: "KeyError: 'x', in net.py, line 3".
 
     Only one line of the error's message is included: the line with the index ``line``.
     """
@@ -172,8 +172,8 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
     Raises:
         FileNotFoundError: If the file does not exist.
-        ValueError: The file contains more than tensors and plain data, or its weights do not match
-            the model. The message lists the first differences.
+        ValueError: If the file contains more than tensors and plain data, or its weights do not
+            match the model. The message lists the first differences.
     """
     state = read_state(find_weights(weights))
     loaded = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}

@@ -168,8 +168,8 @@ class Encoder(nn.Module):
         model: same as in :func:`mitigate.encoders.loading.load_model`.
         transform: arguments of :class:`Transform`.
         kwargs: arguments of ``model``.
-        weights: same as in :func:`mitigate.encoders.loading.load_weights`; None keeps the model's
-            weights.
+        weights: same as in :func:`mitigate.encoders.loading.load_weights`. If None, the weights of
+            the model are not changed.
         prefix: same as in :func:`mitigate.encoders.loading.load_weights`.
         sensor: "rgb" or "depth".
         output: which features are trained. None means the output of the model. A number or a name
@@ -184,7 +184,7 @@ class Encoder(nn.Module):
             blocks for "auto"), and reduction, kernel, middle and gate (as in ``insert_adapters``).
 
     Raises:
-        ValueError, FileNotFoundError: An argument is invalid; the message lists valid values.
+        ValueError, FileNotFoundError: If an argument is invalid; the message lists valid values.
     """
 
     own_config_only = ("model", "kwargs", "weights", "prefix")  # core/build.py

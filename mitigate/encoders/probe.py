@@ -76,7 +76,7 @@ def features(
 
 
 class Resamples:
-    """Bootstrap resamples: scenes that were drawn with replacement.
+    """Bootstrap resamples: scenes that were sampled with replacement.
 
     ``weights`` (float32 [R, N]) contains how often each frame counts in each resample. With a
     single scene, the number of resamples R is 0, because the variation between scenes is unknown.

@@ -146,8 +146,8 @@ class FolderFrames:
     Args:
         path: the folder.
         sensor: "rgb" or "depth".
-        size: side in pixels to which frames are resized. None keeps their size, which must then be
-            the same for all frames.
+        size: side in pixels to which frames are resized. If it is None, frames are not resized, and
+            all frames must have the same size.
         held_out: fraction of the scenes that are unseen. It has no effect if the paths of some
             scenes begin with "val" or "test": then exactly these scenes are unseen.
         block: maximum frames per block if all frames are in one folder. Blocks are made smaller
@@ -209,7 +209,7 @@ class FolderFrames:
             yield Shot(self._read(files[index]))
 
     def _find_files(self) -> dict[str, list[Path]]:
-        """Return the files of each scene, in the order of their names."""
+        """Return the files of each scene, sorted by name."""
         plan = make_plan(self.path, None, (self.sensor,), "folder")
         recorded = (self.path / RECORDING).is_file()  # <scene>/<episode>/<camera>/000000.png
         scenes: dict[str, list[Path]] = {}

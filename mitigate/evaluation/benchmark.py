@@ -92,8 +92,9 @@ def benchmark(
             the agent's class.
         version: string that identifies state of the agent that mitigate cannot read, such as hooks.
             Without a version, rows of such an agent are not reused.
-        split: name of an episode list of the world. None means the default list, or the name of
-            your world.
+        split: name of an episode list of the world. The default is the world's usual list. If you
+            pass your own world, this is only a label for the episodes in ``listed``; the default is
+            the name of the world's class.
         episodes: number of episodes, which are spread evenly over the list. None means all
             episodes, as for the leaderboard. The default is 20 episodes of a split, or all episodes
             in ``listed``.

@@ -88,7 +88,7 @@ def resampled_means(
         resamples: number of resamples.
         seed: seed of the resampling.
         units: one number per episode [N]; episodes with the same number form one unit, which is
-            resampled as a whole. None makes each episode a unit.
+            resampled as a whole. If None, each episode is a unit.
 
     Raises:
         ValueError: If there are no values, or some values are not finite.

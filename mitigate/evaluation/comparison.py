@@ -180,7 +180,7 @@ def compare(rows: Iterable[Row]) -> Comparison:
 
 @dataclass(frozen=True)
 class _Scores:
-    """The result rows by (agent, corruption) and episode, from which measures are computed."""
+    """The result rows for measures, keyed by (agent, corruption) and then by episode."""
 
     cells: Mapping[tuple[str, str], Mapping[str, Sequence[Row]]]
     episodes: Sequence[str]

@@ -177,7 +177,7 @@ def check(config: EvaluateConfig, overrides: Sequence[str] = ()) -> None:
         check_losses(config.critical)
     if config.workers is not None and not 1 <= config.workers <= MOST_WORKERS:
         raise ValueError(
-            f"workers must be between 1 and {MOST_WORKERS} processes, or null (one per core), got "
+            f"workers must be from 1 to {MOST_WORKERS}, or null (one process per core), got "
             f"{config.workers}."
         )
 

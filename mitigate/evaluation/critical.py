@@ -213,7 +213,7 @@ class Score:
 
 @dataclass(frozen=True, eq=False)
 class Scores:
-    """The scores of the columns of a grid.
+    """The scores of a grid's columns.
 
     Attributes:
         grid: the results.
@@ -285,7 +285,7 @@ class Scores:
 
     @cached_property
     def results(self) -> dict[tuple[tuple[str, ...], tuple[str, ...], float | None], Score]:
-        """All scores by (columns, corruptions, loss).
+        """All scores, keyed by (columns, corruptions, loss).
 
         The score of a pair of columns is the score of the first minus the score of the second.
         """

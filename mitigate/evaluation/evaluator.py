@@ -1,7 +1,7 @@
 """Evaluate agents in closed loop, all on the same episodes with the same random keys.
 
-The result of an episode does not depend on other episodes. Each row is written immediately
-after it was computed, and an interrupted evaluation resumes where it stopped. All conditions of an
+The result of an episode does not depend on other episodes. Each row is written as
+soon as it is computed, and an interrupted evaluation resumes where it stopped. All conditions of an
 episode run in one process, which caches renderings and features. Identical frames give identical
 features, so the cache does not change results. An agent with ``together`` > 1 (``agents/agent.py``)
 runs several episodes at once.

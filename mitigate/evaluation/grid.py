@@ -119,7 +119,7 @@ def label_columns(
     return columns
 
 
-# A PRS omits a corruption measured on a smaller fraction of the clean episodes (heuristic).
+# A PRS omits a corruption measured on less than this fraction of the clean episodes (heuristic).
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
 STEPS = "steps"  # number of steps, which the HTML page shows

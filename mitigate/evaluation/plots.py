@@ -1,4 +1,4 @@
-"""Draw the results as pictures: a heatmap as in the paper, and curves of SR against severity."""
+"""Plot the results: a heatmap as in the paper, and curves of SR against severity."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ STACKED = 5  # with at least this many columns, the panels of a heatmap are stac
 
 
 def heatmap(section: Section, path: Path | str) -> Path:
-    """Draw a heatmap with one panel per block of corruptions and one column per agent.
+    """Plot a heatmap with one panel per block of corruptions and one column per agent.
 
     The rows of a panel are PRS-SR, PRS-SPL, clean, and the corruptions. A cell shows SR (%) / SPL,
     and its colour encodes SR divided by the best clean SR. The colour of a PRS encodes its value.
@@ -56,7 +56,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 
 
 def severity_curves(grid: Grid, path: Path | str) -> Path:
-    """Draw SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
+    """Plot SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
 
     Lines that coincide all remain visible, because later lines are dashed and have smaller markers.
     """
@@ -122,7 +122,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
-    """Draw the curves of one panel; dashes and marker sizes tell coinciding curves apart."""
+    """Plot the curves of one panel; dashes and marker sizes tell coinciding curves apart."""
     columns = list(grid.columns)
     rim = min(RIM, (LARGEST - MARKER) / len(columns))
     for curve in curves(grid, name):

@@ -154,7 +154,7 @@ def keep(
     """Store in ``folder`` a description of the world and hashes of the episodes.
 
     If the folder already has a description, the new one must match it. Worlds with different
-    sensors or success rules can use the same folder, because their rows differ.
+    sensors or success rules can share a folder, because each row names its sensors and its rule.
 
     Args:
         folder: folder of the rows.

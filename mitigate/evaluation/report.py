@@ -23,7 +23,7 @@ from mitigate.evaluation.sections import Difference, Retained, Section, label, s
 
 NO_DIFFERENCE = Difference(None, None, {})
 # These limits for pictures are heuristic.
-# Drawing time grows with panels and cells, and result rows may be untrusted.
+# Plotting time grows with panels and cells, and result rows may be untrusted.
 MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report
@@ -31,7 +31,7 @@ NO_PICTURE = (
     f"No picture: it would show more than {MOST_CORRUPTIONS} corruptions or {MOST_COLUMNS} "
     f"columns, or this report has {MOST_HEATMAPS} heatmaps."
 )
-FEW = 10  # with fewer episodes, no difference is printed in bold (heuristic)
+FEW = 10  # with fewer episodes than this, no difference is printed in bold (heuristic)
 
 
 def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
@@ -69,7 +69,7 @@ def write(
         rows: result rows.
         folder: output folder.
         first: the sections with this success rule come first.
-        least: minimum number of severities for which curves are drawn.
+        least: minimum number of severities for which curves are plotted.
         against: the reference column, as in :func:`sections`.
         drawn: unit that the bootstrap resamples, as in :func:`sections`.
     """

@@ -54,7 +54,7 @@ GREATEST = 1e9  # maximum value of a measure, in metres or steps (heuristic)
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
 _TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
-# patterns of the ids of generated episodes and of episodes from the Habitat bridge
+# patterns that match the ids of generated episodes and of episodes from the Habitat bridge
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")
 _SHARES = ("severity", "success", "spl", "ndtw", "cut")  # entries that are numbers from 0 to 1
 _NUMBERS = ("severity", "seed", *MEASURES)

@@ -135,7 +135,7 @@ class Section:
 
     @cached_property
     def clean(self) -> dict[tuple[str, str], Estimate]:
-        """The clean values by (column, metric)."""
+        """The clean values, keyed by (column, metric)."""
         values = {}
         for column in self.columns:
             for metric, key in METRICS.items():
@@ -153,7 +153,7 @@ class Section:
 
     @cached_property
     def retained(self) -> dict[tuple[str, str, str], Retained]:
-        """The PRS by (column, part, metric), where a part is a key of :attr:`parts`."""
+        """The PRS, keyed by (column, part, metric), where a part is a key of :attr:`parts`."""
         return {
             (column, part, metric): _retained(retention)
             for column in self.columns
@@ -169,9 +169,10 @@ class Section:
 
     @cached_property
     def by_seed(self) -> dict[tuple[str, str], dict[int, float]]:
-        """The clean SR by (column, "clean") and the PRS-SR by (column, block), for each seed.
+        """The clean SR and the PRS-SR of each seed; only columns with several seeds are included.
 
-        Only columns with several seeds are included.
+        The key (column, "clean") maps each seed to its clean SR. The key (column, block) maps each
+        seed to its PRS-SR for the block.
         """
         values: dict[tuple[str, str], dict[int, float]] = defaultdict(dict)
         for column in self.columns:

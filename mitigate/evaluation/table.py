@@ -96,7 +96,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         dest="drawn",
         choices=("episode", "scene"),
         default="episode",
-        help="unit that the bootstrap of the intervals draws (default episode)",
+        help="unit that the bootstrap resamples for the intervals (default episode)",
     )
     parser.add_argument(
         "--critical",

@@ -1,4 +1,4 @@
-"""Draw trajectories of one episode: clean, corrupted, and corrupted after training."""
+"""Plot trajectories of one episode: clean, corrupted, and corrupted after training."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
 CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80
-PICTURES = 4  # maximum number of episodes that :func:`write_pictures` draws (heuristic)
+PICTURES = 4  # maximum number of episodes that :func:`write_pictures` plots (heuristic)
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Walk:
 def draw_episode(
     walks: Sequence[Walk], world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> Figure:
-    """Draw the clean and corrupted start panorama, the floor plan, and all trajectories.
+    """Plot the clean and corrupted start panorama, the floor plan, and all trajectories.
 
     If the world has a method ``draw(axes)``, this method draws the floor plan.
     """
@@ -134,10 +134,10 @@ def write_pictures(
     seed: int = 0,
     guards: Mapping[str, Guards] | None = None,
 ) -> list[Path]:
-    """Draw up to ``PICTURES`` episodes that the last agent solves and the first agent fails.
+    """Plot up to ``PICTURES`` episodes that the last agent solves and the first agent fails.
 
     If there is no such episode (:func:`won_back`), or only one agent, the episode of the first
-    corrupted row is drawn. If the world has no poses, nothing is drawn.
+    corrupted row is plotted. If the world has no poses, nothing is plotted.
 
     Args:
         agents: the agents before and after training, by their names in ``rows``.

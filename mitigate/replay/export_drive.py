@@ -62,9 +62,9 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
     A drive is written completely or not at all.
 
     Raises:
-        ValueError: The form or split is unknown, the world has more than one camera or no expert,
-            or a drive already exists. A missing expert is noticed in the first episode; the other
-            checks run before it.
+        ValueError: If the form or split is unknown, the world has more than one camera or no
+            expert, or a drive already exists. A missing expert is noticed in the first episode; the
+            other checks run before it.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress

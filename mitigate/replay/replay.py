@@ -338,7 +338,7 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
 
 
 def _worst(corruptions: Sequence[Any], changes: Mapping[str, Any]) -> Any:
-    """Return the corruption of frames that changed the most decisions, or None if none was run."""
+    """Return the frame corruption that changed the most decisions, or None if none was run."""
     of_frames = [c for c in corruptions if c.name in changes and {"rgb", "depth"} & {*c.modalities}]
     return max(of_frames, key=lambda c: changes[c.name].changed.value, default=None)
 
@@ -350,7 +350,7 @@ def _draw(
     rerun: Callable[..., Any],
     path: Path,
 ) -> list[Path]:
-    """Draw some decisions that a corruption changed.
+    """Plot some of the decisions that a corruption changed.
 
     All these decisions come from the drive with the most changed decisions.
     """

@@ -129,7 +129,7 @@ def summaries(recordings: Sequence[Recording]) -> str:
 
 
 def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
-    """Draw the fraction of changed decisions as a heatmap.
+    """Plot the fraction of changed decisions as a heatmap.
 
     The heatmap has one row per condition and one column per agent.
     """
@@ -164,7 +164,7 @@ def spread(changed: list[int]) -> list[int]:
 def picture(
     recording: Recording, corruption: Corruption, clean: Answers, corrupted: Answers, path: Path
 ) -> Path:
-    """Draw the steps in ``corrupted.seen``.
+    """Plot the steps in ``corrupted.seen``.
 
     For each step, the picture shows the clean frame, the corrupted frame and both decisions.
     """

@@ -175,8 +175,7 @@ def load_programs(file: Path) -> dict[str, Callable[..., tuple[Tensor, ...]]]:
 def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor]:
     """Return fixed inputs of both networks, one tensor per entry of :data:`INPUTS`.
 
-    The inputs consist of three panoramas with random pixels and of two decisions; one decision has
-    padding.
+    The inputs are three panoramas of random pixels, and two decisions, one of which has padding.
     """
     draw = torch_generator(seed, "export probe", size)
 

@@ -2,8 +2,8 @@
 
 When a policy is trained on corruptions, it can lose abilities that it had before. The average of
 the weights before and after training often keeps old and new abilities (WiSE-FT: Wortsman et al.,
-"Robust fine-tuning of zero-shot models", CVPR 2022). Which of the three weights are best depends on
-the policy, so they are compared on validation episodes.
+"Robust fine-tuning of zero-shot models", CVPR 2022). Which of the three sets of weights is best
+depends on the policy, so they are compared on validation episodes.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ EPISODES = 300  # assumed length of episode lists; the estimate does not open th
 
 
 def describe(config: TrainConfig, folder: Path) -> str:
-    """Return a line that states the work of a run and its approximate duration on this machine."""
+    """Return a line with the number of steps and episodes of a run and its estimated duration."""
     parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
     if _episodes(config):
         count = config.evaluation.episodes

@@ -42,8 +42,8 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 
     Args:
         agent: the agent.
-        parts: names from ``agent.parts()``; "policy" selects all parts except the encoders, and
-            None selects all parts.
+        parts: names from ``agent.parts()``; "policy" means all parts except the encoders. If it is
+            None, all parts are selected.
 
     Raises:
         ValueError: If a part is unknown, if a parameter belongs to no part, or if the agent is not

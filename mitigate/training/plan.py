@@ -397,7 +397,7 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
     objective that a user wrote, because it is unknown how such an objective changes the agent.
 
     Raises:
-        ValueError: If there are more ``ranks`` than pieces of work per step, or if an objective
+        ValueError: If there are more ``ranks`` than work items per step, or if an objective
             raises ValueError.
         FileNotFoundError: If an objective raises FileNotFoundError.
     """

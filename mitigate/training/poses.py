@@ -44,7 +44,7 @@ class Poses(DrawsBySuccess):
             ``worlds/world.py``).
         training: episodes on which success rates are measured.
         modality: the sensor, "rgb" or "depth".
-        schedule: chooses the corruption of each panorama; None keeps frames clean.
+        schedule: chooses the corruption of each panorama. If None, frames stay clean.
         panoramas: number of panoramas per batch.
         seed: seed of poses and corruptions.
         refresh_episodes: number of episodes per corruption when success rates are measured.

@@ -68,11 +68,11 @@ class Ranks:
         return jobs[self.number :: self.count]
 
     def check(self, pieces: int, stage: str = "this recipe") -> None:
-        """Raise ValueError if a step of ``stage`` has fewer pieces of work than there are ranks."""
+        """Raise ValueError if a step of ``stage`` has fewer work items than there are ranks."""
         if self.count > 1 and pieces < self.count:
             most = max(1, pieces)
             raise ValueError(
-                f"A step of {stage} has {counted(pieces, 'piece')} of work, too few for "
+                f"A step of {stage} has {counted(pieces, 'work item')}, too few for "
                 f"{self.count} ranks: start torchrun with --nproc-per-node {most} or fewer (make "
                 f"train NPROC={most})."
             )

@@ -44,8 +44,8 @@ def steps_done(path: Path) -> int:
 def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
-    The newest ``keep`` checkpoints up to this step stay. Checkpoints of later steps also stay; they
-    were damaged, so the run resumed from an earlier checkpoint.
+    Of the checkpoints up to this step, only the newest ``keep`` are retained. Checkpoints of later
+    steps are never deleted; they are damaged, so the run has resumed from an earlier checkpoint.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"

@@ -143,11 +143,11 @@ def write_additional_reports(
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Draw episodes in which the first column of ``config.walks`` fails and the last column
+    """Plot episodes in which the first column of ``config.walks`` fails and the last column
     succeeds.
 
     These episodes are run again with the agents of the first training seed and the guards of their
-    cells. Draw nothing if one of these columns has no cell.
+    cells. Nothing is plotted if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards

@@ -26,7 +26,7 @@ def run(cfg: DictConfig) -> Path:
     """Train with the options ``cfg``, evaluate, and return the folder of the run.
 
     The folder contains ``config.yaml``, one subfolder per stage, ``agent/model.safetensors``, and
-    the results of the evaluation. Mistakes of the user raise ValueError or FileNotFoundError.
+    the results of the evaluation. User errors raise ValueError or FileNotFoundError.
     """
     # this imports torch, which is slow and not needed for --help
     from mitigate.training.plan import check, plan

@@ -31,6 +31,6 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
     usable = ", ".join(name for name in names if name not in missing)
     raise ValueError(
         f"{missing[0]!r} corrupts {needed}, but {lack.format(needed)}. "
-        f"{f'Draw only from names=[{usable}]' if usable else 'Choose other corruptions'}, or "
+        f"{f'Sample only from names=[{usable}]' if usable else 'Choose other corruptions'}, or "
         f"{fix.format(needed)}."
     )

@@ -3,10 +3,10 @@
 The effect of a fault depends on the kind of action:
 
 * FORWARD, LEFT and RIGHT in a world that defines ``move`` (apartments, Habitat): slip and gain
-  scale the step of 0.25 m and the turn of 15 degrees, drift turns the robot after FORWARD, and a
-  dropped action is a step without movement. STOP is always executed.
-* Actions in a ``Box``: gain and slip scale the action, drift adds a bias to all its elements, and a
-  dropped action becomes zero. The result is clipped to the bounds of the ``Box``.
+  multiply the step of 0.25 m and the turn of 15 degrees by a factor. Drift turns the robot after
+  FORWARD. A dropped action is a step without movement. STOP is always executed.
+* Actions in a ``Box``: slip and gain multiply the action by a factor, and drift adds a bias to all
+  its elements. A dropped action becomes zero. The result is clipped to the bounds of the ``Box``.
 * Other actions: only the fault ``repeated_action`` is possible, because it works with all actions.
 """
 
@@ -103,7 +103,7 @@ def with_motion(world: World, corruption: Corruption, seed: int) -> World:
 
 
 def _changed(action: Any, movement: Movement, box: Box) -> np.ndarray:
-    """Return the element of ``box`` into which a fault changes ``action``."""
+    """Return ``action`` as changed by a motion fault, clipped to ``box``."""
     values = box.check(action)
     if movement.dropped:
         changed = np.zeros_like(values)

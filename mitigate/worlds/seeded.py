@@ -38,7 +38,7 @@ def seeded_episodes(seeds: Iterable[int], instruction: str = "Reach the goal.") 
     return [placeless_episode(str(seed), instruction, seed=seed) for seed in seeds]
 
 
-FIRST_TRAINING_SEED = 1_000_000  # first seed of training episodes; comparisons use smaller seeds
+FIRST_TRAINING_SEED = 1_000_000  # first seed of training episodes; comparisons use seeds below this
 # name of the measure "return"; also the success rule of worlds that have no success criterion
 RETURN = "return"
 SCORES = ("success", RETURN)
@@ -326,7 +326,7 @@ class SeededWorld(World):
 
     @contextmanager
     def _calling(self, what: str) -> Iterator[None]:
-        """Convert any error of the user's code inside the context to a ValueError that names the
+        """Convert any error in the user's code inside the context to a ValueError that names the
         episode.
         """
         try:

@@ -250,7 +250,7 @@ class EpisodeCounter(Transform):
             workers = 1
             if multiprocessing.parent_process() is not None:
                 warnings.warn(
-                    "Environments in several processes draw the same corruptions: pass "
+                    "Environments in several processes get the same corruptions: pass "
                     "EpisodeCounter(worker=i, workers=n) in process i of n, or workers=1.",
                     stacklevel=2,
                 )

@@ -33,7 +33,7 @@ from mitigate.corruptions.schedule import drawn
 from mitigate.corruptions.stream import is_timed, mount_of, shows_past
 from mitigate.worlds.episodes import Episode
 
-MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median depth of an indoor frame is smaller
+MAX_MEDIAN_DEPTH = 100.0  # in metres (heuristic); the median depth of an indoor frame is below this
 # maps each action to (metres forward, degrees turned to the left)
 MOVES = {FORWARD: (FORWARD_METRES, 0.0), LEFT: (0.0, TURN_DEGREES), RIGHT: (0.0, -TURN_DEGREES)}
 
@@ -269,7 +269,7 @@ class WorldWrapper(World):
 
 
 class _WorldView(World):
-    """Wrap an object of a user's class as a :class:`World`."""
+    """Wrap a user-defined object as a :class:`World`."""
 
     def __init__(self, world: Any) -> None:
         self._world = world
@@ -412,7 +412,7 @@ def greedy_action(heading: float, distance_after: Callable[[float], float]) -> i
 
 
 class _ExpertView(Expert):
-    """Wrap an object of a user's class as an :class:`Expert`."""
+    """Wrap a user-defined object as an :class:`Expert`."""
 
     def __init__(self, expert: Any) -> None:
         take_over(self, expert, ("distance", "action", "counts"))

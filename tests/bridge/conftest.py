@@ -111,9 +111,9 @@ NEW_INTERPRETERS = {"test_run", "test_leftovers", "test_pythons"}
 
 @pytest.fixture
 def run(request, capsys, monkeypatch):
-    """Run a command as the command line does, in this process, without drawing heat maps.
+    """Run a command as the command line does, in this process, without plotting heat maps.
 
-    Heat maps are tested by the tests of the report. Drawing a heat map takes a third as long as
+    Heat maps are tested by the tests of the report. Plotting a heat map takes a third as long as
     running a short condition.
     """
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path.touch())

@@ -1,4 +1,4 @@
-"""Tests of ``mitigate run --check``, which prints and draws a program's frames and instruction."""
+"""Tests of ``mitigate run --check``, which prints a program's instruction and plots its frames."""
 
 import shlex
 import sys
@@ -53,7 +53,7 @@ def test_check_draws_only_the_first_call(tmp_path, capsys):
     typed = config(f"out={tmp_path}/o", "conditions=[spatter,gaussian_noise]")
     sheet = check(typed, [sys.executable, str(program)])
     assert cv2.imread(str(sheet)).shape[0] == 2 * 164  # clean and spatter
-    assert "no depth frame: no depth corruption is drawn" in capsys.readouterr().out
+    assert "no depth frame: no depth corruption is plotted" in capsys.readouterr().out
 
 
 def test_check_reports_a_program_without_cameras(tmp_path, capsys):
@@ -63,7 +63,7 @@ def test_check_reports_a_program_without_cameras(tmp_path, capsys):
     )
     typed = config(f"out={tmp_path}/o", "conditions=[spatter]")
     assert check(typed, [sys.executable, str(program)]) is None
-    assert "nothing to draw" in capsys.readouterr().out
+    assert "nothing to plot" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""Tests of keyed seeds: equal keys give equal random numbers, also in later versions."""
+"""Tests of keyed seeds: equal keys give equal random numbers, even in later versions."""
 
 from __future__ import annotations
 

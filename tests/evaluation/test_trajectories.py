@@ -1,4 +1,4 @@
-"""Tests that pictures of episodes agree with their rows, and that the right episodes are drawn."""
+"""Tests that plots of episodes agree with their rows, and that the right episodes are plotted."""
 
 from __future__ import annotations
 

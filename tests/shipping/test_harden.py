@@ -1,4 +1,4 @@
-"""Tests of ``mitigate.harden``, which hardens policies of other libraries without an expert."""
+"""Tests of ``mitigate.harden``, which hardens policies from other libraries without an expert."""
 
 import gymnasium
 import numpy as np

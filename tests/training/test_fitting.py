@@ -271,9 +271,9 @@ def test_check_stages_does_not_change_the_agent(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("recipe", "agent", "count", "words"),
     [
-        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 piece of work, too few"),
-        ("da_per_episode", "topological", 3, "perception_depth .* has 2 pieces of work.*NPROC=2"),
-        ("restore", "restorer", 2, "stage .*gate.* has 1 piece"),
+        ("dagger", "recurrent", 2, "stage policy of recipe=dagger has 1 work item, too few"),
+        ("da_per_episode", "topological", 3, "perception_depth .* has 2 work items.*NPROC=2"),
+        ("restore", "restorer", 2, "stage .*gate.* has 1 work item"),
     ],
 )
 def test_plan_rejects_more_ranks_than_pieces(tmp_path, recipe, agent, count, words):

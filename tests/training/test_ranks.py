@@ -98,8 +98,8 @@ def test_two_ranks_train_the_weights_of_one(tmp_path, monkeypatch):
 
 
 def test_more_ranks_than_pieces_are_rejected():
-    with pytest.raises(ValueError, match="4 pieces of work, too few for 5 ranks"):
+    with pytest.raises(ValueError, match="4 work items, too few for 5 ranks"):
         Ranks(0, 5).share([1, 2, 3, 4])
-    with pytest.raises(ValueError, match=r"policy has 1 piece of work, .* \(make train NPROC=1\)"):
+    with pytest.raises(ValueError, match=r"policy has 1 work item, .* \(make train NPROC=1\)"):
         Ranks(0, 2).check(1, "the stage policy")
     assert [Ranks(n, 3).share([1, 2, 3, 4]) for n in range(3)] == [[1, 4], [2], [3]]

@@ -47,8 +47,10 @@ def finished(cfg) -> None:
 
 @pytest.fixture(autouse=True)
 def no_plots(monkeypatch):
-    """Draw no pictures, because these take most of a report's time; tests/evaluation/test_report.py
-    tests them."""
+    """Plot nothing, because plots take most of a report's time.
+
+    tests/evaluation/test_report.py tests the plots.
+    """
     monkeypatch.setattr(plots, "heatmap", lambda section, path: path)
     monkeypatch.setattr(plots, "severity_curves", lambda grid, path: path)
 

@@ -75,7 +75,7 @@ def hurt_env(rows: int = 3, schedule: Schedule = HURT, **options) -> Transformed
 
 
 def seen(data: TensorDict) -> dict[tuple[int, int], tuple[torch.Tensor, torch.Tensor]]:
-    """Return the frames of a rollout by (episode, frame number)."""
+    """Return the frames of a rollout, keyed by (episode, frame number)."""
     return {
         (int(i["episode"]), int(i["frame"])): (i["rgb"], i["depth"])
         for i in data.reshape(-1).unbind(0)

@@ -2,8 +2,8 @@
 
 Both renderers run alternately in this process, at the same size, and return an RGB and a depth
 image of each view. Only the best round of each renderer counts, which reduces the influence of
-other programs. MiniWorld draws with pyglet and EGL; without a GPU, EGL uses Mesa's llvmpipe on all
-cores. ``apartments`` draws on one core.
+other programs. MiniWorld renders with pyglet and EGL; without a GPU, EGL uses Mesa's llvmpipe on
+all cores. ``apartments`` renders on one core.
 """
 
 from __future__ import annotations
@@ -52,12 +52,12 @@ def ours(size: int) -> Callable[[], int]:
 def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     """Return functions that render one view of a MiniWorld scene, in two ways.
 
-    The public calls ``render_obs`` and ``render_depth`` draw a view twice. The second way draws a
-    view once and reads both images; no public call can do this. MiniWorld stores every scene in
-    OpenGL's display list 1, so only the scene that was opened last can be drawn.
+    The public calls ``render_obs`` and ``render_depth`` render a view twice. The second way renders
+    a view once and reads both images; no public call can do this. MiniWorld stores every scene in
+    OpenGL's display list 1, so only the scene that was opened last can be rendered.
 
     Raises:
-        ImportError: MiniWorld is not installed. If system libraries are missing, pyglet raises
+        ImportError: If MiniWorld is not installed. If system libraries are missing, pyglet raises
             other errors.
     """
     import pyglet
@@ -80,7 +80,7 @@ def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
     read = partial(world.obs_fb.get_depth_map, 0.04, 100.0)
     return {
         f"MiniWorld {scene}, its public calls": partial(view, world.render_depth),
-        f"MiniWorld {scene}, drawn once": partial(view, read),
+        f"MiniWorld {scene}, rendered once": partial(view, read),
     }
 
 

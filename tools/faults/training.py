@@ -198,9 +198,7 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two training runs in one folder; one of them must be rejected, and must not change a
-    file.
-    """
+    """Start two training runs in one folder. One of them must be rejected and change no file."""
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
     running = next((command for command in both if command.runs()), both[0])
@@ -257,7 +255,7 @@ def jump_clock(training: Training) -> str:
 
 
 def fill_disk(training: Training) -> str:
-    """Fill the disk; training must end with a message and keep finished checkpoints."""
+    """Fill the disk; training must end with an error message and keep finished checkpoints."""
     disk = training.folder.parent
     if not os.path.ismount(disk):
         return "not run: no file system may be mounted here"

@@ -1,5 +1,6 @@
-"""Measure the effect of a corruption against its severity: SSIM and PSNR of RGB, and the error of
-depth.
+"""Measure how the effect of a corruption depends on its severity.
+
+The effect is measured as SSIM and PSNR of RGB frames, and as the error of depth.
 """
 
 from __future__ import annotations
@@ -122,8 +123,7 @@ def curves(
 
 
 def draw(by_name: dict[str, Curve], path: Path, grid: np.ndarray = GRID) -> None:
-    """Draw a PNG with three panels: SSIM and PSNR of RGB corruptions, and the mean error of depth
-    corruptions."""
+    """Plot the SSIM and PSNR of RGB corruptions and the mean error of depth corruptions, as PNG."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 

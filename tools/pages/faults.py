@@ -67,8 +67,8 @@ def write_page(folder: Path = DOCS) -> None:
 
 
 def timeline() -> np.ndarray:
-    """Draw the forward view at each step, clean and under each temporal fault. The result is uint8
-    RGB.
+    """Return a picture (uint8 RGB) of the forward view at each step, without and with each temporal
+    fault.
     """
     names = load_config("evaluate", ["suite=temporal"]).suite.conditions[1:]
     faults = [Corruption(name, SEVERITY) for name in names]
@@ -94,7 +94,7 @@ def _walk(world: ApartmentsWorld, corrupted: World) -> Iterator[Any]:
 
 
 def camera_sheet() -> np.ndarray:
-    """Draw the forward view under each camera fault. The result is uint8 RGB."""
+    """Return a picture (uint8 RGB) of the forward view under each camera fault."""
     world = ApartmentsWorld(2 * SIZE, views=1)
     episode = make_episode(Apartment(APARTMENT), "vln", 0)
     clean = world.reset(episode)[RGB]
@@ -112,7 +112,7 @@ def camera_sheet() -> np.ndarray:
 
 
 def paths() -> Figure:
-    """Draw the paths of the expert's commands, clean and under each fault of motion."""
+    """Plot the paths that the expert's commands produce, without and with each motion fault."""
     world = ApartmentsWorld(16)
     episode = make_episode(Apartment(APARTMENT), "vln", 0)
     commands = list(_commands(world, episode))
@@ -145,7 +145,7 @@ def _picture(frame: np.ndarray) -> np.ndarray:
 def _sheet(
     rows: Sequence[tuple[list[str], list[np.ndarray]]], titles: Sequence[str], size: int = SIZE
 ) -> np.ndarray:
-    """Draw rows of pictures under the titles of the columns, with the names of rows to the left."""
+    """Join rows of pictures under the titles of the columns, with the row names to the left."""
     side = size + GUTTER
     shape = (TITLE + side * len(rows), LABEL + side * len(titles), 3)
     sheet = np.full(shape, PAPER, np.uint8)

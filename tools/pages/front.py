@@ -1,4 +1,4 @@
-"""Draw the pictures at the top of the README: ``python -m tools.pages.front``.
+"""Create the pictures at the top of the README: ``python -m tools.pages.front``.
 
 ``docs/pictures/corrupted.jpg`` shows corruptions of the example frames that the package ships.
 ``docs/pictures/episode.gif`` shows two agents in the same episode, with the same foreign object on
@@ -37,7 +37,7 @@ COLOURS = ("#d55e00", "#0072b2")  # colours that colour-blind readers can distin
 
 
 def draw_corrupted(path: Path) -> None:
-    """Draw the example photograph and the example depth image, each clean and under three
+    """Plot the example photograph and the example depth image, each clean and under three
     corruptions.
     """
     key = Key(seed=0, episode="demo", frame=0)

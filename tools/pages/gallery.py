@@ -1,4 +1,4 @@
-"""Draw a contact sheet of the corruptions, and write the pages of the documentation.
+"""Create a contact sheet of the corruptions, and write the pages of the documentation.
 
     python -m tools.pages.gallery --out sheet.png [--rgb FRAME.png --depth FRAME.npy]
     python -m tools.pages.gallery --out sheet.png --suite unseen
@@ -49,7 +49,7 @@ SHEETS = {  # the corruptions on the sheet of each suite
     "unseen": registry.unseen_names(*BOTH),
     "unseen_val": registry.unseen_names(*BOTH, half=VALIDATION),
     "unseen_test": registry.unseen_names(*BOTH, half=TEST),
-    "broad": tuple(name for name in registry.BROAD for _ in range(8)),  # draws of each
+    "broad": tuple(name for name in registry.BROAD for _ in range(8)),  # samples of each
 }
 
 

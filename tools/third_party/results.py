@@ -1,4 +1,4 @@
-"""Harden a policy of another library with several seeds, or add a guard to it.
+"""Harden a policy from another library with several seeds, or add a guard to it.
 
 The success of the policy before and after is compared under known and unseen corruptions.
 

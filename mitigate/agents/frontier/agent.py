@@ -58,7 +58,8 @@ SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
 # weight of a frontier's value, relative to the path cost in metres (chosen on val_seen_ogn)
 WORTH = 6.0
-# minimum evidence for going to the object: FOUND until action number LAST, then MAYBE
+# The agent goes to the object if the evidence for it is at least FOUND.
+# After LAST actions, the weaker evidence MAYBE is enough.
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
 # the agent stops if the predicted probability that the object is near exceeds this

@@ -1,4 +1,4 @@
-"""Trained policies of other libraries as agents: stable-baselines3, torchrl, plain torch.
+"""Trained policies from other libraries as agents: stable-baselines3, torchrl, plain torch.
 
 :mod:`~mitigate.agents.policies.wrapping` recognises a policy by its methods, without importing its
 library. Each supported library has a module with a subclass of

@@ -1,4 +1,4 @@
-"""Policies of other libraries as actor-critics, for reinforcement learning.
+"""Policies from other libraries as actor-critics, for reinforcement learning.
 
 :class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
 estimate of the return from the current frame to the end of the episode.
@@ -26,7 +26,7 @@ HIDDEN = 64  # width of a new critic, the default of stable-baselines3
 class Joint(Distribution):
     """The distribution of whole actions, made from the distributions of their parts.
 
-    A sample of discrete actions has the shape [B] or [B, n] and holds indices, also for one-hot
+    A sample of discrete actions has the shape [B] or [B, n] and holds indices, even for one-hot
     parts. A sample of continuous actions has the shape [B, ...].
     """
 

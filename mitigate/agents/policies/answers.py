@@ -92,5 +92,5 @@ def _base(distribution: Any) -> Distribution:
 
 
 def parts(distributions: Any) -> list[Distribution]:
-    """Return the distributions of the parts of an action."""
+    """Return one distribution per part of an action."""
     return list(distributions) if isinstance(distributions, (list, tuple)) else [distributions]

@@ -50,7 +50,7 @@ class Policy(Agent, nn.Module):
         self._before: Any = None  # memory before the last action
 
     def answer(self, observation: Any, memory: Any = None) -> tuple[Answer, Any]:
-        """Return the policy's answers to a batch of observations, and its memory after the batch.
+        """Return the policy's answers for a batch of observations, and its memory after the batch.
 
         Args:
             observation: the environment's own observation, arrays with a first axis B.
@@ -151,13 +151,16 @@ class Policy(Agent, nn.Module):
         return torch.stack([part.entropy().sum() for part in answer]).sum()
 
     def answers(self, frames: Mapping[str, np.ndarray], length: int = 1) -> list[Answer]:
-        """Return the answers to windows of consecutive frames, as a list with one batch of answers
-        for each position in the window.
+        """Return the policy's answers for windows of consecutive frames.
 
         Args:
             frames: maps each sensor to an array [B * length, ...]; the frames of a window are
                 consecutive.
             length: frames per window. A recurrent policy starts each window with an empty memory.
+
+        Returns:
+            For a recurrent policy, one batch of B answers per position in the window. Otherwise,
+            a single batch with the answers for all frames.
         """
         arrays = {name: frames[name] for name in self.sensors}
         if not self.recurrent:

@@ -377,8 +377,8 @@ class TopologicalAgent(Agent, nn.Module):
 
         Raises:
             RuntimeError: If ``reset`` was not called.
-            KeyError, TypeError, ValueError: An entry of the observation is missing or has a wrong
-                dtype, shape or unit.
+            KeyError, TypeError, ValueError: If an entry of the observation is missing or has a
+                wrong dtype, shape or unit.
         """
         check_started(self._started)
         self._decided: Decision | None = None  # the last decision in this call of act

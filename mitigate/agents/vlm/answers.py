@@ -22,7 +22,7 @@ class Answer(NamedTuple):
 
     Attributes:
         text: the answer itself, such as "forward 75 cm".
-        action: the low-level action that the answer stands for.
+        action: the low-level action that the answer represents.
         repeats: how often the action is taken.
     """
 
@@ -65,14 +65,14 @@ def answers_of(style: str) -> tuple[Answer, ...]:
 def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
     """Return the answer whose text is exactly ``text``, or None if there is no such answer.
 
-    Case, spaces, and a full stop at the end do not matter. The result is None if ``text`` contains
-    other words besides an answer, or a distance or an angle that no answer has.
+    Case, spaces, and a full stop at the end do not matter. An answer within a longer
+    text does not count.
     """
     words = re.sub(r"(?<=\d)(?=[a-z])", " ", text.lower().strip().removesuffix("."))  # "75cm"
     return {answer.text: answer for answer in answers}.get(" ".join(words.split()))
 
 
 def answer_for(action: int, repeats: int, answers: tuple[Answer, ...]) -> int:
-    """Return the index of the longest answer with ``action`` and at most ``repeats`` actions."""
+    """Return the index of the answer with the most repeats of ``action``, at most ``repeats``."""
     fitting = [i for i, a in enumerate(answers) if a.action == action and a.repeats <= repeats]
     return max(fitting, key=lambda index: answers[index].repeats)

@@ -454,8 +454,8 @@ class Session:
         """Report the result of the episode exactly once.
 
         An episode without a step is not reported, and a forked process does not end the episode of
-        its parent. If an exception makes the program leave a running episode, the episode counts as
-        unfinished and not as a failure of the agent.
+        its parent. If an exception ends an episode early, the episode counts as unfinished, and not
+        as a failure of the agent.
         """
         if not self.active or self.episode_pid != os.getpid():
             return

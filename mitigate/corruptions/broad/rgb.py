@@ -121,8 +121,9 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add or multiply noise of random grain size, distribution and colour; the noise may form
-    bands.
+    """Add noise, or multiply by noise, of random grain size, distribution and colour.
+
+    The noise may form bands.
     """
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)

@@ -43,7 +43,7 @@ class Token:
         return bool(WORD.match(self.text))
 
 
-NOTHING = Token("", 0, "")  # the neighbour of the first and of the last token
+NOTHING = Token("", 0, "")  # placeholder for the token before the first and after the last
 
 
 def tokens(text: str) -> list[Token]:

@@ -35,7 +35,7 @@ def corrupt_observations(
         frames: Frames by modality: ``rgb`` (uint8 [B, V, H, W, 3]), ``depth`` (float32 [B, V, H, W,
             1]) or both.
         corruptions: For each row, a corruption, a pair of corruptions or CLEAN, for example from
-            ``Schedule.draw``. Corruptions of instructions are ignored.
+            ``Schedule.draw``. Instruction corruptions are ignored.
         keys: Key of each row.
         headings: Heading of each row in radians, or None for rows without a known heading.
         sensor: Depth range, and the value that marks missing depth.

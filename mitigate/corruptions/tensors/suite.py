@@ -58,17 +58,17 @@ def corrupt_tensors(
     99.9 % of the pixels, it differs by at most one grey level or 0.1 mm.
 
     Args:
-        frames: For corruptions of RGB, uint8 [B, V, H, W, 3]. For corruptions of depth, float32
+        frames: For RGB corruptions, uint8 [B, V, H, W, 3]. For depth corruptions, float32
             metres [B, V, H, W, 1]. A row contains the V views of one environment in one time step.
-        name: One of NAMES, or another registered corruption of frames that is not a fault.
+        name: One of NAMES, or another registered frame corruption that is not a fault.
         severity: Severity in [0, 1], either one number for all rows or one per row. Rows with
             severity 0 are copied.
         keys: Key of each row.
         headings: Heading of each row in radians, or None for rows without a known heading (see
             ``corrupt``).
         sensor: Depth range, and the value that marks missing depth.
-        backend: "torch" computes on the device of ``frames``, "numpy" on the host. None selects
-            "numpy" for tensors on the CPU, where it is faster, and "torch" for others. A corruption
+        backend: "torch" computes on the device of ``frames``, "numpy" on the host. The
+            default is "numpy" on the CPU, where it is faster, and "torch" otherwise. A corruption
             without a function in ``FUNCTIONS`` always runs on the host.
 
     Returns:

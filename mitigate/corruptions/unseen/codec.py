@@ -18,7 +18,7 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 # possible sides of a block in pixels, as in the transforms of H.264 and H.265
 BLOCKS = (4, 8, 16, 32)
 BLOCKS_ACROSS = 28  # number of blocks along the shorter side; blocks have 8 px at 224
-DEAD_ZONE = 0.40  # patterns of a smaller amplitude (as a fraction of white) are lost, at severity 1
+DEAD_ZONE = 0.40  # at severity 1, patterns with a lower amplitude (fraction of white) are lost
 CHROMA = 2.0  # limit of the amplitude in the colour channels, relative to the limit in grey
 SLICES = 14  # number of slices per frame height; a macroblock has 16 px at 224
 LOST = 0.8  # fraction of lost slices at severity 1

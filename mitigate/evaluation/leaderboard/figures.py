@@ -160,7 +160,7 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
 def _mean_sr(part: Section, column: str) -> Numbers:
     """Return the mean SR over the measured frame corruptions of the suite.
 
-    Corruptions of instructions are excluded, so that entries with and without them can be compared.
+    Instruction corruptions are excluded, so that entries with and without them can be compared.
     If no frame corruption was measured, the mean is over all measured corruptions.
     """
     frames = sorted(FRAMES.intersection(part.corruptions))

@@ -40,9 +40,9 @@ def run(
         paths: row files or folders.
         out: path of the page.
         title: heading of the page.
-        walk: pairs (name in the rows, weights) of the agents whose trajectories are drawn. The
+        walk: pairs (name in the rows, weights) of the agents whose trajectories are plotted. The
             baseline comes first.
-        walks: number of episodes whose trajectories are drawn.
+        walks: number of episodes whose trajectories are plotted.
         seed: corruption seed for these episodes, which must occur in the rows.
         options: options of ``mitigate evaluate``, such as "split=val_seen".
 
@@ -139,7 +139,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         type=named,
         default=[],
         metavar="NAME=WEIGHTS",
-        help="draw walks of this agent of the rows; the baseline first, then hardened agents",
+        help="plot paths of this agent of the rows; name the baseline first, then hardened agents",
     )
     parser.add_argument(
         "--config-dir", type=Path, help="folder of configs of your agents and worlds"

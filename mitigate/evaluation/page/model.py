@@ -33,7 +33,7 @@ def section_data(section: Section) -> dict[str, Any]:
 
     ``columns`` lists the agents. ``measures`` lists the quantities that the table shows per agent.
     ``values[c][m]`` is the number for agent c and measure m; a fourth entry holds marks such as
-    ``*``. ``corruptions`` lists the rows of the heatmap, starting with clean. ``cells[c][k]``
+    ``*``. ``corruptions`` lists the rows of the heatmap, starting with "clean". ``cells[c][k]``
     describes corruption k: [SR, SPL, number of episodes, fraction of the agent's clean SR, fraction
     of its clean SPL]. ``pairs["i-j"]`` holds the differences of agent i from agent j, where i > j
     and j < ``baselines``. The entry is None if the two agents have no common seed.

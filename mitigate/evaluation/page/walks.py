@@ -1,4 +1,4 @@
-"""Run some evaluated episodes again, and draw their trajectories on floor plans for the page.
+"""Run some evaluated episodes again, and plot their trajectories on floor plans for the page.
 
 Result rows contain measures but no trajectories. Therefore agents whose weights are available run
 some episodes again, with the same random keys as in the rows. The new measures are compared with
@@ -110,7 +110,7 @@ def walk_again(
     """
     if POSE not in world.sensors:
         raise ValueError(
-            "Trajectories can only be drawn in a world with poses, and this world has none."
+            "Trajectories can only be plotted in a world with poses, and this world has none."
         )
     known = {episode.episode_id: episode for episode in episodes}
     spread = {episode_id: n * GOLDEN % 1 for n, episode_id in enumerate(known)}

@@ -28,7 +28,7 @@ LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remaine
 # A clause next to an attack may say nothing about the route.
 # It is also removed if its log odds are above this.
 BESIDE = -2.0
-GOAL = 17  # a text of one sentence with fewer words is often only the name of a goal object
+GOAL = 17  # a sentence with fewer words than this is often only the name of a goal object
 # ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words
 BARE = 1.9
 ATTACKS = 3  # maximum number of attacks that are removed from a text

@@ -18,7 +18,7 @@ from mitigate.guards.text.learning.route_words import WORDS
 
 _PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
-LONG = 3000  # longer texts are assumed to contain an instruction
+LONG = 3000  # texts longer than this are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
 TIMES = 4  # a longer rewrite may have up to this many times the length of the original (heuristic)

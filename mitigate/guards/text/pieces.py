@@ -59,7 +59,7 @@ _ABBREVIATION = re.compile(
 )
 # number of characters before a sentence boundary that are searched for an abbreviation
 ABBREVIATED = 10
-# minimum number of words of a clause; a shorter clause is joined to the previous one
+# minimum number of words in a clause; shorter clauses are joined to the previous clause
 MIN_WORDS = 2
 
 

@@ -1,4 +1,4 @@
-"""Find the span of clauses that is an attack, with small recurrent networks.
+"""Use small recurrent networks to find the span of clauses that forms an attack.
 
 A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
 the network predicts a score for being part of an attack. For each boundary between clauses, it

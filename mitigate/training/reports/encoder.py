@@ -42,8 +42,7 @@ Scores = dict[tuple[str, str, str], Score]
 
 
 def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Path) -> None:
-    """Print and write how similar features under each corruption are to clean features, before and
-    after training.
+    """Print and write the similarity of corrupted to clean features, before and after training.
 
     The frames come from the scenes of ``evaluation.split``. Their number is 12 times
     ``evaluation.episodes``, but at most the number of training frames. The conditions are the
@@ -185,7 +184,7 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Draw a bar chart with one panel per measure.
+    """Plot a bar chart with one panel per measure.
 
     Each condition has two bars: one before training and one after training.
     """

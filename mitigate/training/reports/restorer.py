@@ -180,9 +180,9 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Draw three views of one time step in their corrupted, restored and clean versions.
+    """Plot three views of one time step in their corrupted, restored and clean versions.
 
-    The time step is the one with the largest :func:`_far`, so that no drawn view shows mostly a
+    The time step is the one with the largest :func:`_far`, so that no plotted view shows mostly a
     near wall.
 
     Returns:
@@ -208,8 +208,9 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the smallest mean depth of the drawn views. If it is small, a view mostly shows a near
-    wall.
+    """Return the smallest mean depth of the plotted views.
+
+    If it is small, a view mostly shows a near wall.
     """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())

@@ -94,7 +94,7 @@ class Apartment:
 def apartment_of(scene_id: str) -> Apartment:
     """Return the apartment of a scene id "apartments/<split>/<seed>".
 
-    Raises ValueError if the id has another form, or if its seed belongs to a different split.
+    Raises ValueError if the id is malformed, or if its seed belongs to a different split.
     """
     parts = scene_id.split("/")
     if len(parts) != 3 or parts[0] != "apartments" or not parts[2].isdigit():

@@ -1,4 +1,4 @@
-"""Compute the free space of an apartment, geodesic distances, and straight motion."""
+"""Compute where an agent can stand in an apartment, geodesic distances, and straight-line moves."""
 
 from __future__ import annotations
 

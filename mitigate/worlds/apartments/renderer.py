@@ -125,10 +125,10 @@ class Renderer:
             x: plan position in metres.
             y: plan position in metres.
             heading: heading in counter-clockwise radians.
-            views: indices of the views to draw. In all other views, the colours and the depth are
+            views: indices of the views to render. In all other views, the colours and the depth are
                 0, and the face ids are -1. The choice does not change the pixels of the drawn
                 views.
-            rgb: whether to draw colours. If false, the colours are 0.
+            rgb: whether to render colours. If false, the colours are 0.
             mount: displacement of the cameras.
 
         Returns:

@@ -1,5 +1,6 @@
-"""Read recorded drives and replay them as worlds. Supported are folders of frames, ROS bags and
-LeRobot datasets.
+"""Read recorded drives and replay them as worlds.
+
+Folders of frames, ROS bags and LeRobot datasets are supported.
 """
 
 from __future__ import annotations

@@ -25,8 +25,8 @@ class Frames(Source):
     Attributes:
         files: The frame files of each camera, one per time step.
         unit: Metres per integer step of 16-bit depth.
-        unit_given: Whether ``unit`` comes from the user or the recording. If false, ``unit`` is a
-            default.
+        unit_given: Whether ``unit`` comes from the user or the recording. If false, neither states
+            a unit, and ``unit`` holds the default value.
     """
 
     files: Mapping[str, Sequence[Path]]

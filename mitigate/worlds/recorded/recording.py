@@ -46,7 +46,7 @@ OBSERVED = "observation."  # prefix of the names of signals that an agent may re
 # A new step begins when the motion since the last step exceeds this fraction of ``Step``.
 # The fraction is below 1, so that rounding does not lose a motion of exactly one step.
 STEP_TOLERANCE = 0.98
-MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies by less
+MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies by less than this
 # if the last step is shorter than this fraction of ``Step``, it is merged into the previous step
 MIN_LAST_STEP = 0.5
 MAX_FRAME_BYTES = 1 << 32  # maximum number of bytes that all frames of a drive may take

@@ -326,7 +326,7 @@ def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
         ValueError: If the file is larger than ``max_bytes``.
     """
     with open(file, "rb") as stream:
-        # read() allocates memory for its maximum, so the maximum is at most the size of the file
+        # read(n) allocates n bytes in advance, so n is limited by the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)
     if len(raw) > max_bytes:
         raise ValueError(

@@ -35,8 +35,9 @@ COMPRESSED = ("/compressed", "/compressedDepth")
 
 @dataclass(frozen=True)
 class Topics:
-    """The names of the topics to read from a bag. None selects the only suitable topic, and "none"
-    disables the topic.
+    """The names of the topics to read from a bag.
+
+    If a name is None, the only suitable topic is read. If it is "none", no topic is read.
 
     Attributes:
         rgb: Topic with images of the RGB camera.

@@ -11,7 +11,7 @@ import numpy as np
 from mitigate.core.observation import DEPTH
 from mitigate.worlds.recorded.source import MIN_HFOV, Lens
 
-SUPERSAMPLING = 4  # enlargement factor of the canvas on which a partially covered view is drawn
+SUPERSAMPLING = 4  # enlargement factor of the canvas for a partially covered view
 
 
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
@@ -84,10 +84,10 @@ def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) 
 def _partial_view(
     frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """Draw a frame that covers only a part of the view.
+    """Paste a frame that covers only a part of the view.
 
-    The frame is first drawn on a larger canvas, so that rounding moves its edges only by a fraction
-    of a pixel.
+    The frame is first pasted onto a larger canvas, so that rounding moves its edges only by a
+    fraction of a pixel.
     """
     height, width = frame.shape[:2]
     left, right, top, bottom = edges

@@ -40,7 +40,7 @@ def film(tmp_path_factory) -> Path:
 
 
 def frames_of(folder: Path, camera: str) -> dict[tuple[int, int], np.ndarray]:
-    """Return every frame of a camera by (episode, frame number)."""
+    """Return every frame of a camera, keyed by (episode, frame number)."""
     dataset = open_dataset(folder)
     frames = {}
     for episode, rows, _ in rows_of(dataset, list(dataset.episodes.values())):

@@ -453,8 +453,8 @@ def test_benchmark_reuses_only_rows_of_one_world(tmp_path, monkeypatch):
 
 
 def test_benchmark_goes_on_whatever_else_episodes_carry(tmp_path, monkeypatch):
-    """Values in an episode's info that differ between processes, such as objects, do not make it a
-    different episode."""
+    """Two episodes count as equal if only the objects in their ``info`` differ, because the
+    addresses of objects differ between processes."""
     monkeypatch.chdir(tmp_path)
     options = {"suite": ["flare"], "workers": 1, "out": "rows", "options": ["env.size=16"]}
     (episode,) = load_episodes("val_unseen")[:1]

@@ -379,7 +379,7 @@ def test_report_corrupts_depth_up_to_the_world_range(panorama):
 
 @pytest.mark.parametrize("met", [[CLEAN], [CLEAN, Corruption("flare", 0.6)]])
 def test_report_without_fitting_corruption_has_no_picture(tmp_path, panorama, met):
-    """The restorer is for depth. If training used no corruption of depth, the report has no
+    """The restorer is for depth. If training used no depth corruption, the report has no
     picture."""
     only = opened(Restorer([DEPTH], depth_width=4).eval())
     report.write(only, report.Instants([panorama]), met, 0, tmp_path, "one")

@@ -18,7 +18,7 @@ from mitigate.worlds.episodes import read_episodes
 
 SIZE = 2000
 
-pytestmark = pytest.mark.xdist_group("pairs")  # drawn once
+pytestmark = pytest.mark.xdist_group("pairs")  # all tests use the same samples
 
 
 @pytest.fixture(scope="module")

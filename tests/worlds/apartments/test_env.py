@@ -33,7 +33,7 @@ def actions_for(name: str, count: int) -> list[int]:
 
 
 def walk(env: ApartmentsEnv | TransformedEnv, steps: int) -> dict[tuple[str, int], torch.Tensor]:
-    """Step through several episodes, and return RGB and depth by (episode, frame number)."""
+    """Step through several episodes, and return RGB and depth, keyed by (episode, frame)."""
     seen = {}
 
     def note(data) -> None:

@@ -73,7 +73,7 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
 
 
 def base_sha256(base: str) -> str:
-    """Return the sha256 of the weight files of ``base`` in the order of their names.
+    """Return the sha256 of the weight files of ``base``, sorted by file name.
 
     For a hub id, the sha256 of the id is returned.
     """

@@ -139,7 +139,7 @@ _MAKE = {
 def attacks(rng: np.random.Generator) -> list[str]:
     """Return one to three attack sentences.
 
-    Each sentence is drawn from the train split of the attacks, or composed by :func:`vary`.
+    Each sentence is sampled from the train split of the attacks, or composed by :func:`vary`.
     """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     return [

@@ -38,7 +38,7 @@ def _validation() -> re.Pattern[str]:
 
 
 def overlaps_validation(text: str) -> bool:
-    """Return whether ``text`` contains a filled phrase of the apartments' validation templates."""
+    """Return whether ``text`` contains a filled-in phrase from the validation templates."""
     return _validation().search(re.sub(r"[^a-z]+", " ", text.lower())) is not None
 
 

@@ -23,7 +23,7 @@ SPLICES = 24_000  # number of training texts that are generated for the network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum number of characters of a training text
 SHORT = 7  # maximum number of words of an attack that is added to another attack
-CLAUSE = 12  # an attack with fewer words can become a clause of a sentence
+CLAUSE = 12  # an attack with fewer words than this can become a clause of a sentence
 JOINS = ("", "", "and ", "but ", "but first ", "no wait, ", "please ", "or rather ")
 SEPARATORS = ("\n", " - ", ", ", "; ", "... ", " / ")
 
@@ -70,7 +70,7 @@ def splices(
 class _Source:
     """The lines of one fold.
 
-    Usually a group is drawn first and then a line of this group, so that large groups do not
+    Usually a group is sampled first and then a line of this group, so that large groups do not
     dominate.
     """
 
@@ -99,7 +99,7 @@ class _Source:
         return self._line(self.odd if rng.random() < 0.6 else self.hosts, rng).text
 
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
-        """Draw an attack.
+        """Sample an attack.
 
         To imitate longer attacks, some attacks are joined with a second attack. Some also get a
         sentence that introduces them, or one that closes them.
