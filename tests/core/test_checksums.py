@@ -112,7 +112,7 @@ def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
     path = states.save(tmp_path, state(1))
     note_of(path).write_bytes(text.encode("latin-1"))
-    with pytest.raises(states.Damaged, match=r"If only their \.sha256 files are damaged"):
+    with pytest.raises(states.Damaged, match=r"If only the \.sha256 files are damaged"):
         states.load_newest(tmp_path)
     for remaining in (file, path):
         note_of(remaining).unlink()

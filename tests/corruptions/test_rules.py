@@ -172,7 +172,9 @@ def test_wrong_depth_shapes_are_refused(shape):
     ids=["uint8", "panorama", "as 36 views"],
 )
 def test_rgb_for_depth_is_rejected_with_fitting_names(frame):
-    message = "gaussian_noise needs a depth frame.*of RGB: .*low_light_noise.*impulse_noise"
+    message = (
+        "gaussian_noise needs a depth frame.*RGB corruptions: .*low_light_noise.*impulse_noise"
+    )
     with pytest.raises(ValueError, match=message):
         corrupt(frame, "gaussian_noise", 0.5, key=KEY)
     narrow = np.ones((4, 5, 3, 1), np.float32)

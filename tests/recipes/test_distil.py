@@ -419,7 +419,10 @@ def test_unknown_feature_is_rejected(teacher):
     [
         ({"temperature": 0.0}, "recipe.temperature must be above 0, such as 2, got 0"),
         ({"w_kl": -1.0}, "recipe.w_kl must be a number from 0 to 1e.09, got -1"),
-        ({"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0}, "train: w_il, w_kl and w_feat are 0"),
+        (
+            {"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0},
+            "would be trained: w_il, w_kl and w_feat are 0",
+        ),
     ],
 )
 def test_invalid_weights_are_rejected_by_name(options, words):

@@ -49,7 +49,10 @@ def test_open_safeguard_reads_the_earlier_name():
 
 @pytest.mark.parametrize("choice", ["", None, 5, "tagger", "reader+none", "clasifier"])
 def test_open_safeguard_lists_the_choices_for_unknown_names(choice):
-    with pytest.raises(ValueError, match=r"no safeguard .* one of: none, classifier, .* folder"):
+    with pytest.raises(
+        ValueError,
+        match=r"not the name of an existing safeguard.*one of: none, classifier, .* folder",
+    ):
         open_safeguard(choice)
 
 
