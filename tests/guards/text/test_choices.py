@@ -51,7 +51,7 @@ def test_open_safeguard_reads_the_earlier_name():
 def test_open_safeguard_lists_the_choices_for_unknown_names(choice):
     with pytest.raises(
         ValueError,
-        match=r"not the name of an existing safeguard.*one of: none, classifier, .* folder",
+        match=r"(?:no|the name of an existing) safeguard.* one of: none, classifier, .*folder",
     ):
         open_safeguard(choice)
 
