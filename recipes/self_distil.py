@@ -7,7 +7,7 @@ has four terms:
 
 * ``w_policy``: the KL divergence of the action distributions (the squared error for actions without
   a distribution),
-* ``w_imitation``: the cross-entropy of the teacher's likeliest action (the squared error for
+* ``w_imitation``: the cross-entropy of the teacher's most likely action (the squared error for
   continuous actions); it is needed because small changes of nearly equal probabilities change the
   action,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,

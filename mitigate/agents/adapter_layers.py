@@ -41,7 +41,7 @@ class Adapter(nn.Module):
 
 
 def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
-    """Raise ValueError if a size is below 1 or the kernel size is even; None is not checked."""
+    """Raise ValueError if a size is below 1 or the kernel is even; sizes of None are skipped."""
     for name, size in sizes.items():
         if size is not None and size < 1:
             raise ValueError(f"{name} of a {owner} must be >= 1, got {size}.")
@@ -251,8 +251,8 @@ class ConvAdapter(Adapter):
         middle: channels of the bottleneck; overrides ``reduction``.
 
     The bottleneck and the zero initialisation follow Houlsby et al. 2019, as in the NavTrust paper.
-    This project chose ``reduction`` and ``kernel`` so that the adapters have 1 to 4 % of the
-    weights.
+    The defaults of ``reduction`` and ``kernel`` were chosen so that adapters add 1 to 4 % to the
+    number of weights.
     """
 
     corrects = ("up",)
@@ -298,8 +298,8 @@ class RingAdapter(Adapter):
 
     ``up`` and ``share`` are initialised to zero, so the output equals the input before training.
     ``up`` computes the correction, as in any adapter. ``share`` sets which fraction of a cell's
-    features comes from the neighbouring views. This fraction is the same for all channels, and it
-    needs no bottleneck.
+    features comes from the neighbouring views. This fraction is the same for all channels, and the
+    features of the neighbouring views do not pass through the bottleneck.
 
     Args:
         channels: number of channels C.
@@ -352,7 +352,7 @@ class RingAdapter(Adapter):
         # bool [2, h, w]: whether a cell is outside the left or the right neighbour's field of view
         unseen = (grid.abs() > 1).any(-1)
         scores = torch.stack([each[:, -1] for each in maps], 1)
-        # the padding adds the view itself, which sees all of its own cells
+        # the padding adds an entry for the view itself, in which all cells are visible
         scores = scores.masked_fill(F.pad(unseen, (0, 0, 0, 0, 1, 0)), -math.inf)
         weights = scores.softmax(1).unsqueeze(2).unbind(1)
         fused = maps[0] * weights[0]
@@ -363,7 +363,7 @@ class RingAdapter(Adapter):
         return through(self.gates, x, x + self.share(z).tanh() * (around - x) + self.up(z))
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return each map and its left and right neighbours, warped into the map's own view.
+        """Return the maps, and the left and right neighbours of each map warped into its view.
 
         Args:
             maps: ``[P * views, C, h, w]``.

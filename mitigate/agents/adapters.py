@@ -65,18 +65,18 @@ def insert_adapters(
         model: any torch module. Without ``run``, each target must return one tensor ``[n, C, h,
             w]``. With ``run``, a target may also return tokens or a vector, alone or as the first
             item of a tuple or list.
-        target_modules: regular expressions, each matched against the whole dotted name of a module
-            or its end (``"stages\.[01]"`` finds ``rgb_encoder.stages.0``).
+        target_modules: regular expressions. Each must match the dotted name of a module, or its
+            last parts: ``"stages\.[01]"`` matches ``rgb_encoder.stages.0``.
         reduction: the width of a bottleneck is the number of channels divided by this number.
         kernel: kernel size of convolutional and ring adapters.
-        ring: targets that get a :class:`RingAdapter` instead of the adapter from
-            ``target_modules``. The views of a panorama must be consecutive in the batch (n = P *
-            views).
+        ring: regular expressions of modules that get a :class:`RingAdapter`. The views of a
+            panorama must be consecutive in the batch (n = P * views).
         ring_reduction: the value of ``reduction`` for ring adapters.
         gates: targets that get a :class:`FrameGate` on their input, such as an encoder's first
-            module. A gate controls the convolutional and ring adapters in the nearest enclosing
-            module that has such adapters.
-        views: number of views per panorama; with 1 view, ``ring`` adds plain adapters.
+            module. A gate controls the convolutional and ring adapters of its encoder. The encoder
+            is the innermost module that contains the gate and at least one such adapter.
+        views: number of views per panorama. If it is 1, targets in ``ring`` get a
+            :class:`ConvAdapter`.
         hfov: horizontal field of view in degrees.
         run: function that calls the model on n frames, such as ``lambda n: model(frames[:n])``. The
             shapes of the targets' outputs determine the kind of adapter; tokens get a
@@ -89,10 +89,10 @@ def insert_adapters(
 
     Raises:
         TypeError: If the targets are a single string instead of a list.
-        ValueError: If there are no targets; a target matches no module or is not a regular
-            expression; the channels of a module are unknown; a module has a child called "adapter";
-            a gate controls no adapter; or the model has adapters already. In each case, the model
-            is not changed.
+        ValueError: If there are no targets, or a target is not a regular expression or matches no
+            module. Also if the channels of a module are unknown, or it has an attribute "adapter".
+            Also if a gate controls no adapter, or the model already has adapters. The model is
+            never changed if an error is raised.
     """
     reject_adapted(model)
     target_modules, ring = listed("target_modules", target_modules), listed("ring", ring)
@@ -244,7 +244,8 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
     if sha != expected:
         raise ValueError(
             f"The adapters in {folder} were trained on a backbone with sha256 "
-            f"{escaped(str(expected))}, but this one has {sha}. Load its weights and dtype first."
+            f"{escaped(str(expected))}, but this one has {sha}. Load the backbone's weights first, "
+            "and convert it to the dtype used in training."
         )
     missing = sorted(set(shapes) - {name for name, _ in model.named_modules()})
     if missing:
@@ -330,8 +331,8 @@ def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
     judges = {name for name, adapter in adapters.items() if isinstance(adapter, FrameGate)}
     if idle := sorted(judges - {*gates.values()}):
         raise ValueError(
-            f"The gate at {idle[0]} controls no adapter: no adapter for feature maps is in the "
-            "same encoder. Leave it out of gates, or choose other target modules."
+            f"The gate at {idle[0]} controls no adapter, because its encoder has no adapter for "
+            "feature maps. Remove the gate from gates, or choose other target modules."
         )
     # an existing attribute with this name may be a module, a parameter or a method
     conflicts = [name for name in adapters if hasattr(model.get_submodule(name), NAME)]

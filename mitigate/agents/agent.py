@@ -42,13 +42,13 @@ class Agent:
             route, "ogn": find an object). Evaluation warns about other tasks. If None, the agent
             supports all tasks.
         system_prompt: the prompt that the agent reads at ``reset``, or None.
-        aim: position [2] in plan metres that the agent is moving to, or None.
+        aim: position [x, y] in metres that the agent is moving to, or None.
         together: number of episodes that the agent can run at once; more than 1 requires ``begin``
             and ``act_all``.
         encoders: maps a sensor to the names of the parts that read it; used by ``see``
             (:class:`Seeing`).
-        labels: maps a sensor to the entry of a world's ``truth()`` on which these parts are
-            trained.
+        labels: maps a sensor to the entry of a world's ``truth()`` that holds the labels for
+            training these parts.
         loss_weights: weights of the auxiliary losses by name; 1 by default.
         frozen: names of modules that are never trained, such as a pretrained backbone; adapters
             inside them are trained.
@@ -126,7 +126,7 @@ class Agent:
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
-        """Return a result of ``collect`` in which the outputs of frozen weights are precomputed.
+        """Return ``piece``, a result of ``collect``, with precomputed outputs of frozen layers.
 
         Worker processes call this method. With ``clean``, also precompute the values that
         ``decide(clean=True)`` needs.
@@ -173,7 +173,7 @@ def check_started(started: bool) -> None:
         raise RuntimeError("Start the episode first: agent.reset(instruction).")
 
 
-# members that the wrapper of :func:`as_agent` forwards at each access, because ``aim`` may change
+# members that :class:`_AgentView` looks up at each access, because their values may change
 _READ_LATER = ("reset", "act", "system_prompt", "aim")
 OPTIONAL = [name for name in vars(Agent) if not name.startswith("_") and name not in _READ_LATER]
 
@@ -342,8 +342,8 @@ class Trainable(Protocol):
     def decide(self, decisions: Any, *, clean: bool = False) -> Output:
         """Return the agent's output for ``decisions``.
 
-        With ``clean``, the observations before corruption are used, but the candidates are the
-        same.
+        With ``clean``, the inputs are the observations before corruption. The candidate actions are
+        the same as without ``clean``.
         """
 
 
@@ -358,7 +358,7 @@ class KnowsEntropy(Protocol):
             observation: the argument of the last ``act``.
 
         Returns:
-            A scalar in nats; None if the last ``act`` took no decision.
+            A scalar in nats; None if the last ``act`` made no decision.
         """
 
 
@@ -368,7 +368,7 @@ class Seeing(Protocol):
 
     Attributes:
         encoders: maps a sensor to the names of the parts that read it.
-        labels: maps a sensor to the entry of a world's ``truth()`` on which they are trained.
+        labels: maps a sensor to the entry of a world's ``truth()`` that holds the training labels.
     """
 
     encoders: Mapping[str, tuple[str, ...]]

@@ -26,8 +26,9 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """Return the result of x [B, n, width] attending to memory [B, m, width], or to
-        ``memory[rows]``.
+        """Apply attention with queries from x [B, n, width] and keys and values from memory.
+
+        ``memory`` has the shape [B, m, width]. If ``rows`` is set, it uses ``memory[rows]``.
         """
 
         def split(t: Tensor) -> Tensor:
@@ -102,7 +103,7 @@ class TextReader(nn.Module):
         self.text_norm = nn.LayerNorm(width)
 
     def concept_features(self, concepts: Tensor) -> list[Tensor]:
-        """Return three features [..., width]: of things, of near things and of other concepts.
+        """Return three features [..., width]: for objects, for near objects and for other concepts.
 
         ``concepts`` holds the probability of each concept, [..., C].
         """

@@ -38,7 +38,8 @@ def build_agent(
         parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    # checked first, because a huge width would fill the memory, and a pattern may match endlessly
+    # Invalid settings are rejected before the agent is built.
+    # A huge width would exhaust the memory, and some patterns take too long to match.
     if loading.is_ours(node["_target_"]):
         config = plain(node)
         known = schema.schema_of(config["_target_"])

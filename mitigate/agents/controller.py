@@ -21,7 +21,7 @@ class Controller:
         self._budget = 0
 
     def follow(self, route: list[np.ndarray]) -> None:
-        """Start to follow a route (list of positions [x, y] in plan metres)."""
+        """Start to follow a route (list of positions [x, y] in metres)."""
         self.route = [np.array(p, np.float64) for p in route]
         self._last, self._blocked, self._budget = None, 0, 40 * max(1, len(route))
 

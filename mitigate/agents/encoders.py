@@ -211,7 +211,7 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
 
 
 class CameraRGB(RGBEncoder):
-    """Encode RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits of four columns.
+    """Encode four columns of RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits.
 
     Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
     """
@@ -225,7 +225,7 @@ class CameraRGB(RGBEncoder):
 
 
 class CameraDepth(DepthEncoder):
-    """Encode depth (metres ``[n, H, W, 1]``) as features of four columns and free-space logits.
+    """Encode depth (metres ``[n, H, W, 1]``) as free-space logits and features per image column.
 
     Features have the shape ``[n, 4, width]``. The logits ``[n, 30, 12]`` predict free space for
     each angle (from 45 degrees left to 45 degrees right) and distance (0.25 to 3 m).

@@ -29,7 +29,7 @@ from mitigate.core.checksums import DIGITS
 from mitigate.core.contracts import read
 from mitigate.core.observation import Observation, Sensor
 
-# attribute of shipped classes that holds a name; it stays the same if a module is moved
+# Shipped classes store a fixed name in this attribute, so moving a module changes no fingerprint.
 KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # hooks of this module are recorded by name, because state_dict() contains the adapters they call
@@ -122,8 +122,7 @@ def says_all(agent: Any) -> bool:
 def _definer(agent: Any) -> Any:
     """Return the object or class that defines ``settings``, or None.
 
-    If ``__getattr__`` returns ``settings``, they do not count, because they describe another
-    object.
+    Settings that come from ``__getattr__`` are ignored, because they belong to a wrapped object.
     """
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
@@ -152,9 +151,10 @@ def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
 def _entries(
     agent: Any, nets: Mapping[str, nn.Module], attributes: bool
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return descriptions of the attributes, layers and hooks, and reasons for unreadable state.
+    """Return two dicts: descriptions of the agent's contents, and reasons for unreadable contents.
 
-    Both results are dicts whose keys are dotted paths in the agent.
+    The contents are attributes, layers and hooks. The keys of both dicts are dotted paths in the
+    agent.
 
     Args:
         agent: the agent.
@@ -214,7 +214,7 @@ def _add_hooks(
 
 
 def attributes_of(thing: Any) -> list[tuple[str, Any]]:
-    """Return the attributes of an object, and the buffers that a module does not save, by name."""
+    """Return (name, value) pairs: an object's attributes and a module's non-persistent buffers."""
     attributes = read(thing, "__dict__", default={})
     if not isinstance(thing, nn.Module):
         return [(name, part) for name, part in attributes.items() if name != "settings"]
@@ -223,7 +223,7 @@ def attributes_of(thing: Any) -> list[tuple[str, Any]]:
 
 
 def code_of(*kinds: type) -> Contents:
-    """Return the source files of the user's classes among ``kinds``, and the values in their code.
+    """Return the source files of the user's classes among ``kinds``, and values that they use.
 
     These values are class attributes and the global variables to which methods refer.
     """

@@ -53,8 +53,8 @@ class LearnedReliability(nn.Module):
 
         w_v = softmax over views of cap * tanh(score([f_v, f_v - mean f])).
 
-    ``score`` is initialised to zero, so all weights are equal before training. The loss on the
-    fused features trains ``score``.
+    ``score`` is initialised to zero, so all weights are equal before training. ``score`` is trained
+    together with the agent.
 
     Args:
         width: number of features F.
@@ -87,7 +87,7 @@ class LearnedReliability(nn.Module):
 def weigher(
     width: int, *, learned: bool = False, rate: float | None = None, cap: float = CAP
 ) -> Callable[[Tensor], Tensor]:
-    """Return the function that computes the weights of views with ``width`` features.
+    """Return a function that computes one weight per view from the view's ``width`` features.
 
     The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
 

@@ -41,7 +41,7 @@ KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRA
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
 # maximum length of a path to base weights (heuristic; the limit of Linux is 4095)
 LONGEST_PATH = 1000
-# number of weights up to which an agent is built without a check (128 MiB; heuristic)
+# agents with up to this many weights (128 MiB) are built without a file-size check (heuristic)
 FREE_WEIGHTS = 1 << 25
 TARGET = schema.KINDS[0]
 # packages whose models are not navigation agents, and the documentation page of each package
@@ -154,14 +154,14 @@ def _agent_to_fill(agent: Any, config: Path, weights: Path, again: str) -> Any:
 
 
 def build_from(config: Path, weights: Path | None = None) -> Any:
-    """Return a shipped kind of agent with the settings in ``config`` and random weights.
+    """Build an agent of a shipped class with the settings in ``config`` and random weights.
 
-    The YAML file is read as plain data. If the agent has more weights than the file ``weights`` has
-    bytes, no memory is allocated for it.
+    The YAML file is read as plain data. A large agent with more weights than the file ``weights``
+    has bytes is rejected before memory is allocated for it.
 
     Raises:
-        ValueError: If the file is damaged, names a different kind of agent, or describes a large
-            agent that does not fit ``weights``.
+        ValueError: If the file is damaged, or names a different kind of agent. Also if the agent is
+            large and has more weights than the file ``weights`` has bytes.
     """
     kind = kind_of(config)
     make = partial(schema.class_of(kind), **agent_settings(config, kind))
@@ -172,7 +172,7 @@ def build_from(config: Path, weights: Path | None = None) -> Any:
                 warnings.simplefilter("ignore")
                 count = sum(parameter.numel() for parameter in make().parameters())
             size = weights.stat().st_size
-            if count > max(FREE_WEIGHTS, size):  # a weight has at least one byte
+            if count > max(FREE_WEIGHTS, size):  # each weight takes at least one byte of the file
                 raise ValueError(f"they require {count} weights, but {weights} has {size} bytes")
         return make()
     except (TypeError, ValueError, RuntimeError) as error:
@@ -219,9 +219,9 @@ def reject_other_models(run: Path) -> None:
 def check_same(agent: Any, config: Path, again: str) -> None:
     """Compare the settings of ``agent`` with those in ``config``.
 
-    If the agent has no ``settings()``, its plain attributes that have the name of a setting are
-    compared. In this case, a difference causes only a warning, because an attribute of
-    the same name may mean something else.
+    If the agent has no ``settings()``, each plain setting is compared with the agent's attribute of
+    the same name. In this case, a difference causes only a warning, because the attribute may mean
+    something else.
 
     Raises:
         ValueError: If the settings differ, or the file has no settings (this message ends with
@@ -271,8 +271,9 @@ def _as_json(value: Any) -> Any:
 
 
 def kind_of(config: Path) -> str:
-    """Return the kind (one of ``schema.KINDS``) of the agent in ``config``; by default the first
-    kind.
+    """Return the kind of the agent in ``config``, one of ``schema.KINDS``.
+
+    If ``config`` names none of them, return the first kind.
     """
     node = settings.read(config).get("agent")
     target = node.get("_target_") if isinstance(node, dict) else None
@@ -280,7 +281,7 @@ def kind_of(config: Path) -> str:
 
 
 def is_ours(target: str) -> bool:
-    """Return whether ``target`` is a shipped class, so that it can be built from a folder."""
+    """Return whether ``target`` is one of the shipped classes, which folders may name."""
     return target in schema.KINDS
 
 
@@ -333,8 +334,8 @@ def _fill(agent: Any, folder: Path, card: dict[str, Any], weights: Path) -> None
     checkpoint.load_weights(agent, weights)
     if adapters.load_adapters(agent, folder) != adapted:
         raise ValueError(
-            f"The adapters in {folder} belong to other modules than those in agent.adapters. Build "
-            f"the agent with the {CONFIG} of this folder."
+            f"agent.adapters must name the modules of the adapters in {folder}, but names others. "
+            f"Build the agent with the {CONFIG} of this folder."
         )
 
 
@@ -370,7 +371,7 @@ def check_hardened(folder: Path) -> dict[str, Any]:
 
 
 def read_card(folder: Path) -> dict[str, Any]:
-    """Return the card of the hardened ``folder``.
+    """Return the contents of ``card.json`` in the hardened folder ``folder``.
 
     Raises the same errors as :func:`check_hardened`.
     """
@@ -419,7 +420,7 @@ def vocabulary_sha(agent: Any) -> str | None:
 
 
 def _weights_of(folder: Path, card: dict[str, Any], base: str | Path | None) -> Path:
-    """Return the file of the weights in ``folder``, or of the base weights of its adapters."""
+    """Return the path of the weights; if ``folder`` holds only adapters, of their base weights."""
     if not card["adapters_only"]:
         return folder / checkpoint.WEIGHTS
     reference = card["base"]

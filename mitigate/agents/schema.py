@@ -40,7 +40,7 @@ class Kind(NamedTuple):
 
 
 def whole(least: int, most: int) -> Kind:
-    """Return the :class:`Kind` of the integers from ``least`` to ``most`` inclusive."""
+    """Return a :class:`Kind` that accepts integers from ``least`` to ``most`` inclusive."""
     return Kind(
         f"a whole number from {least} to {most}",
         lambda value: type(value) is int and least <= value <= most,
@@ -48,7 +48,7 @@ def whole(least: int, most: int) -> Kind:
 
 
 def number(least: float, most: float) -> Kind:
-    """Return the :class:`Kind` of the numbers from ``least`` to ``most`` inclusive."""
+    """Return a :class:`Kind` that accepts numbers from ``least`` to ``most`` inclusive."""
     return Kind(
         f"a number from {least:g} to {most:g}",
         lambda value: type(value) in (int, float) and least <= value <= most,
@@ -56,12 +56,12 @@ def number(least: float, most: float) -> Kind:
 
 
 def one_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the :class:`Kind` whose values are the members of ``allowed``."""
+    """Return a :class:`Kind` that accepts each member of ``allowed``."""
     return Kind(f"one of {', '.join(allowed)}", lambda value: value in allowed)
 
 
 def some_of(allowed: tuple[str, ...]) -> Kind:
-    """Return the :class:`Kind` whose values are lists of members of ``allowed``."""
+    """Return a :class:`Kind` that accepts lists of members of ``allowed``."""
     return Kind(
         f"a list of {', '.join(allowed)}",
         lambda value: isinstance(value, list) and all(item in allowed for item in value),
@@ -128,7 +128,7 @@ def class_of(target: str) -> Any:
 
 
 def schema_of(target: str) -> dict[str, Any]:
-    """Return the allowed settings of one of ``KINDS`` by name; nested mappings describe parts."""
+    """Return the allowed values of each setting of the class ``target``, as a nested dict."""
     return class_of(target).settings_schema
 
 

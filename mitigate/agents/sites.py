@@ -24,8 +24,8 @@ class Site:
     Attributes:
         kind: "map" for ``[n, C, h, w]``, or "tokens" if C is the last axis (including vectors).
         channels: number of channels C.
-        batch: the axis of the frames.
-        shape: the shape for two frames.
+        batch: axis along which the frames of a batch lie.
+        shape: shape of the output for a batch of two frames.
         calls: number of calls of the module in one forward pass.
     """
 
@@ -141,7 +141,7 @@ def listed(what: str, targets: Iterable[str]) -> list[str]:
 def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
     """Return the names of the modules that match ``targets``.
 
-    Targets are regular expressions for a dotted name or its end.
+    A target is a regular expression that must match a dotted name or its last parts.
 
     Raises:
         ValueError: If a target matches no module or is not a regular expression.
@@ -158,8 +158,9 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
         hits = {name for name in names if pattern.fullmatch(name)}
         if not hits:
             raise ValueError(
-                f"target module {target!r} matches none of the model's {len(names)} modules, such "
-                f"as {', '.join(names[:12])}. Give a regular expression for the end of a name."
+                f"target module {target!r} matches none of the model's {len(names)} modules (for "
+                f"example {', '.join(names[:12])}). Give a regular expression that matches a "
+                "module's name or its last parts."
             )
         matches |= hits
     return matches

@@ -58,7 +58,7 @@ def named_values(function: types.FunctionType) -> dict[str, Any]:
 
 
 def source_files(modules: list[str]) -> dict[str, str | None]:
-    """Return the source of ``modules`` and of the modules that they import, if the user wrote them.
+    """Return the source code of the user's modules among ``modules`` and their imports.
 
     Comments and layout are left out. The source is None for a module without Python source, such as
     a notebook.
@@ -90,7 +90,7 @@ def _file(module: str) -> str:
 def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
     """Return the source of a module without comments and layout, and the names that it imports.
 
-    The file is not read again, because a later edit does not change the loaded ``module``.
+    The result is cached: a later edit of the file does not change the loaded ``module``.
     """
     try:
         tree = ast.parse(Path(file).read_bytes(), file)

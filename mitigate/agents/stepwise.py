@@ -79,7 +79,7 @@ class StepwiseAgent(Agent, nn.Module):
         """Return logits [B, actions] and features by name.
 
         Args:
-            frames: the entries of B observations that ``needs`` names, in the format of the world's
+            frames: a batch of size B for each entry in ``needs``, in the format of the world's
                 sensors.
             texts: the B instructions.
         """
@@ -104,7 +104,7 @@ class StepwiseAgent(Agent, nn.Module):
 
     @torch.inference_mode()
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return the likeliest action. Raises ValueError for invalid logits."""
+        """Return the most likely action. Raises ValueError for invalid logits."""
         return int(check_logits(self._logits(observation, self.instruction), self).argmax())
 
     def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor:

@@ -1,13 +1,13 @@
-"""Define the words that agents know: concepts of views, and the vocabulary of instructions.
+"""Define the concepts that agents recognise in views, and the vocabulary of instructions.
 
 The RGB encoder predicts the concepts in the central 36 degrees of each view. The planner and
 the recurrent policy multiply the probability of each concept by the text embedding of its word. So
-the concepts of views and the words of instructions share one embedding space.
+the concepts in views and the words of instructions share one embedding space.
 
 A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint. Weights that are loaded with a different vocabulary of the same size would raise no
-error, but assign each embedding to a wrong word.
+fingerprint. Loading weights with a different vocabulary of the same size would raise no error, but
+each embedding would represent a wrong word.
 """
 
 from __future__ import annotations

@@ -34,8 +34,8 @@ class DatasetFrames:
         sensor: "rgb" or "depth".
         size: side in pixels to which frames are resized. If None, frames are not resized.
         held_out: fraction of the scenes that are held out.
-        block: maximum frames per block if there is only one episode. Blocks are smaller if five
-            blocks could not be held out otherwise.
+        block: maximum frames per block if there is only one episode. For short episodes, blocks are
+            smaller, so that at least five blocks are held out.
         episodes: numbers of the episodes to read. If None, all episodes are read.
         tolerance: maximum seconds between a row and its video frame.
 

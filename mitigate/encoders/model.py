@@ -1,4 +1,4 @@
-"""Wrap a user's encoder with an input transform, the choice of its output, and adapters."""
+"""Wrap a user's encoder: transform its input, select its output and insert adapters."""
 
 from __future__ import annotations
 
@@ -31,8 +31,9 @@ MOST = 4096  # maximum side in pixels (heuristic)
 
 @dataclass
 class Transform:
-    """Convert frames (uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``) to the encoder's input
-    (floats ``[n, c, size, size]``).
+    """Convert frames to the encoder's input (floats ``[n, c, size, size]``).
+
+    Frames are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
 
     Args:
         size: side in pixels.
@@ -261,7 +262,7 @@ class Encoder(nn.Module):
         """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, in the shape of the
         model's output.
 
-        ``frames`` are uint8 ``[n, H, W, 3]`` or metres ``[n, H, W, 1]``.
+        ``frames`` are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
         """
         inputs = self.transform(frames)
         modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
@@ -314,7 +315,7 @@ class Encoder(nn.Module):
         return self.model(noise.to(like.device, like.dtype))
 
     def _item(self, output: Any) -> Tensor:
-        """Select, in the output of the model, the features that ``output`` names."""
+        """Return the features in the model's ``output`` that ``agent.output`` selects."""
         items: dict[Any, Any] = dict(output) if isinstance(output, Mapping) else {}
         if isinstance(output, (tuple, list)):
             items = dict(enumerate(output))
@@ -378,8 +379,8 @@ class Encoder(nn.Module):
 def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
     """Raise ValueError if two calls of ``model`` give different weights.
 
-    Adapters work only with the weights that they were trained with, and random weights would be
-    lost after training.
+    Adapters work only with the weights that they were trained with. Random weights would be lost
+    after training, because only the adapters are saved.
     """
     if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return

@@ -5,9 +5,9 @@
     encoder.eval()
     encoder = attach(encoder, "runs/encoder/agent")  # the folder of `make train RECIPE=encoder`
 
-It needs only Python 3.6, torch 1.7 and numpy, or newer versions. The folder contains only data:
-JSON with fixed entries, and safetensors. This module checks their sha256 and parses them; it runs
-no code from the folder.
+It needs only Python 3.6, torch 1.7 and numpy, or newer versions. The folder contains only data, as
+JSON and safetensors files. This module checks the sha256 of the weights and parses the files. It
+runs no code from the folder.
 """
 
 import hashlib
@@ -67,7 +67,7 @@ def attach(model, folder, check=True):
     if missing:
         raise ValueError(
             f"The adapters in {folder} are for another model: this one has no module called "
-            f"{', '.join(missing[:4])}, but, for example, {', '.join(list(modules)[1:9])}."
+            f"{', '.join(missing[:4])}. Its modules include {', '.join(list(modules)[1:9])}."
         )
     if check and backbone_sha(model) != settings["backbone_sha256"]:
         raise ValueError(

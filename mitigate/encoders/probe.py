@@ -22,9 +22,9 @@ from mitigate.evaluation.bootstrap import LEVEL, Estimate
 BATCH = 32  # number of frames that are encoded at once
 RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
 FEWEST = 10  # minimum numbers of positive and of negative frames for a label to be used (heuristic)
-# candidates for the ridge, as multiples of the number of frames; one is chosen on training frames
+# candidates for the ridge penalty, as multiples of the number of frames
 RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)
-PROBE_SHARE = 0.25  # fraction of the training scenes that is used to choose the ridge (heuristic)
+PROBE_SHARE = 0.25  # fraction of the training scenes used to choose the ridge penalty (heuristic)
 
 
 @dataclass
@@ -108,8 +108,8 @@ def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.n
 
 
 def retrieval(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return, for each corrupted frame, whether the most similar clean frame (by centred cosine) is
-    the same frame.
+    """Return, for each corrupted frame, whether its own clean version is the most similar clean
+    frame (by centred cosine).
     """
     similarity = _unit(corrupted - centre) @ _unit(clean - centre).T
     return (similarity.argmax(1) == np.arange(len(corrupted))).astype(np.float32)
@@ -122,8 +122,9 @@ def _unit(x: np.ndarray) -> np.ndarray:
 class LinearProbe:
     """Ridge regression from clean features [N, C] to labels [N, L] in {0, 1}.
 
-    The ridge is the value in ``RIDGES`` that gives the highest mean average precision on a quarter
-    of the training scenes. The attribute ``used`` contains the labels with enough training frames.
+    The ridge penalty is the value in ``RIDGES`` that gives the highest mean average precision on a
+    quarter of the training scenes. The attribute ``used`` contains the labels with enough training
+    frames.
     """
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:

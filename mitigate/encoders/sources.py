@@ -329,7 +329,7 @@ def _metres(depth: np.ndarray) -> np.ndarray:
 
 
 def _left_out(files: Mapping[str, str]) -> str:
-    """Return a text with the number of skipped files and one example per reason."""
+    """Return a message with the number of skipped files and one example per reason."""
     first = {why: name for name, why in reversed([*files.items()])}
     counted = Counter(files.values()).most_common(3)
     reasons = [f"{count} as {first[why]}, which {why}" for why, count in counted]

@@ -116,7 +116,7 @@ def test_variants_are_corrupted_scenes_beside_the_clean_one(tmp_path):
     rng = np.random.default_rng(0)
     drawn = [stores[1].draw_variant(rng) for _ in range(400)]
     assert set(drawn) == {0, 1, 2} and abs(drawn.count(0) / 400 - 0.5) < 0.1
-    with pytest.raises(ValueError, match="without a schedule that corrupts"):
+    with pytest.raises(ValueError, match="if the schedule has no corruptions"):
         agent.store(partial(ApartmentsWorld, 64, 1), str(tmp_path), variants=2)
 
 

@@ -47,7 +47,7 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-# number of initial turns (270 degrees); a camera of 90 degrees then has seen the full circle
+# number of initial turns: after 270 degrees, a 90-degree camera has seen the full circle
 TURNS = 18
 AGAIN = 8  # number of actions until the agent plans again
 LEG = 1.5  # distance in metres that the agent goes straight before it checks its route again
@@ -59,15 +59,15 @@ LAST = 400  # after this many actions, the agent goes to the most likely known p
 # weight of a frontier's value, relative to the path cost in metres (chosen on val_seen_ogn)
 WORTH = 6.0
 # The agent goes to the object if the evidence for it is at least FOUND.
-# After LAST actions, the weaker evidence MAYBE is enough.
+# After LAST actions, the agent uses the lower threshold MAYBE instead.
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
 # the agent stops if the predicted probability that the object is near exceeds this
 NEAR_ENOUGH = 0.4
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-# weight of a cell's distance to the object's centre, relative to its path cost (heuristic)
+# weight of the distance from a cell to the object's centre; path cost has weight 1 (heuristic)
 MIDDLE = 3.0
-# rooms in which each object is likely; L3MVN asks a language model for these
+# objects that each room is likely to contain; L3MVN asks a language model for these
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
     "bathroom": ("toilet", "bathtub", "sink", "washing machine"),
@@ -164,7 +164,7 @@ class FrontierAgent(SideBySide, nn.Module):
         self._before: np.ndarray | None = None  # position before the last forward step
 
     def begin(self, instruction: str) -> FrontierAgent:
-        """Return a reset copy that shares the weights and serves as the memory of one episode."""
+        """Return a copy that shares the weights and holds the state of one new episode."""
         runner = copy.copy(self)
         runner.reset(instruction)
         return runner
@@ -212,9 +212,7 @@ class FrontierAgent(SideBySide, nn.Module):
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """The end of the current straight part of the route (plan metres [2]), or None without a
-        route.
-        """
+        """Position [x, y] in metres where the current straight part of the route ends, or None."""
         return self.controller.route[-1] if self.controller.route else None
 
     def _update_map(
@@ -241,7 +239,7 @@ class FrontierAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def _recognise(self, rgb: np.ndarray) -> np.ndarray:
-        """Return concept probabilities [n, 4, C] of the columns of frames [n, H, W, 3]."""
+        """Return concept probabilities [n, 4, C] for 4 columns of each frame in [n, H, W, 3]."""
         rgb = np.zeros_like(rgb) if RGB in self.blind else rgb
         device = self.rgb_encoder.embed.weight.device
         _, logits = self.rgb_encoder(torch.from_numpy(rgb).to(device))
@@ -336,8 +334,8 @@ class FrontierAgent(SideBySide, nn.Module):
 def named(text: str) -> int | None:
     """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
 
-    A route description ends at the object that it names last, and "find a chair" names only one
-    object.
+    In a route description, the object named last is the goal. An instruction such as "find a chair"
+    names only one object.
     """
     ends = [
         (match.end(), len(name), i)
@@ -350,8 +348,8 @@ def named(text: str) -> int | None:
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
     """Return the likelihood [n] that the object lies in the direction of each column.
 
-    The likelihood depends on whether the object, and rooms in which it is likely, are visible in
-    the column.
+    The likelihood is high if the column shows the object. It is lower if the column only shows a
+    room that is likely to contain the object.
     """
     if thing is None:
         return np.zeros(len(concepts), np.float32)

@@ -1,10 +1,10 @@
 """Define the map of one episode, and functions that plan on this map.
 
 ``Grid`` holds square cells around the start position, aligned with the axes of the world. Each cell
-stores free space, a value, and evidence for the object. Depth updates free and occupied cells by
-log-odds (Moravec and Elfes 1985). The output of the RGB encoder is projected onto the cells that
-are visible in each column of the view. The functions plan routes over free and unknown cells, and
-find frontiers and the cells of the object.
+stores free space, a value, and evidence for the object. Each depth frame updates the log-odds that
+cells are occupied (Moravec and Elfes 1985). The output of the RGB encoder is projected onto the
+cells that are visible in each column of the view. The functions plan routes over free and unknown
+cells, and find frontiers and the cells of the object.
 """
 
 from __future__ import annotations
@@ -176,7 +176,7 @@ def _scan(depth, camera, columns, free, things):
 
 @njit(cache=True)
 def _witness(x, y, r, odds, seen, things):
-    """Add evidence of one observation to the cell of a surface at (x, y), ``r`` metres away."""
+    """Update the evidence of the cell at (x, y), where a surface was seen ``r`` metres away."""
     evidence, stamp, look = things
     i, j = int(y / CELL), int(x / CELL)
     if i < 0 or j < 0 or i >= evidence.shape[0] or j >= evidence.shape[1] or stamp[i, j] == look:

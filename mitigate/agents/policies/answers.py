@@ -60,7 +60,7 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
 
 
 def imitation(teacher: Answer, student: Answer) -> Tensor:
-    """Return the student's error in predicting the teacher's likeliest action, averaged over the
+    """Return the student's error in predicting the teacher's most likely action, averaged over the
     batch.
 
     For discrete actions, the error is the cross-entropy. For continuous actions, and for values

@@ -129,7 +129,7 @@ class Policy(Agent, nn.Module):
 
     @torch.no_grad()
     def act(self, observation: Mapping[str, Any]) -> Any:
-        """Return the likeliest action."""
+        """Return the most likely action."""
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         self._before = self._memory
         answer, self._memory = self.answer(self.native(frames), self._memory)
@@ -197,7 +197,7 @@ def copied(policy: Policy) -> Policy:
     except Exception as error:  # the user's code may raise any error
         raise ValueError(
             f"{policy.name} cannot be copied ({type(error).__name__}: {str(error)[:200]}), but "
-            "the clean teacher is a copy. Give a policy without open files or environments."
+            "the clean teacher must be a copy. Pass a policy without open files or environments."
         ) from error
     return twin
 

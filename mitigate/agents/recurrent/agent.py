@@ -333,7 +333,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         self._walk = self.begin(instruction)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return the likeliest action.
+        """Return the most likely action.
 
         Raises:
             RuntimeError: If ``reset`` was not called first.
@@ -360,6 +360,6 @@ class RecurrentAgent(SideBySide, nn.Module):
         )
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Replace the last action in the odometry by a motion that the agent did not choose."""
+        """Correct the odometry: the agent did not make the motion that it chose last."""
         assert self._walk is not None, "reset first"
         self._walk.odometer.correct(action, metres, radians)

@@ -119,7 +119,7 @@ class State:
         return State(self.hidden[index], self.last[index], self.sum[index])
 
     def put(self, index: Tensor, fresh: State) -> None:
-        """Replace the rows ``index`` of this state by ``fresh``, in place."""
+        """Replace the rows of this state at ``index`` with the rows of ``fresh``, in place."""
         for name, value in vars(fresh).items():
             vars(self)[name][index] = value
 

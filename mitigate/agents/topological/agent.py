@@ -61,7 +61,7 @@ PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
 # These are the weights of the auxiliary losses, chosen for the shipped agents.
 # The planner predicts the distance to the goal.
 # It also predicts the views that show the goal's landmark ("grounding").
-# Perception predicts the concepts in each view, and where space is free ("waypoints").
+# Perception predicts the concepts in each view, and free space (the loss called "waypoints").
 LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # the planner predicts distances in metres divided by this number
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")

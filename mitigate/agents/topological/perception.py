@@ -1,4 +1,4 @@
-"""Define the parts of the reference agent's perception that ``agents/encoders.py`` does not define.
+"""Define the waypoint prediction and the ImageNet encoder of the reference agent.
 
 From 12 depth views, ``WaypointHead`` predicts whether space is free at 120 angles and 12 distances.
 ``select`` chooses at most 6 waypoints from this prediction. Angles are clockwise from view 0 in

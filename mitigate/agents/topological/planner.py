@@ -90,9 +90,8 @@ class Planner(TextReader):
         text_layers: transformer layers over the text.
         layers: cross-modal layers.
         dropout: dropout rate.
-        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). The weigher weights
-            the views of a node or ghost by the reliability of the encoder features. If None, all
-            views have equal weights.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Views with reliable
+            encoder features then get higher weights. If None, all views have equal weights.
         vocabulary: words of the instructions, or None for the default vocabulary.
     """
 

@@ -174,8 +174,8 @@ def roll_out(
     """Run all episodes; each runs until the oracle stops, the limit is reached or the episode ends.
 
     Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
-    from the planner's distribution over ghosts. The planner never stops an episode, so that traces
-    also contain the decisions after a wrong stop.
+    from the planner's distribution over ghosts. The planner cannot choose to stop, so that a
+    trace continues until the oracle stops.
 
     Args:
         planner: the planner.

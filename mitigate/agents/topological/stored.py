@@ -4,8 +4,8 @@
 poses in each scene. ``Store`` keeps the features in memory-mapped folders, which worker processes
 share. ``StoredWalk`` runs episodes on stored features. A scene may have corrupted *variants*, each
 with one fixed corruption. Only training imports this module, because tensordict is as slow to
-import as torch. The agents belong to the class :class:`TopologicalAgent`, whose module imports this
-module.
+import as torch. Agents are instances of :class:`TopologicalAgent`. This module cannot import that
+class, because the class's module imports this one.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ from mitigate.worlds.episodes import Episode, from_vlnce, heading_of
 from mitigate.worlds.world import depth_sensor, expert_of
 
 SPACING = 0.5  # metres between poses
-# fields of a Schedule that do not affect the content of a variant, with fixed values
+# The hash of a variant uses these fixed values for Schedule fields that do not affect it.
 UNUSED: dict[str, Any] = {"success": None, "clean_share": 0.0, "alpha": 1.0, "floor": 1.0}
 WORTH = 4  # minimum number of scenes per process (heuristic); one scene takes about 5 s
 ON_GPU = 8  # maximum number of processes that encode on one GPU; each takes 0.5 GB
@@ -82,7 +82,7 @@ class Features:
 
     @torch.no_grad()
     def blank(self, agent: Any, size: int) -> None:
-        """Use features of blank frames for the inputs that the agent's option ``blind`` names."""
+        """Use the features of blank frames for all inputs in ``agent.blind``."""
         rgb = torch.zeros(1, VIEWS, size, size, 3, dtype=torch.uint8, device=agent.device)
         views, _, logits = agent.perceive(rgb, torch.zeros_like(rgb[..., :1], dtype=torch.float32))
         blanked, depth = views[0].float().cpu().numpy(), agent.planner.widths[-1]
@@ -147,8 +147,8 @@ class ScenesTask:
     """Compute the features of scenes in worker processes (``mitigate/core/workers.py``).
 
     The result of a job is a list of pairs: a variant's number, and the entries of its
-    ``ScenePoses``. Variant 0 is clean. For each other variant, ``schedule`` samples a corruption
-    with ``seed``. ``kind`` is the floating-point precision of the encoders.
+    ``ScenePoses``. Variant 0 is clean. ``schedule`` samples the corruptions of all other variants,
+    and ``seed`` is their seed. ``kind`` is the floating-point precision of the encoders.
     """
 
     agent: Any
@@ -235,7 +235,7 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Return features of frames by name.
+    """Return a dict that maps the name of each feature to its values for all ``frames``.
 
     Sensors are left out if their frames are the same as in ``known``.
     """
@@ -291,7 +291,7 @@ class Store:
     ) -> None:
         if variants and (schedule is None or schedule.mode == "clean"):
             raise ValueError(
-                f"variants must be 0 without a schedule that corrupts, got {variants}. Set a "
+                f"variants must be 0 if the schedule has no corruptions, got {variants}. Set a "
                 "schedule such as per_episode."
             )
         self.agent, self.make_world = agent, world
@@ -349,9 +349,7 @@ class Store:
         return self.corrupted / f"{name}-{variant}" if variant else self.folder / name
 
     def features(self, scene: str, variant: int = 0) -> Features:
-        """Return the features of a scene; inputs that the agent's option ``blind`` names are
-        blanked.
-        """
+        """Return the features of a scene, with the inputs in ``agent.blind`` blanked."""
         key = (scene, variant)
         if key not in self._loaded:
             self._loaded[key] = Features(ScenePoses.load_memmap(self.path(*key)))  # type: ignore[attr-defined]

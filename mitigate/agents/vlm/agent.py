@@ -58,7 +58,7 @@ LIMIT = 90
 
 
 class VLMAgent(AnsweringAgent, nn.Module):
-    """Choose the likeliest of the allowed answers with a vision-language model.
+    """Choose the most likely of the allowed answers with a vision-language model.
 
     The model sees the instruction, earlier frames and the current view. It never generates text: it
     scores each allowed answer, so every decision is an allowed answer.
@@ -240,7 +240,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
 
     @torch.inference_mode()
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
-        """Return the likeliest answer of each episode."""
+        """Return the most likely answer of each episode."""
         return [self.answers[int(self.logits(memory).argmax())] for memory in memories]
 
     # training ---------------------------------------------------------------------------------

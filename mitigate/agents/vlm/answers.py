@@ -1,7 +1,7 @@
 """Define the answers that a vision-language agent may give, and read them from text.
 
-An answer such as "forward 75 cm" repeats one low-level action, as in NaVid (Zhang et al., RSS
-2024). The step sizes are the same as in VLN-CE: 25 cm and 15 degrees.
+An answer such as "forward 75 cm" is executed as several equal low-level actions, as in NaVid (Zhang
+et al., RSS 2024). The step sizes are the same as in VLN-CE: 25 cm and 15 degrees.
 """
 
 from __future__ import annotations
@@ -73,6 +73,6 @@ def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
 
 
 def answer_for(action: int, repeats: int, answers: tuple[Answer, ...]) -> int:
-    """Return the index of the answer with the most repeats of ``action``, at most ``repeats``."""
+    """Return the index of the answer that repeats ``action`` most, up to ``repeats`` times."""
     fitting = [i for i, a in enumerate(answers) if a.action == action and a.repeats <= repeats]
     return max(fitting, key=lambda index: answers[index].repeats)

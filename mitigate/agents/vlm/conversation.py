@@ -129,7 +129,7 @@ class AnsweringAgent(Agent):
     ) -> list[int]:
         """Return one low-level action per episode.
 
-        While actions of the last answer are pending in an episode, its observation is ignored.
+        Observations of episodes with pending actions from an earlier answer are ignored.
         """
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:
@@ -154,8 +154,6 @@ class AnsweringAgent(Agent):
         return self.act_all([observation], [self._memory])[0]  # type: ignore[list-item]
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the pending actions of the last answer after a motion that the agent did not
-        choose.
-        """
+        """Discard pending actions, because the agent did not make the motion that it chose."""
         assert self._memory is not None, "reset first"
         self._memory.pending.clear()

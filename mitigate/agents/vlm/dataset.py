@@ -17,7 +17,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 CONVERSATIONS = "conversations.jsonl"
-LIMIT = 500  # maximum number of decisions per episode, equal to VLN-CE's limit of steps
+LIMIT = 500  # maximum number of decisions per episode, equal to VLN-CE's step limit
 
 
 def write_conversations(

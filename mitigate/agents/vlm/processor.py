@@ -6,7 +6,7 @@ from typing import Any
 
 
 def load_processor(place: str) -> Any:
-    """Return the processor, without its video part, of the model ``place`` (a folder or hub id).
+    """Return the processor of the model ``place`` (a folder or hub id), without its video part.
 
     The agent sends images only, and the video processors of transformers would require torchvision.
     """

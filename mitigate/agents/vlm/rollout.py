@@ -61,8 +61,8 @@ def run_episode(
 ) -> tuple[list[int], list[np.ndarray]]:
     """Run a training episode, and add its frames to ``memory``.
 
-    If the expert decides, its action is repeated while the expert keeps choosing it. The number of
-    repetitions is at most that of the longest answer. The training target of a decision is the
+    If the expert decides, its action is executed until the expert would choose a different action,
+    but at most as often as the longest answer allows. The training target of a decision is the
     longest answer whose actions all agreed with the expert. If the first action already disagreed,
     the target is the shortest answer with the expert's action. The agent's STOP is never executed,
     so that the agent also learns from later steps.
