@@ -34,8 +34,8 @@ ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Return the error of a depth reading, in metres, if the surface behind it is ``gap`` metres
-    farther away.
+    """Return the error of a depth reading at an edge, in metres, if the background is ``gap``
+    metres farther away than the foreground.
 
     The value is computed from the phasor sum of two light paths.
     """
@@ -230,8 +230,10 @@ def _drop(views, holes, streams, missing, z_max, out):
 
 
 def missing_data(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove depth at a fraction 0.5 * severity of the pixels, where a random field is highest; a
-    quarter of these pixels become z_max. The field moves every 5 frames.
+    """Replace the depth of the pixels where a random field is highest.
+
+    These pixels are a fraction 0.5 * severity of each view. A quarter of them become z_max, and the
+    others become missing. The field moves every 5 frames.
     """
     count, height, width = views.shape
     holes = hole_map(digest(key, "missing_data"), severity, height, width)

@@ -17,8 +17,8 @@ NEAREST = np.float32(1e-3)  # minimum valid depth after a corruption, in metres
 # normalised value of valid depth at or below z_min; it is not 0, because 0 means no reading
 LEAST = np.float32(1e-6)
 # This check of the unit is a heuristic; it checks about UNIT_SAMPLES pixels.
-# At least a fraction 1 / MIN_NEAR of the valid pixels must be nearer than MAX_RANGES * z_max.
-# The fraction is small, because outdoors only the ground is so near.
+# At least one in MIN_NEAR valid pixels must be nearer than MAX_RANGES * z_max.
+# One in ten is enough, because outdoors only the ground is so near.
 MAX_RANGES = 3.0
 MIN_NEAR = 10
 UNIT_SAMPLES = 8192

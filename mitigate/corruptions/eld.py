@@ -24,7 +24,8 @@ from numba import njit
 from mitigate.corruptions.keying import Key, digest, mix, normal_table, unit_normals, view_streams
 from mitigate.corruptions.masks import low_light_mask
 
-WHITE = 15583.0  # sensor units at full scale, which are 14 bits minus the black level (Sony A7S2)
+# full scale in sensor units: 2^14 - 1 minus the black level of 800 (Sony A7S2)
+WHITE = 15583.0
 DARKEST = 300.0  # exposure ratio at severity 1; ELD trains with ratios of 100 to 300
 GAMMA = 2.2
 # The calibration of the camera is from the paper: GAINS is the range of the gain K.
@@ -72,8 +73,10 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points]. They are exact for means up to 64; larger means
-    use the Cornish-Fisher expansion.
+    """Compute Poisson quantiles [means, points].
+
+    They are exact for means up to 64. For larger means, the Cornish-Fisher expansion approximates
+    them.
     """
     for level in range(means.size):
         mean = means[level]

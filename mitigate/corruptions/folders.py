@@ -57,7 +57,7 @@ class Settings:
     unit: float | None = None
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
-    no_reading: int = NO_READING  # pixel value of a 16-bit PNG that, like 0, means "no reading"
+    no_reading: int = NO_READING  # pixel value of a 16-bit PNG that means "no reading", like 0
     hfov: float | None = None  # horizontal field of view in degrees, for camera faults
 
     def __post_init__(self) -> None:
@@ -106,7 +106,9 @@ class Settings:
 
 
 def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
-    """Corrupt the frames of ``source`` and its subfolders into the same folder tree in ``out``.
+    """Corrupt the frames in ``source`` and its subfolders, and write them to ``out``.
+
+    The files in ``out`` are in the same subfolders as in ``source``.
 
     The frames of an episode are numbered in the natural order of their file names: "9" is before
     "10". A damaged file keeps its number. RGB and depth frames are numbered separately. A file
@@ -233,7 +235,7 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check that the results of an earlier run in ``out`` match; then write settings and episodes
+    """Check that an earlier run in ``out`` had the same settings and episodes; then write both
     there.
     """
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}

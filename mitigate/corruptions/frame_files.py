@@ -37,10 +37,10 @@ PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
 MAX_COUNT = 65534  # maximum depth value in a 16-bit PNG
-# pixel value that, like 0, means "no reading": in 7-Scenes, and in saturated sensors
+# pixel value that means "no reading", like 0 (used by 7-Scenes, and for saturated pixels)
 NO_READING = 65535
-SCALE_FILES = 16  # number of files in a folder whose depth scale is checked (heuristic)
-SCALE_PIXELS = 8192  # number of pixels that are checked per file (heuristic)
+SCALE_FILES = 16  # maximum number of files that ``check_scale`` reads (heuristic)
+SCALE_PIXELS = 8192  # maximum number of pixels that ``check_scale`` uses per file (heuristic)
 
 
 class LeftOutError(ValueError):
@@ -93,7 +93,7 @@ def corrupt_file(
         unit: Metres per count of a 16-bit PNG.
         corrupt_frame: Function that corrupts one frame: uint8 [H, W, 3], or float32 metres in the
             shape of the file. Pixels that this function does not change keep their stored values.
-        no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
+        no_reading: Pixel value of a 16-bit PNG that means "no reading", like 0.
 
     Raises:
         LeftOutError: If the file is damaged or has an unsupported format.
@@ -158,8 +158,8 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         z_max: Maximum depth of the camera in metres.
 
     Raises:
-        ValueError: If most PNG depth values are at least ``z_max``, so the unit is probably wrong,
-            or no NPY depth value exceeds 1, so the values are probably normalised.
+        ValueError: If most PNG depth values are at least ``z_max`` (the unit is probably wrong), or
+            all NPY depth values are at most 1 (they are probably normalised).
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
@@ -267,7 +267,9 @@ class Plan:
 
 
 def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
-    """Find the frames of some modalities; a damaged file is numbered like a frame but skipped.
+    """Find the frames of the modalities ``kinds``.
+
+    A damaged file is skipped, but it also gets a frame number.
 
     Args:
         source: The folder, which is searched recursively.

@@ -14,14 +14,14 @@
               all: all frames are one episode
   unit        unit of depth in 16-bit PNG: mm, cm, m, or metres per count, such as 0.00025. The
               default is mm. Without this option, the command first checks whether the values
-              are plausible: as mm in PNG files, and as metres in NPY files. Any value of this
-              option, such as unit=m, skips the check.
+              are plausible: as mm in PNG files, and as metres in NPY files. If the option is
+              set, for example unit=m, nothing is checked.
   format      output format of a JPEG: png (default) keeps every pixel; same writes a JPEG with the
               same name, at quality 95. For the videos of a LeRobot dataset, png writes lossless
               H.264 in RGB, and same uses the codec of the original, which is lossy.
   z_max       maximum depth in metres (10); valid depth beyond it is clipped
   missing     value in metres that replaces missing depth (0: no reading)
-  no_reading  pixel value of a 16-bit PNG that, like 0, means "no reading" (65535)
+  no_reading  pixel value of a 16-bit PNG that means "no reading", like 0 (65535)
   hfov        horizontal field of view in degrees; camera faults need it
   cameras     cameras of a LeRobot dataset, separated by commas; the default is all cameras that the
               corruption applies to
@@ -31,10 +31,10 @@
   --list      list all corruptions with their modality, meaning of severity, randomness and source
   --help      this help
 
-The same command resumes an interrupted run; it also writes changed frames again. OUT/corrupt.json
-holds the settings, counts, skipped files with the reason, and a checksum of each frame. Files of
-other formats are not read, but are counted by suffix. The exit status is 0 if the run is done, 1 if
-it is done but bad files were skipped, and 2 if it failed.
+The same command resumes an interrupted run. It also rewrites frames whose input or output file has
+changed. OUT/corrupt.json holds the settings, counts, skipped files with the reason, and a checksum
+of each frame. Files of other formats are not read, but are counted by suffix. The exit status is 0
+if the run is done, 1 if it is done but bad files were skipped, and 2 if it failed.
 
 Example: mitigate corrupt recorded/ corrupted/ corruption=spatter severity=0.5
 """

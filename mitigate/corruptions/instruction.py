@@ -34,7 +34,7 @@ _SLOT = re.compile(
 
 @dataclass(frozen=True)
 class NotApplicable:
-    """Result of a corruption that does not apply to an agent."""
+    """The result if a corruption cannot be applied to an agent."""
 
     name: str
     reason: str

@@ -52,7 +52,7 @@ MASK = (1 << 64) - 1
 # The table takes 16 KB, so it fits into the L1 cache.
 NORMAL_BITS = 12
 FIELD_SIDE = 128  # number of cells along the shorter side of a random field, for all frame sizes
-# maximum number of cells along the longer side; for aspect ratios beyond 32:1, cells get longer
+# maximum number of cells along the longer side; for aspect ratios above 32:1, cells are not square
 FIELD_LONGEST = 32 * FIELD_SIDE
 
 _U = np.uint64
@@ -95,7 +95,7 @@ def as_key(key: Key | int | str) -> Key:
     """Convert ``key`` to a Key: an int n becomes Key(n, "0"), and a str t becomes Key(0, t).
 
     Raises:
-        ValueError: If ``key`` is neither a Key, an int nor a str.
+        ValueError: If ``key`` is not a Key, an int or a str.
     """
     if isinstance(key, Key):
         return key
@@ -121,7 +121,7 @@ def _episode_hash(seed: int, episode: str, name: str) -> tuple:
 
 
 def digest(key: Key, name: str, *, frame: bool = False) -> int:
-    """Return the 64-bit digest that seeds the random numbers called ``name``.
+    """Return the 64-bit digest that seeds the random stream ``name``.
 
     The digest differs between episodes; with ``frame=True``, it also differs between frames. View
     number k of a frame uses ``scramble(digest, k)``.
@@ -135,7 +135,7 @@ def digest(key: Key, name: str, *, frame: bool = False) -> int:
 
 
 def scramble(value: int, counter: int) -> int:
-    """Return the output with the index ``counter`` of splitmix64 with the seed ``value``.
+    """Return output number ``counter`` of a splitmix64 generator that is seeded with ``value``.
 
     This version uses Python integers; ``mix`` is the compiled version.
     """
@@ -166,15 +166,16 @@ def _fill_streams(value, out):
 
 
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
-    """Return one seed per view of a frame for the random numbers ``name``, uint64 [views]."""
+    """Return one seed per view of a frame for the random stream ``name``, uint64 [views]."""
     out = np.empty(views, np.uint64)
     _fill_streams(_U(digest(key, name, frame=True)), out)
     return out
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """Return the standard normal quantiles at the centres of 2^bits equally likely bins, scaled to
-    unit variance, float64.
+    """Return the standard normal quantiles at the centres of 2^bits equally likely bins, float64.
+
+    The quantiles are scaled to unit variance.
     """
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
@@ -271,7 +272,7 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
     The field is sampled on a grid whose shorter side has ``FIELD_SIDE`` cells, and then resampled.
     Therefore a frame and a copy of half its size get the same pattern. If the aspect ratio of a
-    frame exceeds 32:1, the cells are longer.
+    frame exceeds 32:1, the cells are not square.
 
     Args:
         value: Seed of the random numbers.
@@ -292,9 +293,9 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_place(cells: int, share: float) -> int:
-    """Return the index of the smallest cell that is in the highest fraction ``share`` of the cells.
+    """Return the index at which the highest fraction ``share`` of sorted cells begins.
 
-    The cells are sorted in ascending order.
+    The cells are sorted in ascending order; ``cells`` is their number.
     """
     return cells - round(share * cells)
 

@@ -61,14 +61,16 @@ def opacity_mask(
 
 @lru_cache(maxsize=64)
 def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
-    """Return an image row of one colour in the format that ``cover`` needs, int16 [3 W]."""
+    """Return a colour, repeated for the pixels of an image row, int16 [3 W]."""
     return np.tile(np.array(colour, np.int16), width)
 
 
 @njit(cache=True)
 def cover(views, alpha, colour, out):
-    """Blend views (uint8 [V, H, W, 3]) with an image row of one colour (int16 [3 W]); the opacity
-    is ``alpha`` (int16 [H, 3 W]).
+    """Blend views (uint8 [V, H, W, 3]) with one colour.
+
+    ``colour`` (int16 [3 W]) is the result of ``colour_row``; ``alpha`` (int16 [H, 3 W]) is the
+    opacity.
 
     Two separate loops per row of 16-bit numbers compile to full-width vector code.
     """

@@ -94,7 +94,7 @@ class Record:
         source: str,
         **fields: Any,
     ) -> Record:
-        """Return the record of a corruption that has the name of its function ``apply``."""
+        """Return the record of a corruption. The record is named after the function ``apply``."""
         return cls(apply.__name__, modality, apply, severity, source=source, **fields)
 
     @classmethod
@@ -115,7 +115,7 @@ class Record:
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The corrupted modalities; a fault of both sensors also works without one of them."""
+        """The corrupted modalities; a fault of both sensors also works if only one is present."""
         return tuple(self.modality.split("+"))
 
     @property

@@ -123,7 +123,10 @@ def fault_names(*families: str) -> tuple[str, ...]:
 
 
 def family(name: str) -> str:
-    """Return the family of a fault, or of the fault in a pair; return "" for other corruptions."""
+    """Return the family of a fault, or of the first fault in a pair of corruptions.
+
+    The result is "" if there is no fault.
+    """
     return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
 
 

@@ -105,8 +105,9 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Add the glow of a light, by screen blending, to the views that show the light; it has a fixed
-    direction in the world.
+    """Add the glow of a light, by screen blending, to the views that show the light.
+
+    The direction of the light is fixed in the world if the heading is known.
     """
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
@@ -126,8 +127,8 @@ def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
     kernel ends at 3 sigma.
 
     Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The weighted taps add
-    the remaining variance. A level of smoothing is used only if the sigma of the taps is still at
-    least LEAST_TAP_SIGMA times the distance between two taps.
+    the remaining variance. Smoothing is repeated as long as the remaining sigma is at least
+    LEAST_TAP_SIGMA times the distance between taps.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:

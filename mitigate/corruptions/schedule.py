@@ -138,8 +138,7 @@ class Schedule:
         rates; the other modes keep uniform weights.
 
         Raises:
-            ValueError: If a corruption has neither a new nor an earlier rate, or a rate is outside
-                [0, 1].
+            ValueError: If a corruption of the schedule has no rate, or a rate is outside [0, 1].
         """
         known = {**(self.success or {}), **success}
         missing = [name for name in self.names if name not in known]

@@ -22,7 +22,7 @@ from mitigate.corruptions.keying import Key, digest, mix, normal_table, uniform,
 from mitigate.corruptions.record import Record
 
 PUBLISHED = 0.5  # severity at which errors have their published size
-# the error that is sampled once per episode, for cameras that have such an error
+# text in the records of two cameras: the part of the error that is constant in an episode
 BIAS = "systematic error"
 
 
@@ -57,19 +57,19 @@ class Profile:
 KINECT_V1 = Profile(
     sd=(0.0012, 0.0, 0.0019), origin=0.4, lateral=0.8 / 640, disparity=351.3, far=4.0
 )
-# The camera uses active stereo.
+# The RealSense D435 uses active stereo.
 # The RMS error is z^2 * e / (f * B) (Grunnet-Jepsen, Sweetser and Woodfill 2018).
 # The error e is 0.08 pixels, and the baseline B is 0.05 m.
 # The focal length f is that of images that are 848 pixels and 90 degrees wide.
 # Steps of 1/32 pixel and the range come from the datasheet.
 REALSENSE_D435 = Profile(sd=(0.0, 0.0, 0.08 / (424 * 0.05)), disparity=32 * 424 * 0.05, far=10.0)
-# The camera scans with a laser.
+# The RealSense L515 scans the scene with a laser.
 # The datasheet gives an indoor standard deviation of 2.5 mm at 1 m and 15.5 mm at 9 m.
 # The datasheet gives a mean error of 5 mm at 1 m and 14 mm at 9 m.
 REALSENSE_L515 = Profile(
     sd=(0.0025, 0.001625, 0.0), origin=1.0, offset=0.0039, scale=0.0011, far=9.0
 )
-# The camera uses time of flight.
+# The Azure Kinect uses time of flight.
 # The datasheet gives a standard deviation of up to 17 mm and the range of the narrow mode.
 # The datasheet gives a systematic error of up to 11 mm + 0.1 % of the depth.
 # Tolgyessy et al. 2021 confirm these values.

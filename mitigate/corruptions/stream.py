@@ -156,7 +156,7 @@ class FrameStream:
                 del past[0]
 
     def _arriving(self, entry: str, parts: Sequence[Corruption], key: Key) -> np.ndarray:
-        """Return the frame that the agent receives in the time step of ``key``, fully corrupted.
+        """Return the corrupted frame that the agent receives in the time step of ``key``.
 
         The temporal faults in ``parts`` may select an older frame. All other corruptions are
         applied with the key of the time step at which this frame was recorded.

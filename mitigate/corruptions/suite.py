@@ -84,7 +84,8 @@ def _one_instant(views: np.ndarray) -> np.ndarray:
 
 
 # Increase this version when the result of any corruption changes in any pixel or word.
-# Only inputs that follow docs/corruptions.md and docs/instructions.md count.
+# A change that affects only invalid inputs needs no new version.
+# docs/corruptions.md and docs/instructions.md describe valid inputs.
 SUITE_VERSION = "1.1"
 
 RGB = registry.names("rgb")
@@ -127,7 +128,11 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float; raise ValueError if it is outside [0, 1], a str or a bool."""
+    """Return ``severity`` as a float.
+
+    Raises:
+        ValueError: If it is a bool, or not a number in [0, 1].
+    """
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -188,7 +193,7 @@ class Corruption:
     def modalities(self) -> tuple[str, ...]:
         """The corrupted modalities: "rgb", "depth", "instruction".
 
-        A fault that affects both sensors has both modalities, but only one of them must be
+        A fault that affects both sensors has both modalities. It also works if only one of them is
         available.
         """
         records = [registry.record(part.name) for part in self.parts if part.name != GATE]
@@ -284,8 +289,8 @@ def corrupt(
         frame: For RGB corruptions, uint8 [H, W, 3] or [V, H, W, 3]. For depth corruptions,
             float32 metres [H, W], [H, W, 1], [V, H, W] (W is not 3) or [V, H, W, 1]. V is the
             number of views of one time step (at most 36), which share one mask. View number k has a
-            yaw of -30 * k degrees and no pitch. The first axis is not a batch axis: corrupt the
-            time steps of a batch one at a time, each with its own key.
+            yaw of -30 * k degrees and no pitch. Corrupt the time steps of a batch separately,
+            because each has its own key.
         name: One of NAMES, or any other registered frame corruption.
         severity: Severity in [0, 1]; 0 returns a bit-exact copy.
         key: Key of the random numbers. An int sets only the seed, and a str sets only the episode.
@@ -299,9 +304,8 @@ def corrupt(
         A new array of the same shape and dtype; the input is not modified.
 
     Raises:
-        ValueError: If an argument is invalid, or the corruption depends on earlier frames, or more
-            than nine tenths of the depth values exceed three times the sensor's z_max (and are
-            probably in millimetres).
+        ValueError: If an argument is invalid, the corruption depends on earlier frames, or nearly
+            all depth values are far beyond the sensor's z_max (they are probably in millimetres).
     """
     if name not in registry.FAULTS:
         check_name(name)
@@ -356,8 +360,8 @@ def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
     """
     if mount.height:
         raise ValueError(
-            f"{name!r} needs a world that renders from another height, because a frame does not "
-            "show what such a camera sees. Use the apartments or another world that defines "
+            f"{name!r} needs a world that can render from a different camera height: this view "
+            "cannot be computed from a frame. Use the apartments or another world that defines "
             "displaced() (docs/faults.md), or leave out this fault."
         )
     if hfov is None:
@@ -428,7 +432,7 @@ def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]
         ValueError: If the observation has no entry that the corruption could change.
     """
     modalities = registry.record(part.name).modalities
-    # entries have the names of modalities
+    # each entry is named after its modality
     entries = tuple(name for name in modalities if name in obs)
     if not entries:
         raise ValueError(

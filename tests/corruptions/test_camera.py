@@ -172,7 +172,7 @@ def test_world_without_rendering_is_warped():
     assert all(np.array_equal(observation[entry], expected[entry]) for entry in (RGB, DEPTH))
     with pytest.raises(ValueError, match="needs the horizontal field of view"):
         Corrupted(Plain(None), pitched, 3).reset(EPISODE)[RGB]
-    with pytest.raises(ValueError, match="needs a world that renders from another height"):
+    with pytest.raises(ValueError, match="can render from a different camera height"):
         Corrupted(Plain(90.0), Corruption("camera_height", 0.6), 3).reset(EPISODE)[RGB]
 
 

@@ -36,8 +36,9 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add a random sum of sine waves b_n sin(pi n x) to the levels x, by a lookup table per colour
-    or for all colours (PRIME).
+    """Add the sum of the waves b_n sin(pi n x) to each level x, with random b_n (PRIME).
+
+    The three colours share one curve, or each colour gets its own curve.
     """
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
@@ -140,7 +141,10 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Cover views with a random colour; its opacity is a random map, from fine to coarse."""
+    """Blend views with a random colour.
+
+    The opacity is a random map, whose structures are fine in some episodes and coarse in others.
+    """
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)

@@ -32,7 +32,7 @@ class Movement:
         turn: Factor of the angle of a turn.
         drift: Drift to the left, from -1 to 1, in units of ``DRIFT`` degrees per forward step. For
             continuous actions, the drift is a bias.
-        dropped: Whether the robot does not move.
+        dropped: Whether the robot stands still instead of executing the action.
         repeated: Whether the previous action is executed again instead of this one.
     """
 

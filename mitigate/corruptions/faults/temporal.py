@@ -29,7 +29,8 @@ BURST_PERIOD, LONGEST_BURST = 8, 6  # in frames; each period has one burst
 ACTIVE_PERIOD, ACTIVE = 20, 10  # in frames; each period has one interval of ``intermittent``
 STOPS = 2.0  # exposure changes by at most this many stops at severity 1
 GAMMA = 2.2  # exponent of a power law that approximates sRGB
-OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)  # maximum age in frames that a fault can return
+# maximum age, in frames, of a frame that the agent receives
+OLDEST = max(DELAY, LONGEST_FREEZE, LONGEST_BURST)
 # name of the fault that makes the second corruption of a pair active only in intervals
 GATE = "intermittent"
 

@@ -17,8 +17,7 @@ COMMANDS = (
 _ADVERBS = r"(?:then|next|now|immediately|finally|again|just|simply|slowly|directly|please|also)"
 # maximum number of adverbs before a command (heuristic; people do not use longer sequences)
 MOST_ADVERBS = 8
-# The pattern matches a run of white space only from its start and in only one way.
-# Matching therefore takes linear time.
+# A match cannot begin in the middle of a run of white space, so matching takes linear time.
 _JOIN = (
     r"(?:(?:(?<!\s)\s+)?[,;]\s*(?:and\s+)?|(?<!\s)\s+(?:and|but)\s+"
     r"|(?:(?<!\s)\s+)?(?:,\s*)?(?:and\s+)?\bthen\b(?:\s*,)?\s*)"

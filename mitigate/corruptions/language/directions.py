@@ -175,8 +175,8 @@ def _unit(word: str) -> str:
 
 
 def _orders_sentences(tokens: list[Token], place: int) -> bool:
-    """Return whether "first" or "last" gives the order of sentences, as in "first, turn left" and
-    "at last".
+    """Return whether an ordinal orders steps ("first, turn left") instead of objects ("the first
+    door").
     """
     before, after = at(tokens, place - 1), tokens[place + 1] if place + 1 < len(tokens) else None
     loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")

@@ -21,7 +21,7 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 
 def normal(noun: str) -> str:
-    """Return the canonical name of a noun: the main name of its synonyms, in lower case and
+    """Return the canonical name of a noun: the main word of its synonym group, in lower case and
     singular.
     """
     word = noun.lower().removesuffix("'s").removesuffix("s'")

@@ -78,8 +78,14 @@ PATTERNS = {
 
 @dataclass(frozen=True)
 class Voice:
-    """The phrases of one style: openers, frames by position, templates (``commands``) by kind of
-    clause, closers, and synonyms of nouns.
+    """The phrases of one style.
+
+    Attributes:
+        openers: Phrases that can begin the instruction.
+        frames: Phrases around a clause, such as "Then {}", by position of the clause.
+        commands: Templates that replace a clause, by kind of clause (``PATTERNS``).
+        closers: Phrases that can end the instruction.
+        nouns: Synonyms of nouns.
     """
 
     openers: list[str]

@@ -33,8 +33,7 @@ class Restyled:
         text: the rewritten instruction, or the original one.
         tries: number of rewrites that the gate checked.
         passed: whether a rewrite was accepted; if not, ``text`` is the original.
-        plain: number of clauses that kept their words: no template matched, or the gate rejected
-            the result.
+        plain: number of clauses whose words were not replaced by a template.
         clauses: number of clauses.
     """
 

@@ -34,7 +34,7 @@ def is_english(language: str | None, text: str = "") -> bool:
     return 2 * latin >= len(letters)
 
 
-# label for texts without a language code in the counts per language
+# in counts per language, the label for texts that have no language code
 UNMARKED = "an unknown language (not in Latin script)"
 
 

@@ -49,7 +49,8 @@ SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | li
 
 
 def is_kept(word: str) -> bool:
-    """Return whether ``word`` (lower case, straight apostrophe) is never masked, like all words
-    with n't.
+    """Return whether ``word`` must not be masked: it is in ``SPATIAL``, or it ends in "n't".
+
+    The word must be in lower case, with a straight apostrophe.
     """
     return word in SPATIAL or word.endswith("n't")

@@ -67,7 +67,7 @@ class Copy:
         cameras: Cameras to corrupt.
         tolerance: Maximum seconds between a row and its video frame.
         encodings: Encoding of the videos of each camera.
-        frames: Number of frames to corrupt in each file that contains such frames.
+        frames: Number of frames to corrupt, by file name.
         progress: Progress bar that counts corrupted frames.
         summary: Content of ``corrupt.json``.
     """
@@ -210,7 +210,7 @@ def _copy(work: Copy) -> None:
 
 
 def _frames_per_file(dataset: Dataset, cameras: Sequence[Camera]) -> Counter[str]:
-    """Count the frames to corrupt in each file that contains such frames."""
+    """Return the number of frames to corrupt, by file name."""
     frames: Counter[str] = Counter()
     for episode in dataset.episodes.values():
         for camera in cameras:
@@ -289,7 +289,8 @@ def _corrupt_video(
 ) -> None:
     """Write a corrupted video.
 
-    Frames that belong to no episode are also corrupted, so that frame numbers do not change.
+    Frames that belong to no episode are corrupted and kept too, so that no other frame gets a new
+    number.
     """
     source = work.dataset.path / name
     used: set[int] = set()
@@ -386,7 +387,7 @@ def _digest(dataset: Dataset) -> str:
 
 
 def _begin(work: Copy) -> None:
-    """Check that the results of an earlier run in ``out`` match; then write the settings there."""
+    """Check that an earlier run in ``out`` had the same settings; then write the settings there."""
     settings = {k: v for k, v in asdict(work.settings).items() if k not in UNUSED}
     now = {
         "suite_version": SUITE_VERSION,

@@ -33,7 +33,7 @@ from mitigate.corruptions.lerobot.tables import FIX, integers, numbers, read_col
 # columns that every file of data/ has (DEFAULT_FEATURES of lerobot)
 COLUMNS = ("episode_index", "frame_index", "timestamp", "task_index")
 TOLERANCE = 1e-4  # maximum seconds between a row and its video frame (tolerance_s of lerobot)
-MAX_SIGNAL = 1 << 12  # maximum size of a feature that is read as a signal, in numbers per row
+MAX_SIGNAL = 1 << 12  # maximum number of values per row of a feature that is read as a signal
 
 
 @dataclass(frozen=True)

@@ -27,8 +27,8 @@ class DepthCode:
     for depth up to ``near``.
 
     Attributes:
-        near: Depth in metres that code 0 stands for.
-        far: Depth in metres that code ``MAX_CODE`` stands for.
+        near: Minimum depth in metres (code 0).
+        far: Maximum depth in metres (code ``MAX_CODE``).
         shift: Metres that are added before the logarithm is taken.
         log: Whether codes are logarithmic.
     """

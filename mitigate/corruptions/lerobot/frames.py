@@ -115,7 +115,7 @@ def _is_binary(kind: Any) -> bool:
 def stored_image(
     path: Path, table: Any, row: int, camera: Camera, number: int
 ) -> tuple[np.ndarray, str]:
-    """Return an image in a table without conversion, and the format of its file.
+    """Return an image from a table, as it is stored, and its file format.
 
     Raises:
         ValueError: If the image is damaged, or its type or size differs from the camera's.

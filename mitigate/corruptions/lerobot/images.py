@@ -36,7 +36,7 @@ def decode(data: object, camera: Camera) -> tuple[np.ndarray, str]:
     """
     if not isinstance(data, bytes):
         raise ValueError(
-            "must contain the bytes of an image; files outside of the row are not read"
+            "must contain the bytes of an image; images in separate files are not supported"
         )
     try:
         with Image.open(io.BytesIO(data), formats=FORMATS[camera.kind]) as image:

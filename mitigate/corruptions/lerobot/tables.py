@@ -66,8 +66,8 @@ def open_table(path: Path) -> Iterator[Any]:
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
-            f"{path} cannot be read as parquet: it is truncated or damaged ({cause}). If it was "
-            f"recorded, call dataset.finalize(). {FIX}"
+            f"{path} cannot be read as parquet: it is truncated or damaged ({cause}). If you have "
+            "just recorded the dataset, call dataset.finalize(). Otherwise, copy it again."
         ) from error
 
 

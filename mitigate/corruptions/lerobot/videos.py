@@ -17,7 +17,7 @@ from mitigate.core.output import open_output
 from mitigate.corruptions.lerobot.metadata import Camera
 from mitigate.corruptions.lerobot.tables import FIX, INSTALL, check_file
 
-# No other container is read, because a playlist could name other files or addresses.
+# Only MP4 is read, because other formats, such as playlists, can refer to other files or URLs.
 CONTAINER = "mp4"
 RGB_PIXELS = "rgb24"
 DEPTH_PIXELS = "gray12le"
@@ -55,7 +55,7 @@ DEPTH = Encoding(
     DEPTH_PIXELS,
     {"x265-params": "lossless=1:log-level=none", "preset": "ultrafast", "g": GROUP},
 )
-# lerobot's encodings of RGB (RGBEncoderConfig); the keys are codecs of original videos
+# maps the codec of the original video to lerobot's encoding of RGB (RGBEncoderConfig)
 LOSSY = {
     name: Encoding(codec, name, "yuv420p", "yuv420p", {"crf": "30", "g": GROUP, **options})
     for name, codec, options in (

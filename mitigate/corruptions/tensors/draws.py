@@ -71,7 +71,7 @@ class Rows:
         return np.array(self.severities) * factor
 
     def digests(self, name: str, *, frame: bool = False) -> list[int]:
-        """Return, for each row, the digest that seeds the random numbers called ``name``."""
+        """Return, for each row, the digest that seeds the random stream ``name``."""
         return [digest(key, name, frame=frame) for key in self.keys]
 
 
@@ -81,7 +81,7 @@ def signed(value: int) -> int:
 
 
 def shifted(word: Tensor, bits: int) -> Tensor:
-    """Shift words to the right and fill with zeros from the left."""
+    """Shift words to the right by ``bits`` bits; the new high bits are 0 (logical shift)."""
     return (word >> bits) & ((1 << (64 - bits)) - 1)
 
 
@@ -112,7 +112,7 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return the random 64-bit words of each view for the random numbers called ``name``.
+    """Return the 64-bit words of the random stream ``name`` for each view.
 
     There is one word per counter; the result is int64 [B, V, *counters.shape].
     """
@@ -171,8 +171,11 @@ def _resizing(cells: int, pixels: int, device: torch.device) -> Tensor:
 def fields(
     values: Sequence[int], height: int, width: int, correlation: float, like: Tensor
 ) -> tuple[Tensor, Tensor]:
-    """Compute ``keying.field`` for each row; return the fields (float32 [B, H, W]) and their sorted
-    cells ([B, n]).
+    """Compute ``keying.field`` for each row.
+
+    Returns:
+        The fields (float32 [B, H, W]), and for each row its cells in ascending order (float32 [B,
+        n]).
     """
     rows, columns = field_grid(height, width)
     streams = on_device(np.array(values, np.uint64), like, 1)

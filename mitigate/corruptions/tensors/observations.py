@@ -47,9 +47,8 @@ def corrupt_observations(
         A new dict; entries that are not corrupted in any row are the same objects as in ``frames``.
 
     Raises:
-        ValueError: If a modality is missing, normalised depth is above 1, the number of
-            corruptions, keys or headings differs from the number of rows, or ``corrupt_tensors``
-            raises an error.
+        ValueError: If a modality is missing, if normalised depth is above 1, if there is not one
+            corruption, key and heading per row, or if ``corrupt_tensors`` raises an error.
     """
     result = dict(frames)
     if headings is None:

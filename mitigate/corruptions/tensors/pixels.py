@@ -20,7 +20,7 @@ def per_colour(pixels: Tensor) -> Tensor:
 
 
 def colour_rows(colours: Tensor, width: int) -> Tensor:
-    """Return one image row per colour: [B, 1, 1, 3 W], from colours [B, 3]."""
+    """Repeat each of B colours ([B, 3]) for ``width`` pixels; return [B, 1, 1, 3 * width]."""
     return colours.repeat(1, width)[:, None, None]
 
 

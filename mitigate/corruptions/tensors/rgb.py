@@ -1,8 +1,8 @@
 """The eight RGB corruptions of the standard suite for uint8 batches [B, V, H, W, 3].
 
-Every function that has the name of a corruption takes the views and the parameters of their rows,
-and returns a new batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also samples the
-random numbers per row.
+Each function that is named after a corruption takes the views and the parameters of each row
+(``Rows``), and returns a new batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also
+samples the random numbers per row.
 """
 
 from __future__ import annotations
@@ -172,14 +172,14 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
     """Return the kernel of ``blur.gaussian`` along one axis, without its first smoothing levels.
 
-    The kernel (float64 [n]) completes the blur after smoothing at the levels below ``first``. Its
-    taps are 2^first pixels apart, and their sum is 1.
+    If an image was smoothed at the levels below ``first``, this kernel (float64 [n]) adds the
+    remaining blur. Its taps are 2^first pixels apart, and their sum is 1.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)
     half, count = rgb.gaussian_weights(sigma)
     weights = half.astype(float)
-    weights[0] *= 2.0  # the first of the weights is half the weight of the centre tap
+    weights[0] *= 2.0  # ``gaussian_weights`` returns half the weight of the centre tap
     taps = np.concatenate([weights[:0:-1], weights])
     kernel = np.zeros((taps.size - 1) * 2 ** (count - first) + 1)
     kernel[:: 2 ** (count - first)] = taps / taps.sum()

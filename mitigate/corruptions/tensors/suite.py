@@ -31,7 +31,7 @@ from mitigate.corruptions.tensors.pixels import is_valid
 BACKENDS = ("numpy", "torch")
 # maximum pixels per pass (heuristic); the temporary tensors then need about a gigabyte
 MAX_PIXELS = 1 << 23
-# the functions that have the name of a corruption
+# the functions that are named after a corruption
 FUNCTIONS: dict[str, Callable[[Tensor, Rows], Tensor]] = {
     name: vars(module)[name]
     for module in (rgb, depth, unseen_rgb, unseen_depth)
@@ -54,8 +54,8 @@ def corrupt_tensors(
     """Corrupt a batch of frames of one modality; row b of the result equals ``corrupt(frames[b],
     ...)``.
 
-    The numpy backend gives exactly these bits. The torch backend uses the same random numbers; on
-    99.9 % of the pixels, it differs by at most one grey level or 0.1 mm.
+    The result of the numpy backend is bit-identical to ``corrupt``. The torch backend uses the same
+    random numbers. On 99.9 % of the pixels, it differs by at most one grey level or 0.1 mm.
 
     Args:
         frames: For RGB corruptions, uint8 [B, V, H, W, 3]. For depth corruptions, float32
@@ -75,9 +75,8 @@ def corrupt_tensors(
         A new tensor of the same shape and dtype on the same device, without gradient.
 
     Raises:
-        ValueError: If an argument is invalid, or the corruption is a fault, or more than nine
-            tenths of the depth values of a row exceed three times the sensor's z_max (and are
-            probably in millimetres).
+        ValueError: If an argument is invalid, the corruption is a fault, or nearly all depth values
+            of a row are far beyond the sensor's z_max (they are probably in millimetres).
     """
     if fault := registry.family(name):
         raise ValueError(

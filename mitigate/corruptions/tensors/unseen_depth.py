@@ -49,8 +49,8 @@ def misalignment(views: Tensor, rows: Rows) -> Tensor:
 def wiggling(views: Tensor, rows: Rows) -> Tensor:
     """Add a sine wave that is a function of depth.
 
-    The numpy version reads this error from a table. To get the same error, the argument of the sine
-    is rounded to the depths in that table.
+    The numpy version reads this error from a table. To get the same values, this function computes
+    the sine for the nearest depth in that table.
     """
     phases = on_device([uniform(value) for value in rows.digests("wiggling")], views, 3)
     amplitudes = on_device(rows.scaled(calibration.WIGGLE), views, 3)
@@ -133,7 +133,7 @@ def mismatches(views: Tensor, rows: Rows) -> Tensor:
 
 
 def glossy_floor(views: Tensor, rows: Rows) -> Tensor:
-    """Give parts of the floor the depth of what they reflect, as if the floor were a mirror."""
+    """Set the depth of parts of the floor to the depth of the reflected scene."""
     count, height, width = views.shape[1:]
     digests = rows.digests("glossy_floor")
     smooth, cells = fields(digests, height, width, returns.GLOSS_CORRELATION, views)

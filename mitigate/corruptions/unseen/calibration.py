@@ -17,7 +17,8 @@ from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import shifted
 
-SCALE_LEAST, SCALE_MOST = 0.25, 0.40  # limits of the error as a fraction of depth, at severity 1
+# minimum and maximum error at severity 1, as a fraction of depth
+SCALE_LEAST, SCALE_MOST = 0.25, 0.40
 ASIDE = 0.12  # horizontal shift as a fraction of the image width, at severity 1
 ASIDE_DOWN = 0.25  # vertical shift as a fraction of the horizontal shift
 WIGGLE = 0.30  # amplitude in metres, at severity 1
@@ -54,7 +55,7 @@ def scale_error(views: np.ndarray, severity: float, key: Key, sensor: DepthSenso
 
 
 def depth_offset(severity: float, key: Key, width: int) -> tuple[int, int]:
-    """Return the offset (down, right), in pixels, at which ``misalignment`` reads each pixel."""
+    """Return the offset (down, right), in pixels, from each pixel to the source of its depth."""
     value = digest(key, "misalignment")
     reach = ASIDE * severity * width * (1 if uniform(value, 0) < 0.5 else -1)
     return round(reach * ASIDE_DOWN * (2.0 * uniform(value, 1) - 1.0)), round(reach)

@@ -17,10 +17,10 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 # possible sides of a block in pixels, as in the transforms of H.264 and H.265
 BLOCKS = (4, 8, 16, 32)
-BLOCKS_ACROSS = 28  # number of blocks along the shorter side; blocks have 8 px at 224
-DEAD_ZONE = 0.40  # at severity 1, patterns with a lower amplitude (fraction of white) are lost
-CHROMA = 2.0  # limit of the amplitude in the colour channels, relative to the limit in grey
-SLICES = 14  # number of slices per frame height; a macroblock has 16 px at 224
+BLOCKS_ACROSS = 28  # number of blocks along the shorter side; at 224 px, a block has 8 px
+DEAD_ZONE = 0.40  # minimum amplitude, as a fraction of white, of patterns that remain at severity 1
+CHROMA = 2.0  # minimum amplitude in the colour channels, relative to the minimum in grey
+SLICES = 14  # number of slices per frame height; at a height of 224 px, a slice has 16 px
 LOST = 0.8  # fraction of lost slices at severity 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
 
@@ -138,8 +138,8 @@ def dead_zones(severity: float, side: int) -> np.ndarray:
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Remove patterns with an amplitude below 0.4 * severity (1 is white) from image blocks.
 
-    The DCT coefficients of these patterns are set to 0. In the two colour channels, the limit of
-    the amplitude is twice as high.
+    The DCT coefficients of these patterns are set to 0. In the two colour channels, the
+    threshold is twice as high.
     """
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)
@@ -161,8 +161,9 @@ def lost_parts(
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Replace a fraction 0.8 * severity of the 14 slices of every view by grey, from a random
-    column to the end.
+    """Fill each of the 14 slices of a view with grey, with a probability of 0.8 * severity.
+
+    A slice is filled from a random column to its end.
     """
     out = views.copy()
     for view, rows, start in lost_parts(severity, key, *views.shape[:3]):

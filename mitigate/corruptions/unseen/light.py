@@ -16,14 +16,16 @@ from mitigate.corruptions.keying import Key, cached, digest, field, scramble, un
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at severity 1, and their relative spread
-# maximum stops between red and blue at severity 1; Afifi & Brown 2019 use 2800 to 10000 K
+# maximum difference between red and blue at severity 1, in stops
+# Afifi & Brown 2019 vary the colour temperature from 2800 to 10000 K.
 CAST = 2.0
-TINT = 0.5  # maximum stops between green and the mean of red and blue, as a fraction of CAST
-HAZE_DEPTH = 1.5  # optical depth at severity 1 where haze is average
+# maximum difference between green and the mean of red and blue, as a fraction of CAST
+TINT = 0.5
+HAZE_DEPTH = 1.5  # optical depth of haze with mean density, at severity 1
 # pairs of a correlation length (as a fraction of the shorter side) and a weight
 HAZE_OCTAVES = ((0.16, 1.0), (0.08, 0.5), (0.04, 0.25))
-HAZE_UNEVEN = 0.4  # standard deviation of haze relative to its mean
-HAZE_THIN, HAZE_THICK = 0.25, 2.5  # limits of haze, as multiples of its mean
+HAZE_UNEVEN = 0.4  # standard deviation of the density of haze, relative to its mean
+HAZE_THIN, HAZE_THICK = 0.25, 2.5  # minimum and maximum density of haze, relative to its mean
 HAZE_COLOUR = (205, 208, 212)
 HUE_DEGREES = 180.0  # rotation of the hue at severity 1
 

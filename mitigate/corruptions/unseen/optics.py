@@ -1,4 +1,4 @@
-"""Unseen RGB corruptions by objects in front of the sensor: window panes, drops and scratches.
+"""Unseen RGB corruptions from objects in front of the sensor: window panes, drops and scratches.
 
 Functions have the same arguments and results as in ``corruptions/rgb.py``.
 """
@@ -25,12 +25,12 @@ SCRATCHES = 14  # number of scratches at severity 1
 SCRATCH_CORE, SCRATCH_GLOW = 0.006, 0.035  # widths as fractions of the shorter side
 SCRATCH_OPACITY, GLOW_OPACITY = 0.9, 0.45
 SCRATCH_PARTS = ((SCRATCH_CORE, SCRATCH_OPACITY), (SCRATCH_GLOW, GLOW_OPACITY))
-SCRATCH_LONG = (0.3, 1.0)  # limits of the length as fractions of the shorter side
+SCRATCH_LONG = (0.3, 1.0)  # minimum and maximum length as fractions of the shorter side
 SCRATCH_COLOUR = (226, 226, 222)
 
 
 def ghost_offset(key: Key, height: int, width: int) -> tuple[int, int]:
-    """Return the offset (down, right), in pixels, at which the ghost image reads each pixel."""
+    """Return the offset (down, right), in pixels, from a ghost pixel to its source pixel."""
     value = digest(key, "ghosting")
     away = GHOST_NEAR + (GHOST_FAR - GHOST_NEAR) * uniform(value, 0)
     across = round(away * width * (1 if uniform(value, 1) < 0.5 else -1))

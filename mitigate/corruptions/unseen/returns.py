@@ -105,11 +105,11 @@ def gloss_offset(key: Key, view: int, width: int) -> int:
 
 
 def glossy_floor(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Give a fraction ``severity`` of the floor the depth of what it reflects, like a mirror."""
+    """Set the depth of a fraction ``severity`` of the floor to the depth of the reflected scene."""
     _, height, width = views.shape
     smooth, cells = field(digest(key, "glossy_floor"), height, width, GLOSS_CORRELATION)
     gloss = smooth >= top_share(cells, severity)
-    # A pixel at depth z shows a point that is z * slope below the level camera.
+    # If the camera is level, a pixel at depth z shows a point that is z * slope below the camera.
     # The unit of this distance is half the width that the image covers at a depth of one metre.
     slope = ((np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)).astype(np.float32)
     depth = np.where(valid(views), views, 0) * slope[:, None]

@@ -16,9 +16,9 @@ from mitigate.corruptions.record import TEST, VALIDATION, Record
 from mitigate.corruptions.unseen.optics import displaced
 
 WOBBLE = 0.05  # maximum shift as a fraction of the image width, at severity 1
-WOBBLE_WAVES = (1.0, 2.5)  # limits of the number of waves per frame height
+WOBBLE_WAVES = (1.0, 2.5)  # minimum and maximum number of waves per frame height
 FLICKER = 0.8  # maximum relative change of brightness at severity 1
-# These are the limits of the number of bands per frame height.
+# These are the minimum and maximum number of bands per frame height.
 # The light flickers at 100 Hz, and the sensor reads out a frame in 1/50 to 1/25 s.
 BANDS = (2.0, 4.0)
 IMPULSES = 0.3  # fraction of the pixels that change at severity 1
@@ -68,8 +68,9 @@ def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) ->
 
 @njit(cache=True)
 def _strike(views, streams, least, out):
-    """Set the colours of pixels [V, P, 3] to 0 or 255 if the 32-bit hash of the pixel is below
-    ``least``.
+    """Set the colours of a pixel to 0 or 255 if its 32-bit hash is below the threshold ``least``.
+
+    ``views`` is uint8 [V, P, 3].
     """
     for v in range(views.shape[0]):
         for i in range(views.shape[1]):
