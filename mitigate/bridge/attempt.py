@@ -233,7 +233,7 @@ class Attempt:
         return None
 
     def _describe_problem(self, status: int) -> str:
-        """Return a description of the problem of a command that ended with ``status``, or ""."""
+        """Return why the command failed, or "" if it succeeded; ``status`` is its exit status."""
         reports = self.cell.reports()
         if reports.problems:
             return reports.problems[0]

@@ -185,8 +185,8 @@ class Rig:
         descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Maps each group of cameras to the stream of its recent frames. A new rig of an
-            environment continues the streams of the previous rig; the first rig gets None.
+        streams: Maps each group of cameras to the stream of its recent frames. Pass the streams of
+            the previous rig of an environment to continue them; None starts new streams.
 
     Raises:
         ValueError: If a camera cannot be corrupted, or there are too many cameras.
@@ -260,7 +260,7 @@ class Rig:
             memory: Shared memory.
             offsets: Offset of each camera in ``memory``.
             corruption: Corruption to apply; parts for other modalities are ignored.
-            key: Determines the random numbers.
+            key: Key from which all random numbers are derived.
             heading: The agent's heading in radians; None if unknown.
         """
         changed: list[str] = []
@@ -288,8 +288,8 @@ class Rig:
             memory: Frames of the current call.
             offsets: Position of each camera's frame in ``memory``.
             guards: Guards of the condition.
-            started: Maps the camera names of an observation to its guards in the current episode.
-                This method adds guards for new observations.
+            started: Guards of the current episode. The key is the tuple of camera names of the
+                observation that the guard processes. This method adds guards for new observations.
         """
         frames = [
             frame

@@ -72,7 +72,7 @@ def read_done(folder: Path) -> dict[str, Any] | None:
 
     Raises:
         ValueError: If ``done.json`` is damaged or belongs to a different condition, or the events
-            changed after it was written. The message names the file and the next step.
+            changed after it was written. The message names the file and says what to do.
     """
     file = folder / DONE
     again = f"No file was changed. To continue, {measure_again(folder)}"
@@ -155,7 +155,7 @@ class Cell:
     def entries(self) -> dict[str, Any] | None:
         """Return the entries of ``done.json``, or None if the condition is not finished.
 
-        Raises ValueError for a damaged file, and if the events differ from the entries.
+        Raises ValueError if a file is damaged, or if the events do not match the entries.
         """
         return read_done(self.folder)
 
@@ -165,8 +165,9 @@ class Cell:
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Return whether the condition is finished and complete. Raises ValueError if settings
-        changed.
+        """Return whether the condition is finished and need not be measured again.
+
+        Raises ValueError if settings changed.
         """
         entries = self.entries()
         if entries is None:
@@ -193,7 +194,10 @@ class Cell:
         return ""
 
     def changed_files(self, files: dict[str, Any]) -> list[str]:
-        """Return the files named in the command that changed after the condition finished."""
+        """Return the files that changed after the condition finished.
+
+        Only the files that the command names are compared.
+        """
         before = self.entries() or {"files": {}}
         return [name for name, seen in before["files"].items() if files.get(name) != seen]
 
@@ -249,8 +253,9 @@ class Cell:
         )
 
     def describe_missing(self, missing: list[str]) -> str:
-        """Return a text such as "3 of clean's 6 episodes are missing" ("clean" is the clean
-        condition).
+        """Return a text such as "3 of clean's 6 episodes are missing".
+
+        "clean" is the name of the condition without corruption.
         """
         verb = "is" if len(missing) == 1 else "are"
         all_clean = counted(len(self.clean_reports().ends), "episode")
@@ -297,7 +302,7 @@ class Cell:
 
 
 def describe_lost(reports: Reports) -> str:
-    """Return a text such as "2 episodes were left unfinished, such as s0/2: a process died ...".
+    """Return a text like "2 episodes were left unfinished, such as s0/2: a process died ...".
 
     If possible, the example is an episode for which the reason is known. The text ends with advice.
     """

@@ -41,7 +41,8 @@ MAX_DRAWN = 4  # maximum number of cameras of a panorama that the picture shows 
 SIDE = 1.64  # side of one frame in the picture, in inches
 LINE_WIDTH = 22  # maximum number of characters per line of a camera's name
 HEADING = "heading"  # name of the array in ``first.npz`` that contains the agent's heading
-TRIED_CALLS = 40  # maximum number of calls to try until an intermittent corruption acts (heuristic)
+# maximum number of calls to try until a corruption changes a frame (heuristic)
+TRIED_CALLS = 40
 
 
 @dataclass
@@ -73,8 +74,8 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
         command: The user's command and its arguments.
 
     Raises:
-        ValueError: If an option is invalid, or the command sends no frame within
-            ``FIRST_FRAME_LIMIT`` seconds or before it ends.
+        ValueError: If an option is invalid, if the command ends before its first frame, or if
+            ``FIRST_FRAME_LIMIT`` seconds pass before that frame.
     """
     plan = make_plan(config, command)
     out = Path(config.out or f"{config.runs}/run/{plan.name}-check")

@@ -1,9 +1,9 @@
 """Apply one condition to the user's command: corrupt frames and instructions, and choose episodes.
 
-An episode is chosen by a hash of its name, so the choice depends neither on the order nor on the
-number of processes. The first environments of a run report the names of their episodes. These names
-determine an upper bound for the hash: about as many episodes as requested have a hash up to this
-bound. All later environments use the same bound.
+An episode is chosen if the hash of its name is at most a bound, so the choice depends neither on
+the order nor on the number of processes. The first environments of a run report the names of their
+episodes. From these names, the bound is computed such that about the requested number of episodes
+is chosen. All later environments use the same bound.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ from mitigate.worlds.episodes import read_extras
 if TYPE_CHECKING:
     from mitigate.bridge.cameras import Rig
 
-# seconds without a new environment after which all environments are assumed known (heuristic)
+# if no new environment reports for this many seconds, all are assumed to be known (heuristic)
 SETTLE_TIME = 4.0
 NO_TOKENIZER = (
     "the agent's episodes hold instruction tokens in addition to the text. Without a tokenizer the "
@@ -60,7 +60,7 @@ class Observer:
         """Receive the result of an episode."""
 
     def leave(self) -> None:
-        """Receive the notice that an episode was left unfinished."""
+        """Handle an episode that was left unfinished."""
 
 
 @dataclass
@@ -122,9 +122,7 @@ def why_not_applicable(corruption: Corruption, clean: Reports) -> str:
 
 
 def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> bool:
-    """Return whether the agent needs tokens of corrupted words although ``tokenizer=`` is not
-    set.
-    """
+    """Return whether ``tokenizer=`` is missing: words are corrupted, but the agent reads tokens."""
     changes_words = any(part.modality == "instruction" for part in corruption.parts)
     reads_tokens = bool(clean.first.get("tokens")) and is_english(clean.first.get("language"))
     return changes_words and reads_tokens and words.tokenizer is None
@@ -157,7 +155,7 @@ class Words:
             message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
                 ``category``.
             corruption: The corruption of the condition.
-            key: Determines the random numbers.
+            key: Key from which all random numbers are derived.
             guards: Guards that change the corrupted instruction.
 
         Raises:
@@ -223,8 +221,8 @@ class Subset:
     Attributes:
         count: The requested number of episodes.
         folder: The run's folder, in which the choice of episodes is stored.
-        settled: Seconds without a new environment after which all environments are assumed to be
-            known.
+        settled: If no new environment reports its episodes for this many seconds, all environments
+            are assumed to be known.
     """
 
     count: int
@@ -252,8 +250,8 @@ class Subset:
     def _choice(self) -> dict[str, Any] | None:
         """Return the stored choice of episodes, or None if no choice is stored.
 
-        Its entries are the upper bound of the hashes ("bound"), the requested number of episodes
-        ("episodes") and the number of episodes to choose from ("of").
+        Its entry "bound" is the largest hash of a chosen episode. The entry "episodes" is the
+        requested number of episodes, and "of" is the number of episodes to choose from.
         """
         file = self.folder / "episodes.json"
         if not output.is_regular(file):

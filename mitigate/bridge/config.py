@@ -146,7 +146,11 @@ def _check_watched(name: str) -> None:
 
 
 def command_name(command: Sequence[str]) -> str:
-    """Return the name of the first script or module (``-m``) in a command, or of its program."""
+    """Return a short name for a command.
+
+    This is the name of its first script. Without a script, it is the first module (``-m``), and
+    without a module, it is the name of the executable.
+    """
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]
     return [*scripts, *modules, Path(command[0]).stem][0]

@@ -255,12 +255,13 @@ class Connection:
         if not self.chosen:
             raise ValueError(
                 "episodes= asks for some of the program's episodes, but the program would run all. "
-                "A loop without habitat-lab must run the episodes that mitigate_hook.wanted([(scene"
-                ", id), ...]) returns; WMNav has the option -ne. Or leave episodes= out."
+                "A loop without habitat-lab must run only the episodes that "
+                "mitigate_hook.wanted([(scene, id), ...]) returns. Alternatively, leave out "
+                "episodes= and use an option of the program, such as -ne of WMNav."
             )
 
     def on_frame(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Corrupt the frames of a call in memory; reply with the names of the changed cameras."""
+        """Corrupt a call's frames in the shared memory; reply with the names of changed cameras."""
         self.shared.delete_file()
         if self.rig is None:
             raise ValueError("a frame was received before its cameras were described.")

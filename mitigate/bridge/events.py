@@ -65,7 +65,7 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     that wrote it was killed.
 
     Raises:
-        ValueError: If any other line is not a JSON object with a text ``event``.
+        ValueError: If any other line is not a JSON object with a string field ``event``.
     """
     file = folder / EVENTS
     if not is_regular(file):
@@ -114,7 +114,7 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     """Return the scene and the id from the message that begins an episode.
 
     Raises:
-        ValueError: If result rows cannot contain the episode's name.
+        ValueError: If the episode's name is not allowed in result rows.
     """
     scene, episode = str(message["scene"]), str(message["id"])
     constraint = allowed("episode_id", episode_name(scene, episode))
@@ -149,7 +149,7 @@ def _check_end(end: dict[str, Any]) -> dict[str, Any]:
     """
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
-        raise ValueError("metrics that are not numbers by name")
+        raise ValueError("metrics that do not map names to numbers")
     for name, value in metrics.items():
         unreachable = name == "distance_to_goal" and value == math.inf
         if not _is_number(value) or not (unreachable or math.isfinite(value)):
@@ -168,7 +168,7 @@ def _check_end(end: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(farthest, dict) or not all(
         v is None or _is_number(v) for v in farthest.values()
     ):
-        raise _invalid("farthest", farthest, "metres by camera")
+        raise _invalid("farthest", farthest, "a mapping from camera names to metres")
     if end.get("how", OVER) not in HOW:
         raise _invalid("how", end["how"], " or ".join(HOW))
     path = _check_path(end.pop("path", []))

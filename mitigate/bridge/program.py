@@ -90,7 +90,7 @@ class Command:
         Processes that the command started may still run.
         """
         if self._status is None:
-            # check this before reading, so that the last line is already in the pipe
+            # poll before reading: if the supervisor has ended, its last line is then in the pipe
             supervisor_status = self.process.poll()
             line = self._next()
             if "status" in line:

@@ -149,7 +149,7 @@ def delete_drafts(folder: Path) -> None:
 
     Raises:
         UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO
-            or a device; nothing was deleted.
+            or a device. In this case, nothing is deleted.
     """
     with output.output_folder(folder.parent):
         output.check(folder / RECORDING)

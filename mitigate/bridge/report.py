@@ -26,7 +26,8 @@ from mitigate.evaluation import bootstrap, report, rows
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.worlds.measures import RULES
 
-LABELS = ("agent", "seed", "split")  # keys of rows.IDENTITY with one value in a run
+# keys of rows.IDENTITY whose values are the same in all rows of a run
+LABELS = ("agent", "seed", "split")
 
 
 def write_report(cells: Sequence[Cell], out: Path) -> None:

@@ -30,20 +30,21 @@ CUT_OFF = (
     "evaluator stops after a number of episodes. Choose episodes by episodes= and let the program "
     "run all of them. If the program ends its episodes this way, set count_closed=true"
 )
-# COMMON maps an entry of an episode to the common success rule of tasks whose episodes have it.
+# COMMON maps each task to its common success rule.
+# A task is recognised by its first episode, which has either a "category" or a "text".
 # The rules do not use STOP, because some programs never report it.
 COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 
 @dataclass
 class Reports:
-    """What a command's processes have reported under one condition so far.
+    """All reports that a command's processes have sent under one condition.
 
     Attributes:
         hellos: The first message of each connection, with the versions of Python and libraries.
         cameras: The first description of each camera.
-        unread: Descriptions of observations of the first call that look like frames, but whose
-            sensors are not cameras. Each description contains the type of the sensor.
+        unread: Descriptions of observations that look like frames, but do not come from cameras.
+            They belong to the first call. Each contains the type of its sensor.
         ends: Maps the name of each episode to the event of its end (:meth:`end`).
         repeated: Number of episodes that ended more than once.
         dropped: Episodes that were left unfinished, with the reason if known.
@@ -74,11 +75,11 @@ class Reports:
 
     @property
     def lost(self) -> list[str]:
-        """The episodes that were left unfinished and did not end later."""
+        """The names of the episodes that were begun but never finished."""
         return sorted(self.dropped.keys() - self.ends.keys())
 
     def end(self, name: str, event: dict[str, Any]) -> None:
-        """Record the event of an episode's end.
+        """Record the event that reports the end of an episode.
 
         If an episode ended several times, the first event counts. The first event is replaced,
         however, if it was a reset or a close and the later event says that the episode was over.
@@ -105,12 +106,12 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
 
     Args:
         folder: The folder of a condition.
-        count_closed: Whether to count episodes whose Env was closed before they were over, while
-            other Envs ran in parallel.
+        count_closed: Whether to count an episode whose Env was closed before the episode was over,
+            while other Envs ran in parallel.
 
     Raises:
-        ValueError: If another line is damaged. The message names the file, the line and the next
-            step.
+        ValueError: If another line is damaged. The message names the file and the line, and says
+            what to do.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -181,7 +182,7 @@ def rows(
     Args:
         reports: The reports of the condition.
         corruption: The corruption of the condition.
-        label: Entries of all rows ("agent", "name", "split", "seed").
+        label: Values that are the same in all rows ("agent", "name", "split", "seed").
         rule: A name in ``RULES``; this rule replaces the agent's own Success measure. If it is None
             and the agent reports no Success measure, all rows are judged by the common rule.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
@@ -228,7 +229,7 @@ def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = No
 
 
 def _judge(end: dict[str, Any], rule: str | None, rules: Iterable[Rule]) -> Iterable[Row]:
-    """Return success and SPL of one episode by each rule that can judge it."""
+    """Return the success and SPL of an episode for each success rule that can judge it."""
     metrics, judged = end.get("metrics", {}), {}
     if rule is None and "success" in metrics:
         success = float(metrics["success"]) > 0
@@ -264,7 +265,7 @@ def count_missing(reports: Reports, rule: str) -> dict[str, int]:
     """Count the episodes that lack an argument that ``rule`` needs.
 
     Returns:
-        A dict from the argument to the number of episodes; it is empty if no episode lacks one.
+        A dict that maps each missing argument to the number of episodes that lack it.
     """
     counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
     return {name: count for name, count in counts.most_common() if name}

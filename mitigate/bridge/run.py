@@ -37,7 +37,7 @@ from mitigate.corruptions.language.text import is_english, passed_through
 
 PROGRESS_INTERVAL = 15.0  # seconds between two lines of progress (heuristic)
 PAUSE = 0.2  # seconds between two polls of a running command
-# maximum length of a problem in a progress line, in characters (heuristic)
+# maximum length of an error message in a progress line, in characters (heuristic)
 MAX_REASON = 100
 
 
@@ -129,8 +129,8 @@ def _check_rule(cells: Sequence[Cell]) -> None:
     for cell in cells:
         if cell.is_done() and (problem := cell.rule_problem()):
             raise ValueError(
-                f"{cell.name}: {problem} It was measured before. To measure it again, choose "
-                "another folder (out=...)."
+                f"{cell.name}: {problem} This condition has already been measured. To measure it "
+                "again, choose another folder (out=...)."
             )
 
 
@@ -160,10 +160,10 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Print and return the command's files that have changed since a condition finished.
+    """Print and return the files that have changed since a condition finished.
 
-    The command's files are the files that its command line names.
-    Files in ``known``, and files that the command created, are not printed.
+    Only the files that the command line names are compared. Files in ``known``, and files that the
+    command created, are returned but not printed.
     """
     changed: dict[str, list[str]] = {}
     now = hash_files(cells[0].command)
@@ -244,13 +244,13 @@ def _start(attempt: Attempt) -> str:
 
 
 def _report(cell: Cell, problem: str, single: bool) -> list[str]:
-    """Print one line about a condition that ended: its summary, or that it failed.
+    """Print one line about a condition that ended: its summary or its error message.
 
-    The line of a failed condition contains the beginning of the problem. If the run has only this
-    ``single`` condition, the line omits the problem, because the whole text follows directly.
+    The error message is cut to ``MAX_REASON`` characters. It is omitted if the run has only this
+    condition (``single``), because the full message is then printed next.
 
     Returns:
-        The problem with the name of the condition, or an empty list if there is no problem.
+        A list with the error message, preceded by the condition's name; empty if there is none.
     """
     if not problem:
         say(f"{cell.name}: {cell.summary()}")
@@ -357,6 +357,6 @@ def _check_line(options: Sequence[str]) -> None:
     words = [option for option in options if "=" not in option and option[:1] not in ("-", "~")]
     if words:
         raise ValueError(
-            f"Options must be key=value, got {words[0]}. If it begins the command to run, write -- "
-            "before it: mitigate run conditions=[spatter] -- python agent.py"
+            f"Options must be key=value, got {words[0]}. If this is the start of the command to "
+            "run, write -- before it: mitigate run conditions=[spatter] -- python agent.py"
         )

@@ -1,8 +1,8 @@
 """The server of the bridge, with one process per connection, so that connections are independent.
 
 A ``Listener`` serves one user command while it runs. A process that connects must send the
-listener's token. A fork of the listener serves each connection, so that corruptions use all cores
-and an error ends only one environment, with a message.
+listener's token. The listener forks one process per connection. Corruptions can therefore use all
+cores, and an error is reported and ends only one environment.
 """
 
 from __future__ import annotations

@@ -66,7 +66,7 @@ def results(
     started: int,
     progress: Progress,
 ) -> Iterator[tuple[int, Any] | None]:
-    """Yield (job number, result) pairs from ``started`` workers of the launcher.
+    """Run jobs in ``started`` workers of the launcher, and yield (job number, result) pairs.
 
     As with ``core.workers.results``, each result is yielded exactly once, even if workers die.
 

@@ -104,8 +104,9 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``). The result of a chain is a problem,
-    or "".
+    """Task that runs chains in workers (``core/workers.py``).
+
+    The result of a chain is a text: the description of its problem, or "" after success.
     """
 
     preload: ClassVar[str] = "mitigate.cluster.programs"

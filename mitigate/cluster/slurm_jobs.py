@@ -228,8 +228,9 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Return the number of the next attempt for a share; raise WorkersDied after too many
-    attempts.
+    """Return the number of the next attempt to run the unfinished jobs of ``share``.
+
+    Raises WorkersDied after too many attempts.
     """
     try:
         problem: Any = share.job.exception()

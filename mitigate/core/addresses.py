@@ -24,7 +24,8 @@ _SEPARATORS = re.compile(r"[\s,=\"'\\(){}\[\]]+")
 # the option safeguard=, or a misspelling of it, at the start of an argument or in a list
 _SAFEGUARD = re.compile(r"(?:^|[^a-z])saf\w*g\w*[\"']?\s*[=:]", re.IGNORECASE)
 _NAME = re.compile(r"[-+~]*saf\w*g\w*=?", re.IGNORECASE)
-_NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")  # the next option in a list of options
+# the separator before the next option in a list of options, and the name of that option
+_NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")
 # the values of other options may contain "@" or "//", but not a URL with "@"
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
 _SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
@@ -35,9 +36,9 @@ def check_url(url: str) -> None:
     """Raise ValueError if ``url`` is not a URL, or if it contains a user, a password or a key."""
     if any(mark in url for mark in "@?#"):
         raise ValueError(
-            "The endpoint's URL contains a user, a password or a key (an @, ? or #), which would "
-            "become part of names in the results. Give the key in the environment variable "
-            f"OPENAI_API_KEY. {_EXAMPLE}"
+            "The endpoint's URL must not contain @, ? or #, because a user, a password or a key in "
+            "the URL would become part of names in the results. Give the key in the environment "
+            f"variable OPENAI_API_KEY. {_EXAMPLE}"
         )
     try:
         parts = urlsplit(url)
@@ -52,7 +53,7 @@ def check_choice(choice: object) -> None:
     """Raise ValueError if a value of ``safeguard=`` is not a string or is an invalid address.
 
     Names, paths without special characters and existing folders are accepted. All other values must
-    have the form ``URL@model``, because a password in any other form would not be recognised.
+    have the form ``URL@model``. In any other form, a password in the URL could not be recognised.
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
@@ -74,7 +75,7 @@ def check_choice(choice: object) -> None:
 
 
 def is_plain(choice: object) -> bool:
-    """Return whether a value of ``safeguard=`` is certainly not an address.
+    """Return whether a value of ``safeguard=`` cannot be the address of an endpoint.
 
     Only such values may be shown in messages, because an address may contain a password.
     """

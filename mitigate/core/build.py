@@ -62,7 +62,7 @@ def argument_names(kind: Any) -> list[str]:
     """Return the names of the arguments that a config may set for ``kind``.
 
     A class with ``sources`` (``mitigate.training.objective``) also accepts the arguments of its
-    source classes, but no source objects.
+    source classes. A config cannot set the source objects themselves.
     """
     # other classes and functions have no ``sources``
     sources: Mapping[str, Any] = getattr(kind, "sources", {})

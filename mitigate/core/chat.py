@@ -123,9 +123,10 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
     """Send ``body`` to ``url`` and return the answer.
 
     ``seconds`` limits the total time, including name resolution, connecting and reading. The
-    request runs in a thread, because name resolution, or several unreachable addresses, may take
-    longer than any deadline. A late thread is abandoned; it ends when its socket times out.
-    Redirects are not followed, because they would send the text and the key to a different host.
+    request runs in a thread, because socket timeouts do not limit name resolution, and each address
+    of a host has its own timeout. A thread that exceeds the limit is abandoned; it ends when its
+    socket times out. Redirects are not followed, because they would send the text and the key to a
+    different host.
 
     Raises:
         TimeoutError: If no complete answer arrived in time.

@@ -58,7 +58,7 @@ def weights_file(path: str | Path) -> Path:
 
 
 def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> Path:
-    """Write the tensors of ``module.state_dict()`` to a safetensors file, or into a folder.
+    """Write the tensors of ``module.state_dict()`` to a safetensors file.
 
     Args:
         module: the module.
@@ -209,8 +209,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     try:
-        # The header must fit the size of the file.
-        # Computing the sha256 of a sparse file of several terabytes would take hours.
+        # safe_open compares the sizes of tensors in the header with the size of the file.
+        # Without this check, the sha256 of a sparse file of several terabytes would take hours.
         with safe_open(file, "pt"):
             problem = folders.problem(file)
         if not problem:

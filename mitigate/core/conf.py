@@ -110,18 +110,19 @@ def main(
     With ``--help``, it only prints every option and the first lines of ``program``'s module
     docstring.
 
-    For ValueError, OSError, errors in configs and requests for too much memory, it prints one
-    paragraph and exits with status 1. For Ctrl-C (status 130) and SIGTERM (status 143), it prints
-    the command that resumes the work.
+    After a ValueError, an OSError, an error in a config or a request for too much memory, it prints
+    one paragraph and exits with status 1. After Ctrl-C (status 130) and SIGTERM (status 143), it
+    prints the command that resumes the work.
 
     Args:
-        program: a ``hydra.main`` function over ``conf/<primary>.yaml`` (:func:`hydra_program`).
+        program: a ``hydra.main`` function that uses the config ``conf/<primary>.yaml``
+            (:func:`hydra_program`).
         primary: name of the config.
         check: function that is called before ``program`` and checks the command-line arguments.
             Addresses are checked earlier (``core/addresses.py``).
-        behind: command-line arguments that Hydra must not parse. They are appended to the printed
-            command.
-        again: text before the printed command. The default says that the command resumes the work.
+        behind: command-line arguments that were removed before Hydra parses the rest, such as those
+            after ``--``. They are appended to the printed command.
+        again: text before the printed command that states what the command does.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
         print(help_text(sys.modules[program.__module__].__doc__ or "", primary))
@@ -169,8 +170,8 @@ def _prepare(primary: str, check: Callable[[], None] | None) -> None:
 def _check_files(primary: str, words: Sequence[str]) -> None:
     """Check the addresses in config files before Hydra prints them or saves the config of a sweep.
 
-    The check takes a tenth of a second. It is therefore made only if the command-line arguments
-    ``words`` name a folder of the user's configs, start a sweep, or print a config. Raises the same
+    The check takes a tenth of a second. It therefore runs only if the user names a config folder,
+    starts a sweep or prints a config; ``words`` are the command-line arguments. Raises the same
     errors as :func:`mitigate.core.addresses.check_arguments`.
     """
     if not any(word.startswith("-") or "hydra." in word for word in words):
@@ -192,7 +193,8 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
 class _WithoutHydraLine:
     """Output stream that drops the line that Hydra prints before an error.
 
-    The line is redundant: a user's mistake is explained, and other errors have a traceback.
+    The line is not needed: :func:`main` explains a user's mistake, and other errors have a
+    traceback.
     """
 
     def __init__(self, stream: TextIO) -> None:
@@ -362,14 +364,14 @@ def _choices(group: str, primary: str) -> str:
 def walks(file: Path) -> bool:
     """Return whether the agent that ``file`` (in ``conf/agent``) defines can run episodes.
 
-    The file of such an agent also sets entries outside its group: the shipped weights and options
-    of the world.
+    The file of such an agent begins with ``WHOLE``, because it also sets entries outside the group
+    ``agent``, such as ``weights`` and ``env``.
     """
     return file.read_text(encoding="utf-8").startswith(WHOLE)
 
 
 def _chosen(primary: str) -> dict[str, str | None]:
-    """Return the default file of each group in ``conf/<primary>.yaml``, by group."""
+    """Return a dict that maps each group in ``conf/<primary>.yaml`` to its default file."""
     entries = OmegaConf.load(CONF / f"{primary}.yaml").defaults
     pairs = [pair for entry in entries if isinstance(entry, DictConfig) for pair in entry.items()]
     return {str(name): chosen for name, chosen in pairs if "/" not in str(name)}

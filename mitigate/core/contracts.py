@@ -15,12 +15,12 @@ def read(thing: Any, *names: str, default: Any = None) -> Any:
 
 
 def take_over(view: Any, thing: Any, names: Iterable[str]) -> None:
-    """Copy those of the attributes ``names`` that ``thing`` has from ``thing`` to ``view``."""
+    """Copy attributes from ``thing`` to ``view``; skip ``names`` that ``thing`` does not have."""
     for name in names:
         if hasattr(thing, name):  # no other function reads these attributes of a user's object
             setattr(view, name, getattr(thing, name))
 
 
 def missing_members(thing: Any, names: Sequence[str]) -> list[str]:
-    """Return those ``names`` that ``thing`` lacks, or whose value is empty (the default)."""
+    """Return the names of attributes that ``thing`` does not have or leaves empty (the default)."""
     return [name for name in names if not getattr(thing, name, None)]

@@ -29,7 +29,8 @@ def error_message(error: ValueError | OSError) -> str:
     """Return a paragraph that explains an error.
 
     For an error in the user's code, the paragraph names the file and line. For a system error, the
-    paragraph names the file, and what to do if the disk is full. Control characters are escaped.
+    paragraph names the file and, if the disk is full, says what to do. Control characters are
+    escaped.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
@@ -37,8 +38,8 @@ def error_message(error: ValueError | OSError) -> str:
     message = f"{error.strerror}: {error.filename}" if error.filename else str(error.strerror)
     if error.errno in (errno.ENOSPC, errno.EDQUOT, errno.EFBIG):
         message += (
-            ". Finished results are complete. Free some space and run the same command again to "
-            "resume."
+            ". Results that were already written are intact. Free some space and run the same "
+            "command again to resume."
         )
     return printable(message)
 
@@ -83,7 +84,7 @@ def own_place(error: BaseException) -> str:
 
 
 def too_large_message(error: Exception) -> str:
-    """Return an explanation if the error was caused by too large a setting or file, else ""."""
+    """Return an explanation if a setting or file that is too large caused the error, else ""."""
     cause = " ".join(str(error).split())[:200]
     if isinstance(error, MemoryError) or "allocate memory" in cause:
         what = "more memory than available"

@@ -124,7 +124,10 @@ class _Unpacked(gzip.GzipFile):
         self._unpacked = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """Read like a file object, but unpack at most one byte more than the limit."""
+        """Read like a file object, but stop at a limit if ``size`` is not set.
+
+        Reading stops one byte after the limit, which is enough to detect a file that is too large.
+        """
         count = self._limit + 1 - self._unpacked if size is None or size < 0 else size
         return self._checked(super().read, count)
 
@@ -179,7 +182,7 @@ def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]
     Args:
         file: seekable file, open for reading.
         count: maximum number of lines.
-        width: maximum number of characters per line, without the mark of a gap.
+        width: maximum number of characters per line. In a shortened line, " ... " is not counted.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - TAIL_BYTES))
@@ -217,7 +220,7 @@ def _draft(path: Path) -> Iterator[Path]:
     """Yield an empty temporary file that is renamed to ``path`` after the block.
 
     The temporary file is in the same folder, which is created if needed. The file is flushed to
-    disk and gets the permissions of the umask. If the block raises an error, the file is deleted.
+    disk, and its permissions follow the umask. If the block raises an error, the file is deleted.
     """
     temporary = draft_path(path)
     with output.writing(path):

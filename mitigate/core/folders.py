@@ -222,8 +222,8 @@ def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
     The manifest of a folder in an older format is the list of files in its card.
 
     Raises:
-        ValueError: If the manifest or the card is invalid. The message ends with the advice
-            ``again``.
+        ValueError: If the manifest or the card is invalid. The message ends with the text
+            ``again``, which says how to continue.
     """
     folder = Path(folder)
     file = folder / MANIFEST
@@ -279,7 +279,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: advice for a damaged folder; each message ends with it.
+        again: advice at the end of each message: how to replace a damaged folder.
 
     Raises:
         FileNotFoundError: If a file is missing.
@@ -326,8 +326,8 @@ def problem(file: Path) -> str:
     """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
 
     Returns:
-        The end of a sentence about the file, such as "does not have the sha256 ...", or "" if the
-        file is intact or no manifest or sidecar lists it.
+        A predicate such as "does not have the sha256 ...". It is "" if the file is intact, or if
+        neither a manifest nor a sidecar lists it.
 
     Raises:
         PermissionError: If the user has no permission to read the file; it may be intact.

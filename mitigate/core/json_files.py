@@ -17,9 +17,10 @@ from mitigate.core.output import UnsafePathError
 CHUNK = 1 << 16  # number of characters that are read at a time (heuristic)
 # maximum length of one JSON value in characters (heuristic); a longer value means a broken file
 LARGEST_VALUE = 1 << 25
-# maximum size in bytes of a JSON file that is read at once (heuristic); a card has 1e4 bytes
+# maximum size in bytes of a JSON file that is read as a whole (heuristic)
+# For comparison, the card.json of a hardened agent has about 1e4 bytes.
 LARGEST_JSON = 1 << 24
-# maximum size in bytes of a JSON list of the files of a folder (heuristic); a file needs 100 bytes
+# maximum size in bytes of a JSON file that lists files, with about 100 bytes per file (heuristic)
 LARGEST_LIST = 1 << 28
 
 
@@ -32,7 +33,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
 
     Raises:
         ValueError: If the file has more than ``most`` bytes, holds a number that is not finite, or
-            is damaged. Each message ends with the advice ``again``.
+            is damaged. Each message ends with the text ``again``, which says how to continue.
         UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     try:
@@ -50,7 +51,7 @@ def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, A
 
     Raises:
         ValueError: If the file is damaged or holds a different kind of value, such as null or a
-            list. The message names the file and ends with ``again``.
+            list. The message names the file and ends with the text ``again``.
     """
     value = read_json(path, again, most)
     if not isinstance(value, dict):
@@ -165,7 +166,11 @@ class _JsonFile:
                 self._fail("too many levels")
 
     def _more(self) -> bool:
-        """Discard the parsed part of the buffer, and double the remaining part by reading more."""
+        """Discard the parsed part of the buffer, and append more text from the file.
+
+        The appended part is as long as the rest or longer, so a long value needs few reads.
+        Returns False at the end of the file.
+        """
         self._before += self._at
         self._text = self._text[self._at :]
         self._at = 0

@@ -25,7 +25,7 @@ NAME = ".lock"
 _DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
 # These are the locks of this process.
 # A record lock does not prevent the same process from locking again.
-# The process loses the lock when it closes any file of that path.
+# The process loses a lock when it closes any file descriptor of the locked file.
 _locks: dict[Path, IO[str]] = {}
 
 
@@ -143,9 +143,9 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
     not searched.
 
-    Call this only while this process holds the lock. Then an unfinished file with the process id of
-    this process must come from an earlier process with the same id, for example after a restart of
-    a container.
+    Call this only while this process holds the lock. An unfinished file with the id of this
+    process is then left from an earlier process that had the same id, for example before a
+    container restarted.
     """
     inside = [folder / name for name in within]
     inside = [p for p in inside if not (p.is_symlink() or (p / NAME).exists())]

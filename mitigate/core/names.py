@@ -44,9 +44,9 @@ def short(value: object, most: int = 60) -> str:
 
 
 def escaped(text: str, most: int = LONGEST_NAME) -> str:
-    """Return an untrusted ``text`` without quotes, printable and with at most ``most`` characters.
+    """Escape the unprintable characters of an untrusted ``text``; cut it to ``most`` characters.
 
-    The text ends in "..." if it was shortened.
+    The text ends in "..." if it was cut. In contrast to :func:`short`, no quotes are added.
     """
     printable = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in text[: most + 1])
     return printable if len(printable) <= most else f"{printable[: most - 3]}..."
@@ -60,8 +60,8 @@ def file_name(text: str) -> str:
 def printable(message: str) -> str:
     """Return ``message`` without control characters except line breaks, for output on a terminal.
 
-    A message may quote names from files, and these may contain escape sequences of terminals. A
-    message longer than ``LONGEST_MESSAGE`` characters is cut.
+    A message may quote names from files, which can contain terminal escape sequences. A message
+    longer than ``LONGEST_MESSAGE`` characters is cut.
     """
     lines = message[:LONGEST_MESSAGE].split("\n")
     return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)

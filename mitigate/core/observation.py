@@ -89,9 +89,9 @@ def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, 
     """Return one line per sensor of a world that an agent reads.
 
     Args:
-        sensors: the sensors of the world.
-        read: the agent's ``sensors``. If the world has none of these sensors, all sensors of the
-            world are listed.
+        sensors: the sensors that the world provides.
+        read: the names of the sensors that the agent reads. If the world has none of them, all
+            sensors of the world are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []

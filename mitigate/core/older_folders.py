@@ -1,7 +1,7 @@
 """Read folders of earlier versions; only ``core/folders.py`` uses this module.
 
-- A file of weights, adapters, an encoder, a restorer or a safeguard had a sidecar ``<file>.sha256``
-  (``core/checksums.py``) or no checksum.
+- For weights, adapters, encoders, restorers and safeguards, each file had a sidecar
+  ``<file>.sha256`` (``core/checksums.py``) or no checksum.
 - The ``card.json`` of a hardened folder contained the sha256 of every file and of the card itself.
 """
 
@@ -25,7 +25,8 @@ def card_files(folder: Path, again: str) -> dict[str, Any] | None:
     Returns None for any other folder.
 
     Raises:
-        ValueError: If the card is invalid; the message ends with the advice ``again``.
+        ValueError: If the card is invalid. The message ends with the text ``again``, which says
+            how to continue.
     """
     file = folder / CARD
     card = read_object(file, again) if file.is_file() else {}
@@ -49,5 +50,5 @@ def card_sha(card: dict[str, Any]) -> str:
 
 
 def without_sums(card: dict[str, Any]) -> dict[str, Any]:
-    """Return a card without its checksums, because the manifest contains them today."""
+    """Return a card without its checksums, which are now stored in the manifest."""
     return {name: value for name, value in card.items() if name not in ("sha256", "files")}

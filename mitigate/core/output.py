@@ -47,7 +47,7 @@ class Root:
         descriptor: Open file descriptor of the folder; while it is open, the inode is not reused.
         lock: Path and status of the lock file, or None without a lock.
         expected: Files and folders that must exist when the command ends.
-        seen: Subfolders that existed at an earlier write.
+        seen: Subfolders that an earlier check found; they must not disappear.
     """
 
     folder: Path
@@ -74,7 +74,7 @@ class Root:
 
         Raises:
             UnsafePathError: If one of these folders is a link or is not a folder.
-            FolderLostError: If a folder that existed at an earlier write is missing.
+            FolderLostError: If a folder that was checked earlier is missing now.
         """
         place = self.places[0]
         for part in inner.parts:
@@ -157,7 +157,7 @@ def writing(path: Path | str) -> Iterator[None]:
             raise
         raise type(error)(
             f"Cannot write {path}: {error.strerror}. Free some space, change the permissions, or "
-            "choose another folder. Finished results are complete."
+            "choose another folder. Results that were already written are intact."
         ) from error
 
 

@@ -89,7 +89,7 @@ def to_device(value: Any, device: torch.device) -> Any:
         return value.to(device)
     if isinstance(value, dict):
         return {name: to_device(item, device) for name, item in value.items()}
-    if type(value) in (list, tuple):  # objectives move named tuples themselves
+    if type(value) in (list, tuple):  # objectives move named tuples to the device
         return type(value)(to_device(item, device) for item in value)
     return value
 

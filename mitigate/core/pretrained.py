@@ -25,8 +25,8 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     """Return the network at ``place``, built by a class such as ``AutoModelForCausalLM``.
 
     Args:
-        auto: the class of transformers that builds it.
-        place: a folder or hub id.
+        auto: the Auto class of the library transformers that loads the network.
+        place: a local folder, or the id of a model on the Hugging Face Hub.
         precision: precision of the weights: "fp32", "bf16", "int8" (bitsandbytes LLM.int8) or
             "nf4" (bitsandbytes, 4-bit NormalFloat, computed in bf16).
         options: additional arguments of ``from_pretrained``.

@@ -1,6 +1,6 @@
-"""Read the settings file in a folder of weights, which is plain data with a fixed schema.
+"""Read the settings file in a folder of weights; the file is plain data with a fixed schema.
 
-A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags and
+A folder of weights may be untrusted. Its ``config.yaml`` is YAML without anchors, tags or
 interpolations; nothing in it is resolved, instantiated or run. No other module reads such files.
 """
 
@@ -102,7 +102,7 @@ def named(target: object) -> str:
 
 
 def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
-    """Return the error message for ``key`` (dotted) in ``file``, which is not in ``allowed``."""
+    """Return the error message for a dotted ``key`` of ``file`` that is not in ``allowed``."""
     parent, _, name = key.rpartition(".")
     problem = names.unknown(f"setting of {parent}", _short(name), sorted(allowed))
     return f"{file}: {problem} Use the version of the agent that the weights belong to."
@@ -137,14 +137,15 @@ class _PlainLoader(yaml.SafeLoader):
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every nested value with its dotted key; for an invalid key, yield a tuple as the
-    value.
+    """Yield every nested value with its dotted key.
+
+    An invalid key is also yielded as a value, in a tuple, which :func:`_problem` reports.
     """
     if isinstance(value, dict):
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
             if not isinstance(name, str) or _problem(name):
-                yield inner, (name,)  # _problem reports such a tuple as an invalid key
+                yield inner, (name,)
             yield inner, item
             yield from _entries(item, inner)
     elif isinstance(value, list):
@@ -154,8 +155,9 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` is not plain data, or "" if it is; the items of a container are not
-    checked.
+    """Return the reason why ``value`` is not plain data, or "" if it is plain data.
+
+    The items of a container are not checked.
     """
     if isinstance(value, tuple):
         return "is not a plain key"

@@ -108,8 +108,8 @@ def start_worker(process: BaseProcess) -> None:
     """Start the ``process`` of a worker with SIGINT and SIGTERM blocked.
 
     The signals stay blocked until the worker calls :func:`leave_to_parent`, so they cannot
-    interrupt its imports. A worker that still runs when this interpreter ends is killed, because
-    multiprocessing would send it SIGTERM, which it ignores, and then wait for it.
+    interrupt its imports. A worker that still runs when this interpreter ends is killed. Otherwise,
+    multiprocessing would send SIGTERM, which the worker ignores, and wait forever.
     """
     resource_tracker.ensure_running()  # starting the tracker later would unblock the signals
     before = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)

@@ -88,10 +88,10 @@ class MultiDiscrete(ActionSpace):
     def check(self, action: Any) -> np.ndarray:
         values = _array(action, self.counts.shape, "whole numbers")
         if not np.issubdtype(values.dtype, np.integer):
-            raise ValueError(f"The action must be whole numbers, got {_text(action)}.")
+            raise ValueError(f"The action must be an array of whole numbers, got {_text(action)}.")
         if (values < 0).any() or (values >= self.counts).any():
             raise ValueError(
-                "The action must be whole numbers of at least 0 and less than "
+                "The action must be an array of whole numbers of at least 0 and less than "
                 f"{_text(self.counts)}, got {_text(action)}."
             )
         return values.astype(np.int64)

@@ -77,7 +77,7 @@ def count(requested: int | None, jobs: int, worth: int) -> int:
     """Return the number of processes to start.
 
     Args:
-        requested: number from the options. If None, there is at most one per core.
+        requested: number of processes that the user asked for. None means at most one per core.
         jobs: number of jobs.
         worth: minimum number of jobs per process; with fewer jobs, starting a process takes longer
             than it saves.
@@ -261,9 +261,10 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
 
     Args:
         thing: the object.
-        what: name of the object in the error.
-        instead: advice in the error if it cannot be pickled.
-        shared: whether to pass tensors in shared memory; then only one process may read them, once.
+        what: name of the object in the error message.
+        instead: what to do if the object cannot be pickled; this is the end of the error message.
+        shared: whether to pass tensors in shared memory. Only one process may unpickle such an
+            object, and only once.
 
     Raises:
         ValueError: If ``thing`` cannot be pickled.

@@ -63,8 +63,8 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 
     Raises:
         ValueError: If the form or split is unknown, the world has more than one camera or no
-            expert, or a drive already exists. A missing expert is noticed in the first episode; the
-            other checks run before it.
+            expert, or a drive already exists. A missing expert is detected only in the first
+            episode; all other checks run earlier.
     """
     from mitigate.core import build
     from mitigate.core.progress import Progress

@@ -20,7 +20,7 @@ from mitigate.replay import walk
 from mitigate.replay.walk import Answers, Changes
 from mitigate.worlds.recorded import Recording
 
-# maps the names of agent and condition to the changes of decisions
+# maps the name of an agent to a dict from condition names to the changes of its decisions
 AgentChanges = Mapping[str, Mapping[str, Changes]]
 MAX_CELLS = 6  # maximum number of decisions that a picture shows
 

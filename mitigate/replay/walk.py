@@ -27,7 +27,7 @@ ACTIONS = {STOP: "stop", FORWARD: "forward", LEFT: "left", RIGHT: "right"}
 # Heuristic limits.
 # a target position counts as changed if it moved by more than this (metres; two steps)
 MIN_AIM_SHIFT = 0.5
-# a continuous action counts as changed if one of its numbers moves by this fraction of the range
+# a continuous action counts as changed if a component changes by this fraction of its range
 MIN_ACTION_SHIFT = 0.1
 ROUNDING = 1e-6  # tolerance for rounding errors when continuous actions are compared
 OFTEN = 0.2  # an action is frequent if the driver takes it in at least this fraction of the steps
@@ -66,8 +66,8 @@ def walk(
     """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
     After each step, the agent receives the driver's motion (``Agent.taken``). If the motion is
-    unknown, the agent receives its own decision on clean frames instead. So runs under different
-    corruptions differ only in frames and instructions.
+    unknown and actions are discrete, the agent receives the motion of the action that it chose on
+    clean frames. So runs under different corruptions differ only in frames and instructions.
 
     Args:
         agent: The agent.
@@ -148,8 +148,9 @@ def named_action(action: Any) -> str | list[float]:
 def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
     """Return for each of the T steps whether the decision changed.
 
-    A continuous action counts as changed if one of its numbers changes by more than a fraction
-    ``MIN_ACTION_SHIFT`` of the number's range on clean frames.
+    A continuous action counts as changed if any of its components changes by more than
+    ``MIN_ACTION_SHIFT`` times the range of that component. The range is taken over all steps on
+    clean frames.
     """
     if clean.actions.ndim == 1:
         return clean.actions != corrupted.actions
@@ -160,7 +161,7 @@ def changed_steps(clean: Answers, corrupted: Answers) -> np.ndarray:
 def neglected_actions(recordings: Sequence[Recording], clean: Mapping[str, Answers]) -> list[str]:
     """Return the actions that the driver takes often and that the agent rarely takes.
 
-    The agent's actions are those on clean frames. See ``OFTEN`` and ``RARELY`` for the limits.
+    Only the agent's actions on clean frames count. See ``OFTEN`` and ``RARELY`` for the limits.
     """
     drives = [r for r in recordings if r.driven is not None and clean[r.name].actions.ndim == 1]
     if not drives:
@@ -213,7 +214,7 @@ class Changes:
         aim: Fraction of steps at which the target position moved by more than ``MIN_AIM_SHIFT``, or
             None if the agent has no target position.
         agreement: Fraction of steps at which the agent chooses the driver's action. Steps at which
-            the driver's motion is not an action are left out. The value is None if the driver's
+            no action matches the driver's motion are left out. The value is None if the driver's
             actions are unknown, or if the agent's actions are continuous.
         distance: Mean Euclidean distance of continuous actions from the actions on clean frames, or
             None if actions are discrete.

@@ -40,7 +40,8 @@ ADDRESS, TOKEN, PATIENCE = "MITIGATE_BRIDGE", "MITIGATE_TOKEN", "MITIGATE_PATIEN
 ADAPTERS = "MITIGATE_ADAPTERS"
 HEADER = struct.Struct("!4sI")  # magic bytes, and the size of the JSON object that follows
 MAGIC = b"mtg1"
-# maximum size of a message in bytes; an episode with all view points of its goals needs 1e6
+# maximum size of a message in bytes
+# The largest messages have about 1e6 bytes: episodes that contain all view points of their goals.
 MAX_MESSAGE = 1 << 24
 KEYS_PER_MESSAGE = 10000  # maximum number of episode names; train splits have millions of episodes
 # name of a file next to the socket; a process creates it when it loads this module
@@ -201,7 +202,7 @@ class Channel:
                 f"the values of {kind} must be numbers, text and lists, and cannot be sent "
                 f"({error}). Convert them."
             )
-        # any error ends the process, because the agent might catch it
+        # end the process on any error: the agent might catch an exception and continue
         except BaseException as error:
             stop(f"the connection to the server broke ({_describe_error(error)}).")
         if answer is None:
@@ -351,7 +352,7 @@ class Session:
             self.busy = False
 
     def close(self):
-        """Close the connection; the next frame would open a new connection."""
+        """Close the connection; a later frame opens a new connection."""
         self.renew_lock()
         with self.lock:
             if self.channel is not None:
@@ -614,7 +615,7 @@ def _call_clean(original, *args, **kwargs):
 def _is_clean_call():
     """Return whether this thread is inside ``_call_clean``.
 
-    The function inspects the stack, because an interrupt could leave a flag set.
+    The function inspects the stack instead of a flag, because an interrupt could leave a flag set.
     """
     frame = sys._getframe(1)
     while frame is not None and frame.f_code is not _call_clean.__code__:
@@ -625,8 +626,8 @@ def _is_clean_call():
 def _get_observations(original, suite, *args, **kwargs):
     """Wrap the simulator's ``SensorSuite.get_observations``.
 
-    habitat-lab passes ``task`` and ``episode`` only for the sensors of the task, which may render a
-    picture of the goal.
+    habitat-lab passes ``task`` and ``episode`` only to the sensors of the task. Their frames stay
+    clean, because these sensors may render a picture of the goal.
     """
     if "task" in kwargs or "episode" in kwargs:
         return _call_clean(original, suite, *args, **kwargs)
@@ -748,8 +749,8 @@ def _select(episodes, key, least):
 
     Args:
         episodes: All episodes.
-        key: Function that returns the name of an episode. Names are sent, in several messages, only
-            if the server chooses episodes.
+        key: Function that returns the name of an episode. If the server chooses episodes, it
+            receives all names, in several messages.
         least: The minimum number of episodes to keep, 0 or 1.
     """
     channel, count = Channel(), len(episodes)
@@ -816,9 +817,9 @@ def _async_observations(original, sim, *args, **kwargs):
 def _is_called_by_lab(sim):
     """Return whether habitat-lab is the caller; its frames are corrupted at its own sensors.
 
-    The caller counts as habitat-lab if its code is in a module of habitat-lab, or is a method of a
-    habitat-lab simulator or of a subclass. If any other code takes frames from a habitat-lab
-    simulator, the process stops.
+    The caller is habitat-lab if its code is in a module of habitat-lab. A method of the simulator
+    also belongs to habitat-lab if it overrides a method of a habitat-lab class. If any other code
+    takes frames from a habitat-lab simulator, the process stops.
     """
     frame = sys._getframe(1)
     passed_over = (_package(__name__), "habitat_sim")
@@ -846,8 +847,8 @@ def _package(module):
 def _corrupt_acting_agent(sim, observations, agent_ids):
     """Corrupt the observations of the acting agent only.
 
-    Observations stay unchanged inside ``_call_clean``, and if habitat-lab requested them: their
-    frames are corrupted at the sensors of habitat-lab.
+    Observations stay unchanged inside ``_call_clean``. They also stay unchanged if habitat-lab
+    requested them, because their frames are corrupted at the sensors of habitat-lab.
 
     Args:
         sim: The simulator.
@@ -1025,8 +1026,8 @@ class Episode:
             success: 0 or 1.
             spl: 0 to 1. If None, it is computed from ``path_length`` and ``geodesic_distance`` or,
                 without these, is equal to ``success``.
-            stopped: Whether the agent called STOP, 0 or 1. None means unknown; some success rules
-                need this value.
+            stopped: Whether the agent called STOP, 0 or 1, or None if this is unknown. Some success
+                rules cannot judge the episode without this value.
             **metrics: Other measures, such as ``distance_to_goal``.
 
         Raises:
@@ -1076,7 +1077,7 @@ def _check_flag(value, name):
 
 
 def _check_number(value, name, most=math.inf):
-    """Return a number from 0 to ``most``. Raises ValueError for all other values."""
+    """Return ``value`` as a float; raise ValueError if it is not a number from 0 to ``most``."""
     try:
         number = float(value)  # float also accepts an array or tensor with one item
     except (TypeError, ValueError):
@@ -1335,7 +1336,7 @@ def install():
 
 
 def run_hidden_sitecustomize(file):
-    """Run the ``sitecustomize`` module that ``file`` hides, if there is one."""
+    """Run the ``sitecustomize`` module that ``file`` shadows, if there is one."""
     folder = os.path.dirname(os.path.abspath(file))
     path = [p for p in sys.path if os.path.abspath(p or os.curdir) != folder]
     spec = importlib.machinery.PathFinder.find_spec("sitecustomize", path)
