@@ -22,7 +22,7 @@ from mitigate.core.signals import Ended, raise_ended
 
 
 class Command(NamedTuple):
-    """A command of the command line.
+    """A subcommand of the program ``mitigate``.
 
     Attributes:
         module: module whose ``main()`` reads ``sys.argv`` and returns an exit status.
@@ -175,11 +175,11 @@ def _run(name: str, options: Sequence[str]) -> int | None:
 
 
 def _prepare_streams() -> None:
-    """Make the standard streams usable: replace closed streams, and print every character.
+    """Replace closed standard streams, and make stdout and stderr escape unencodable characters.
 
     A closed stream is replaced by the null device. Otherwise, the next opened file, such as a file
     of rows, would get the stream's descriptor number, and child processes would print into that
-    file. Characters that the encoding of stdout lacks are printed as escapes.
+    file. Characters that an encoding lacks are printed as escapes.
     """
     while (descriptor := os.open(os.devnull, os.O_RDWR)) <= 2:
         os.set_inheritable(descriptor, True)

@@ -47,7 +47,7 @@ def load_config(primary: str, words: Iterable[str] = (), with_hydra: bool = Fals
     return cfg
 
 
-# saves time, because no imported object becomes garbage before the tests are collected
+# Until the tests are collected, garbage collection takes time and frees nothing.
 gc.disable()
 conf.load_config = load_config
 SLOW_FIXTURES = {"cluster"}  # starting a Ray cluster takes a long time

@@ -22,8 +22,10 @@ class TinyAgent(nn.Module):
 
 
 class TinyRecipe(Objective):
-    """A regression on noise from the global generator; ``count`` is an example of state that is not
-    a tensor."""
+    """A regression with random inputs from the global generator.
+
+    ``count`` is an example of state that is not a tensor.
+    """
 
     def __init__(self, agent: nn.Module | None = None, *, bad_step: int = -1, pause: float = 0.0):
         super().__init__()

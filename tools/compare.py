@@ -72,7 +72,7 @@ def main() -> None:
 
 
 def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[str, str]:
-    """Return the digests of a commit, or of the working tree if ``commit`` is None, by name.
+    """Return the digest of each subject, for a commit or (if ``commit`` is None) the working tree.
 
     The digests of a commit are stored in a file and reused.
     """

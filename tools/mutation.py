@@ -78,7 +78,7 @@ MUTATIONS = {name: Mutation(*fields) for name, *fields in ENTRY.findall(TABLE)}
 
 
 def outcome(mutation: Mutation) -> str:
-    """Return "caught by ..." with the failing test, or the problem."""
+    """Return "caught by <failing test>", or the reason why no test failed."""
     with tempfile.TemporaryDirectory(prefix="mutation-") as folder:
         copy = Path(folder)
         for name in COPIED:

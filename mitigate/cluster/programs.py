@@ -74,7 +74,7 @@ class Running:
             )
 
     def poll(self) -> str | None:
-        """Return None while a program runs; then return the problem, or "" after success."""
+        """Return None while a program runs; then return an error message, or ""."""
         code = self.process.poll()
         if code:
             return f"{self.what} ended with {code} ({_last_line(self.chain.log)})"

@@ -287,7 +287,7 @@ def _use(card: dict[str, Any]) -> str:
         "`mitigate export FOLDER --programs` writes it. At export, the files were loaded in a new "
         "process. There, the outputs on a fixed probe differed by at most "
         f"{checked['reload_tolerance']:g} (agent) and {checked['program_tolerance']:g} (program). "
-        f"Rounding to float16 changed the outputs by {checked['float16']:.2g}.\n\n"
+        f"The largest change of an output by rounding to float16 was {checked['float16']:.2g}.\n\n"
         f"Times in milliseconds on {counted(times['threads'], 'thread')}: the fastest of "
         f"{times['calls']} calls, and the median processor time.\n\n{table}"
     )

@@ -273,7 +273,7 @@ def warn_warmup(config: TrainConfig) -> None:
 
 
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
-    """Remove corruptions of sensors that ``agent`` does not read from the stages' schedules.
+    """Remove corruptions from the stages' schedules if ``agent`` does not read their sensors.
 
     Such corruptions would leave the agent's frames clean. The removed corruptions are printed.
 

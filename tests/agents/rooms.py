@@ -43,9 +43,11 @@ def sure(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
 
 
 def wanderer(*blind: str, stop: float = -50.0) -> TopologicalAgent:
-    """Return an untrained agent that predicts free space everywhere. ``stop`` is the bias of the
-    stop score. At -50 the agent stops only when it reaches the limit of decisions; near 0 stopping
-    depends on the frames."""
+    """Return an untrained agent that predicts free space everywhere.
+
+    ``stop`` is the bias of the stop score. At -50, the agent stops only at the decision limit. Near
+    0, the frames determine when it stops.
+    """
     seeding.seed_everything(0, "wanderer")
     small = {"heads": 2, "text_layers": 1, "layers": 1}
     agent = TopologicalAgent(16, small, blind, size=16).eval()

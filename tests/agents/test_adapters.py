@@ -242,7 +242,7 @@ def test_share_on_the_reference_agent_is_small():
 def test_failed_insertion_keeps_the_model():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
     for options in (
-        {"target_modules": ["0", "2"]},  # the output of a Linear module is no feature map
+        {"target_modules": ["0", "2"]},  # the output of a Linear module is not a feature map
         {"target_modules": ["0"], "ring": ["0"], "hfov": 200.0},
     ):
         with pytest.raises(ValueError, match="channels of 2|hfov|field of view"):

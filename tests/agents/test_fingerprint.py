@@ -73,8 +73,7 @@ def test_fingerprint_changes_with_code_without_settings(tmp_path, monkeypatch):
 
 
 def _hashes(folder, agent, sources):
-    """Return the fingerprint of the class ``agent`` for each of several source texts of its
-    module."""
+    """Return the fingerprints of the class ``agent``, one per source text of its module."""
     matches = []
     for source in sources:
         (folder / "own_agent.py").write_text(source)

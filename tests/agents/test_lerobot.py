@@ -108,8 +108,10 @@ def world() -> GymWorld:
 
 
 def trained() -> ChunkPolicy:
-    """Return a policy that solves the task: its action is the left minus the right half of the
-    frame."""
+    """Return a policy that solves the task.
+
+    Its action is the brightness of the left half of the frame minus that of the right half.
+    """
     policy = ChunkPolicy()
     linear = policy.model.layers[2]
     with torch.no_grad():

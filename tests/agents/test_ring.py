@@ -30,7 +30,7 @@ def test_aligned_warps_neighbours_into_the_view(panorama):
         error = (aligned[side + 1] - panorama).abs().mean(1)[:, seen[side]]
         plain = (panorama.roll(1 - 2 * side, 0) - panorama).abs().mean(1)[:, seen[side]]
         assert error.median() < 2 and error.mean() < 0.25 * plain.mean()
-        # the views share 60 of 90 degrees; the corners are lost
+        # neighbouring views overlap by 60 of 90 degrees, except in the corners
         assert 0.5 < seen[side].float().mean() < 0.7
 
 
@@ -44,8 +44,7 @@ def test_ring_keeps_cells_that_no_neighbour_sees():
 
 
 def test_ring_restores_a_lost_view(panorama):
-    """If the score ignores black cells, the fused map is closer to the clean map than a map of
-    zeros."""
+    """If the score ignores black cells, the neighbours of a black view must restore it."""
     adapter = RingAdapter(3, reduction=1)
     with torch.no_grad():
         adapter.down.weight.zero_()

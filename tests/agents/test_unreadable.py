@@ -1,4 +1,7 @@
-"""Tests that a change of behaviour changes the fingerprint, or that a version is required."""
+"""Tests that fingerprints change with behaviour.
+
+If an agent has state that cannot be hashed, ``version`` must be required.
+"""
 
 from __future__ import annotations
 

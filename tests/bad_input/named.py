@@ -1,4 +1,4 @@
-"""A check that all tests of rejected files use."""
+"""The check shared by all tests of rejected files."""
 
 from __future__ import annotations
 

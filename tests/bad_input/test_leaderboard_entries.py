@@ -1,4 +1,4 @@
-"""Tests that invalid leaderboard entries are rejected with a message that names file and key."""
+"""Tests that errors of invalid leaderboard entries name the file and the key."""
 
 from __future__ import annotations
 

@@ -47,8 +47,10 @@ def read(path: Path) -> list:
 
 
 def refused(path: Path, message: str | None = None) -> None:
-    """Check that ``path`` is rejected quickly, with little memory and one short paragraph that
-    names it."""
+    """Check that ``path`` is rejected quickly and with little memory.
+
+    The message must be one short paragraph.
+    """
     began = time.monotonic()
     tracemalloc.start()
     try:
@@ -223,7 +225,7 @@ def test_chunk_bomb_is_rejected(tmp_path, bombs, kind):
     (tmp_path / "robot.mcap").write_bytes(chunk(kind, bombs[kind], BOMB))
     if kind == "zstd":
         refused(tmp_path / "robot.mcap", "robot.*unpacks to more than")
-    else:  # lz4 compresses by a factor of at most 255, so reading stops in the middle
+    else:  # the size limit of an lz4 file is about half of the data, which is more than ``MOST``
         with pytest.raises(ValueError, match="unpacks to more than"):
             read(tmp_path / "robot.mcap")
 

@@ -353,7 +353,7 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 
 
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
-    """The author of a card can also write its checksums, so a listed file must not run code."""
+    """A malicious card can contain matching checksums, so they must not make loading run code."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
     program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))

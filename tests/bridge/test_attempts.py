@@ -1,5 +1,4 @@
-"""Tests of attempts to run a condition: how an attempt starts, and errors before and during its
-start."""
+"""Tests of how a condition starts, and of errors before and during its start."""
 
 import fcntl
 import json
@@ -128,7 +127,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
 
 
 def make_attempt(folder, *options):
-    """Return the first condition of a run with these options, and the run's default folder."""
+    """Return the first condition and the default folder of a run with ``options``."""
     typed = config("conditions=[clean]", *options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 

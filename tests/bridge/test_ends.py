@@ -1,5 +1,4 @@
-"""Tests of the ends of episodes: which episodes count as ended, and when the instruction is
-restored."""
+"""Tests of how episodes end: which episodes count, and when the instruction is restored."""
 
 import sys
 

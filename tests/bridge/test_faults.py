@@ -1,5 +1,7 @@
-"""Tests of faults in the server and the connection: they soon cause an error, and no frame stays
-clean."""
+"""Tests of faults in the server and the connection.
+
+A fault must soon stop the program with an error. The program must not receive a clean frame.
+"""
 
 import os
 import signal

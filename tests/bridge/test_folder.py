@@ -249,7 +249,7 @@ def test_run_fails_if_a_worker_stops_itself(run, tmp_path):
 
 
 def make_attempt(options, folder):
-    """Return the first condition of a run with options, and the default folder."""
+    """Return the first condition and the default folder of a run with ``options``."""
     typed = config(*options)
     return make_cells(Plan(typed, ("nav",), "nav", folder))[0], default_folder(typed, "nav")
 

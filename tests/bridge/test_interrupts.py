@@ -1,6 +1,6 @@
 """Tests of the hook and the server under interrupts, threads and forks.
 
-No frame may stay uncorrupted, and no answer may belong to another message.
+All frames must be corrupted, and the hook must reject the answer to another message.
 """
 
 import signal

@@ -126,7 +126,7 @@ def _line(connection: socket.socket) -> str:
     while not line.endswith(b"\n"):
         part = connection.recv(1)
         if not part:
-            raise ChildProcessError("the process that forks has died")
+            raise ChildProcessError("the fork server has died")
         line += part
     return line.decode()
 
@@ -207,7 +207,7 @@ def start_program(words: list[str], start_new_session: bool) -> Fork | subproces
 
 
 def start(arguments: list[str]) -> None:
-    """Run a program in this fork as ``python`` with ``arguments`` does in a new interpreter."""
+    """Run a program in this fork as a new interpreter would run ``python *arguments``."""
     import __main__
 
     code, name, first = arguments[1] if len(arguments) > 1 else "", "<string>", ""

@@ -45,7 +45,7 @@ def slurm_launcher(tmp_path, monkeypatch):
     pytest.importorskip("submitit", reason="submitit is not installed (the extra cluster)")
     from submitit.core.core import Job
 
-    # a finished job without a result is noticed at once, because its file system is local
+    # the folder is local, so the result of a finished job is either there at once or missing
     monkeypatch.setattr(Job, "_results_timeout_s", 1)
 
     def make(**settings):

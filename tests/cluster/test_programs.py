@@ -1,5 +1,7 @@
-"""Tests of chains of programs, which compute the cells of tables, on this machine, on Ray and as
-SLURM jobs."""
+"""Tests that chains of programs run on this machine, on Ray, and as SLURM jobs.
+
+A chain computes one cell of a table.
+"""
 
 from __future__ import annotations
 

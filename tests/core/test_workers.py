@@ -65,7 +65,7 @@ class Unreadable:
 
 
 def _unreadable():
-    raise OSError("no job can be made of this")
+    raise OSError("this job cannot be unpickled")
 
 
 class Lines:
@@ -177,8 +177,10 @@ print("ended by", ending.number)
 
 @pytest.mark.slow
 def test_signal_to_all_processes_is_handled_by_the_parent(tmp_path):
-    """SLURM and ``timeout`` send SIGTERM to all processes; the death of workers was once reported
-    as a lack of memory."""
+    """SLURM and ``timeout`` send SIGTERM to all processes.
+
+    When workers died of this signal, the error message once blamed a lack of memory.
+    """
     ended = subprocess.run(
         [sys.executable, "-c", GROUP.format(folder=str(tmp_path))],
         cwd=Path(__file__).parents[2],
@@ -238,8 +240,7 @@ def test_worker_count_is_cores_or_none_for_few_jobs(monkeypatch):
 
 
 def test_signal_ends_many_jobs_within_a_training(tmp_path):
-    """Training delays signals until the end of its step. Jobs are ended at once, because measuring
-    success rates takes minutes."""
+    """Training delays signals until its step ends. A job takes minutes, so a signal must end it."""
     (tmp_path / "long").touch()
     began = time.monotonic()
     Timer(0.5, os.kill, (os.getpid(), signal.SIGTERM)).start()
@@ -288,7 +289,7 @@ def test_results_reject_tasks_below_main(tmp_path):
     [
         (lambda: 0, ValueError, "A job of a worker cannot be sent .* workers=1"),
         ("a generator", ValueError, "The result of a worker cannot be sent .* workers=1"),
-        (Unreadable(), OSError, "no job can be made"),
+        (Unreadable(), OSError, "this job cannot be unpickled"),
     ],
     ids=["job", "result", "unread job"],
 )
@@ -336,7 +337,7 @@ def test_ctrl_c_during_worker_imports_prints_one_message(tmp_path):
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.default_int_handler),
     )
     seen = 0
-    # the command itself and the process that forks the workers each import this module
+    # the command and the fork server of its workers each import this module
     while seen < 2:
         assert process.poll() is None
         time.sleep(0.02)

@@ -29,7 +29,8 @@ QUALIFIED = {
     "os.link",
     "sqlite3.connect",
 }
-FILES = "mitigate.core.files"  # some functions of this module have the same names, but write safely
+# a module of functions that write safely, although some are named like those in WRITERS
+FILES = "mitigate.core.files"
 DRAFT = "writes a file with a random name that write_atomically made, or a file in memory"
 OWN = "writes into a private temporary folder that it has just made"
 ALLOWED = {
@@ -103,7 +104,7 @@ def mode_of(call: ast.Call, place: int) -> str:
 
 
 def writes(source: str) -> Counter[str]:
-    """Return the calls in ``source`` that write to a path, by name."""
+    """Return how often ``source`` calls each function that writes to a path."""
     tree = ast.parse(source)
     ours, matches = imported(tree), Counter()
     for node in ast.walk(tree):

@@ -7,8 +7,10 @@ from tools.pages.curves import psnr, ssim
 
 
 def draw(height: int, width: int, view: int = 0) -> tuple[np.ndarray, np.ndarray]:
-    """Return a chequered scene of two boxes before a sloping wall, as uint8 [H, W, 3] and metres
-    [H, W]."""
+    """Return a chequered scene of two boxes in front of a sloping wall.
+
+    The result is RGB, uint8 [H, W, 3], and depth, metres [H, W].
+    """
     v = ((np.arange(height) + 0.5) / height)[:, None]
     u = ((np.arange(width) + 0.5) / width)[None, :]
     shift = 0.7 * view

@@ -1,4 +1,4 @@
-"""Tests that a frame gets the same pixels in any order, batch and process."""
+"""Tests that corrupted pixels do not depend on the order, the batch or the process."""
 
 import hashlib
 import os

@@ -16,8 +16,10 @@ from mitigate.corruptions.frame_files import make_plan
 
 @pytest.fixture
 def walk(tmp_path):
-    """Write a folder ``in`` with links to and from a folder ``elsewhere``, to itself and to
-    ``out``."""
+    """Write a folder ``in`` with links to its subfolder ``a``, itself, ``elsewhere`` and ``out``.
+
+    The folder ``elsewhere`` contains a link to itself.
+    """
     for number, path in enumerate(("in/a/0", "in/a/1", "in/b/0", "elsewhere/0", "elsewhere/c/0")):
         (tmp_path / path).parent.mkdir(parents=True, exist_ok=True)
         frame = np.full((8, 8, 3), 20 * number, np.uint8)
@@ -35,7 +37,7 @@ def walk(tmp_path):
 
 
 def test_links_are_followed_except_cycles_and_results(walk):
-    # the second run finds the output of the first run, which a link in the input folder points to
+    # ``in/results`` links to the output folder, which contains files in the second run
     for saved in (7, 0):
         matches = run(walk / "in", walk / "out", Settings("spatter", 0.6))
         assert matches["written"] == saved and matches["there"] == 7 - saved

@@ -75,7 +75,7 @@ def package(tmp_path) -> Path:
 
 @pytest.fixture
 def installed(package) -> dict[str, str]:
-    """Return environment variables with which a process can import the package."""
+    """Return the environment of a process that can import the package."""
     return {**os.environ, "PYTHONPATH": f"{package}{os.pathsep}{ROOT}"}
 
 

@@ -1,4 +1,4 @@
-"""Tests of temporal faults: their defining properties, and equal frames in all entry points."""
+"""Tests of temporal faults: their properties, and that all entry points give equal frames."""
 
 from __future__ import annotations
 

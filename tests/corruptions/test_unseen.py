@@ -230,8 +230,7 @@ def test_frame_and_half_size_copy_are_corrupted_alike(name):
 
 
 def room(height: int, width: int, wall: float = 4.0, tall: float = 1.2) -> np.ndarray:
-    """Return the depth [H, W] of a wall and of the floor, which is ``tall`` metres below a level
-    camera."""
+    """Return the depth [H, W] of a wall and a floor for a level camera ``tall`` metres high."""
     down = (np.arange(height) + 0.5 - 0.5 * height) / (0.5 * width)
     floor = np.where(down > 0, tall / np.maximum(down, 1e-6), np.inf)
     return np.repeat(np.minimum(floor, wall)[:, None], width, axis=1).astype(np.float32)

@@ -1,4 +1,4 @@
-"""Tests of frames from a LeRobot dataset for recipes that need only frames."""
+"""Tests of LeRobot datasets as sources of training frames."""
 
 from __future__ import annotations
 

@@ -39,8 +39,7 @@ LOSS = 0.5
 def measured(limits: np.ndarray, severities, corruption="spatter", noise=None, **changes) -> list:
     """Return rows of episodes that succeed at severities below their limit.
 
-    ``noise``: successes [episodes, severities] that replace the computed ones, except where they
-    are NaN.
+    ``noise`` [episodes, severities] overrides the success under corruption where it is not NaN.
     """
     result = []
     for column, severity in enumerate(severities):
@@ -162,8 +161,10 @@ def noisy_agent(random, count: int) -> tuple[np.ndarray, np.ndarray, list[float]
 
 @pytest.mark.slow
 def test_intervals_cover_the_true_critical_severity(monkeypatch):
-    """The clean SR is 0.894, and the SR at s > 0 is 0.81 * P(limit > s) + 0.05, so half of the
-    clean SR is lost at s = 0.5048."""
+    """The clean SR is 0.894, and half of it is lost at s = 0.5048.
+
+    For s > 0, SR(s) = 0.81 * P(s < limit) + 0.05, where ``limit`` is an episode's random limit.
+    """
     fewer = partial(resampled_means, resamples=500)
     monkeypatch.setattr("mitigate.evaluation.critical.resampled_means", fewer)
     random = np.random.default_rng(1)
@@ -173,7 +174,7 @@ def test_intervals_cover_the_true_critical_severity(monkeypatch):
         part = only(measured(limits, severities, noise=noise))
         estimate = part.score(("base",), ("spatter",), LOSS).estimate
         covered += estimate.low <= 0.5048 <= estimate.high
-    # at a coverage of 0.95, 106 to 119 of 120 intervals are correct with a probability above 0.99
+    # if the coverage is 0.95, ``covered`` is in this range with a probability above 0.99
     assert 106 <= covered <= 119
 
 
@@ -216,8 +217,10 @@ def test_difference_of_two_censored_agents_is_unknown():
 
 
 def test_differences_are_paired():
-    """The limits of both agents differ by a constant, so their difference is known more precisely
-    than either result."""
+    """In every episode, the limit of the second agent is 0.1 above the limit of the first agent.
+
+    So the interval of the difference must be narrower than the interval of one agent.
+    """
     limits = np.random.default_rng(0).uniform(0.2, 0.8, 60)
     severities = np.linspace(0, 1, 11).round(2).tolist()
     first = measured(limits, severities)

@@ -48,8 +48,7 @@ class Cell:
 
 
 class Answers:
-    """An agent that returns ``answers`` one after the other; if an answer is callable, it returns
-    the result."""
+    """An agent that returns its ``answers`` in turn. A callable answer is called first."""
 
     together = 1
 

@@ -56,7 +56,7 @@ def test_evaluate_rejects_options_of_trainings(tmp_path, option):
 
 @pytest.fixture
 def policies(tmp_path):
-    """Return a function that gives the options for a user's agent of a named class."""
+    """Return a function that makes a config for the user's agent class ``target``."""
 
     def options(target, *more, settings=""):
         folder = tmp_path / "mine" / "agent"
@@ -92,7 +92,7 @@ def test_walks_of_an_agent_without_weights_are_drawn(policies, tmp_path):
 
 
 class Slots:
-    """An agent whose object accepts no new attributes."""
+    """An agent that accepts no new attributes."""
 
     __slots__ = ()
 

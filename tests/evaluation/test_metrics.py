@@ -170,7 +170,7 @@ def real_paths():
 def test_real_ground_truth_paths_score_as_vlnce_defines(real_paths):
     for episode, path in real_paths:
         assert ndtw(path, path) == 1.0
-        # these episodes have no stairs within the last 0.5 m
+        # the last 0.5 m of these paths have no stairs
         left = math.dist(path[-1], episode.goals[0].position)
         won = success(left, True)
         assert won and not success(left, False)

@@ -48,7 +48,7 @@ def test_table_has_the_rows_of_the_paper():
     assert names.index("Motion blur") < names.index("**PRS-SR (Depth)**") < names.index("Multipath")
     assert (
         len([n for n in names if "PRS" not in n]) == 1 + 1 + 3 + 2 + 12
-    )  # lines for the header, the rule, clean, the means and the suite
+    )  # lines of the header, the separator, clean results, the means and the suite
 
 
 def test_heading_states_the_conditions():
@@ -198,7 +198,7 @@ def test_agents_of_one_name_are_distinguished():
 
 
 def test_agents_with_distinct_seeds_share_a_column():
-    """The agents are training seeds of one recipe, so they form one column."""
+    """The agents differ only in the seed of their recipe, so they form one column."""
     records = column(8, ALL) + column(4, ALL, agent="ba9876543210", seed=1)
     (section,) = sections(records)
     assert section.columns == ("base",)
@@ -244,8 +244,7 @@ def test_columns_are_compared_over_common_seeds():
 
 
 def test_unfinished_seed_is_left_out_with_a_note():
-    """If a new seed has only a few episodes so far, the other episodes of a complete seed must
-    still count."""
+    """A seed that has run only a few episodes must not reduce the episodes of a complete seed."""
     part = [r for r in column(2, ALL, seed=1) if int(r["episode_id"]) < 2]
     (section,) = sections(column(8, ALL) + part)
     assert section.value("base", "clean") == pytest.approx(0.8)
@@ -435,7 +434,7 @@ def test_plain_names_are_not_escaped():
 
 
 def other_list(output, **changes):
-    """Return the same rows for different episodes."""
+    """Return copies of the rows with other episode ids."""
     return [r | changes | {"episode_id": f"{r['episode_id']}-other"} for r in output]
 
 

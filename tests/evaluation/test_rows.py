@@ -1,5 +1,4 @@
-"""Tests that row files survive kills and are merged without duplicates, and that errors are
-clear."""
+"""Tests of row files: recovery after a killed process, merging, and clear errors."""
 
 from __future__ import annotations
 

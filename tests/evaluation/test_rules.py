@@ -94,7 +94,7 @@ def test_ndtw_threshold_follows_the_rule():
         world.reset(episode)
         loaded[rule] = -math.log(world.measures()["ndtw"]) * metres
     assert loaded["vln_ce"] == pytest.approx(loaded["apartments"], rel=1e-4)
-    # these rules use the threshold of VLN-CE, because view points do not lie on a path
+    # the goals of these rules are view points, for which nDTW uses the threshold of VLN-CE
     for rule in ("wmnav", "objectnav"):
         assert loaded[rule] == pytest.approx(loaded["apartments"], rel=1e-4)
 

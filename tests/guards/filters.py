@@ -56,7 +56,7 @@ def broken(frames):
 
 
 class Returns:
-    """A frame filter that returns the arguments of its constructor."""
+    """A frame filter; each call returns the keyword arguments of the constructor."""
 
     def __init__(self, **output):
         self.made = output

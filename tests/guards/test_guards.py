@@ -40,7 +40,7 @@ class Dark(Guard):
 
 
 class Room:
-    """A world with episodes of four steps, which shows frames."""
+    """A world that provides frames. Its episodes end with the action 0 (STOP)."""
 
     rule, sensors, done = "STOP", {}, False
 

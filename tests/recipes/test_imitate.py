@@ -171,7 +171,7 @@ def test_imitation_adds_weighted_auxiliary_losses():
 
 
 def test_every_step_and_piece_draws_other_episodes_and_keys():
-    """Steps and pieces must not reuse the random numbers of earlier ones."""
+    """No piece of a batch may reuse the random numbers of another piece or step."""
     drawn, keys = [], []
 
     class Listed(DrawnEpisodes):

@@ -1,5 +1,4 @@
-"""Tests of PPO under corruption: its first loss, the targets of its critic, and that the policy
-improves."""
+"""Tests of PPO under corruption: the first loss, the critic targets, and the trained policy."""
 
 import numpy as np
 import pytest

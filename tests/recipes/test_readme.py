@@ -1,4 +1,4 @@
-"""Tests that the recipe in recipes/README.md can be trained from outside the package."""
+"""Tests that the example recipe in recipes/README.md works from a folder outside the package."""
 
 from __future__ import annotations
 

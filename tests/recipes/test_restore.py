@@ -125,7 +125,7 @@ def test_folder_of_frames_can_be_the_source(tmp_path):
     assert batch["frames"].shape == batch["clean"].shape == (1, 12, 24, 24, 3)
     there = pickle.loads(
         pickle.dumps(recipe)
-    )  # like in a worker, which receives only the frames of its jobs
+    )  # as in a worker, which receives only the frames of its jobs
     assert there.pairs.frames is None
     sent = pickle.loads(pickle.dumps(recipe.jobs(0)))
     again = there.collate(0, [there.work(job) for job in sent])

@@ -457,7 +457,7 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
     with pytest.raises(ValueError, match="'0123456789ab'"):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
-    # ``fill`` does not compare the hash of the agent, because training adapters would change it
+    # ``fill`` does not compare the hash of the agent, because adapters may have been trained
     assert loading.fill(own_value, copied) is own_value
 
 
@@ -737,7 +737,7 @@ def test_export_writes_no_path_of_this_machine(place, name):
 
 @pytest.mark.slow
 def test_programs_hold_no_path_of_this_machine(traced):
-    """The traces in programs once contained paths of the checkout."""
+    """The stack traces in exported programs once contained paths of the checkout."""
     assert places_in(traced / loading.PROGRAM) == []
 
 

@@ -17,8 +17,7 @@ from mitigate.worlds.seeded import seeded_episodes
 
 
 class Lights(gymnasium.Env):
-    """An environment of five steps; in each step, the policy must choose the side on which a light
-    is."""
+    """An environment of five steps. At each step, the policy must choose the lit side."""
 
     def __init__(self, continuous=False, size=16):
         self.observation_space = spaces.Box(0, 255, (size, size, 3), np.uint8)

@@ -83,7 +83,7 @@ class Silent:
 
 
 def test_attributes_are_compared_without_settings(tmp_path):
-    """Attributes are compared with the stored settings, which then become the agent's settings.
+    """Attributes must match the stored settings; then the agent gets these settings.
 
     As a result, an evaluation and ``benchmark(load_hardened(...))`` compute the same hash.
     """

@@ -1,4 +1,4 @@
-"""Tests that validation episodes select the given, the trained or the averaged weights."""
+"""Tests that the given, the trained or the averaged weights are chosen by validation episodes."""
 
 from functools import partial
 

@@ -199,7 +199,7 @@ class BadJob:
 
 
 def _no_job():
-    raise OSError("no job can be made of this")
+    raise OSError("this job cannot be unpickled")
 
 
 @pytest.mark.slow
@@ -209,7 +209,7 @@ def _no_job():
         ("piece", ValueError, "A piece of a batch cannot be sent .* workers=0"),
         ("pickled", ValueError, "A job of this objective cannot be sent .* workers=0"),
         ("pointer", ValueError, "A job of this objective cannot be sent .*pointers.* workers=0"),
-        ("unpickled", OSError, "no job can be made"),
+        ("unpickled", OSError, "this job cannot be unpickled"),
     ],
 )
 def test_unpicklable_result_is_reported(fatal, kind, message, tmp_path):

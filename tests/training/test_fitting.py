@@ -329,7 +329,7 @@ def test_missing_weights_name_the_recipe_that_makes_them(tmp_path):
 
 
 def fitted(agent, *options: str):
-    """Remove corruptions that ``agent`` does not read from the stages of a training run.
+    """Remove corruptions from training stages if ``agent`` does not read their sensors.
 
     Return the new stages and the original stages.
     """

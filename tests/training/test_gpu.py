@@ -60,7 +60,7 @@ def test_loss_on_gpu_equals_loss_on_cpu(tmp_path, capfd, agent, recipe):
 @pytest.mark.parametrize("recipe", ["harden", "ts_distill", "restore"])
 def test_workers_feed_every_stage_as_the_training_itself_does(tmp_path, capfd, recipe):
     matches = []
-    # CUDA must not be initialised in the process that forks the workers of the second stage
+    # CUDA must not be initialised in the fork server of the second stage's workers
     for count in (0, 2):
         options = [f"recipe={recipe}", f"workers={count}"]
         trained(tmp_path / str(count), GPU, *options)

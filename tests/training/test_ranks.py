@@ -21,8 +21,11 @@ PIECES = 4
 
 
 class Regression(Objective):
-    """An objective with pieces of different lengths. One weight is used only by the pieces of the
-    first rank, and one weight is unused and must not decay."""
+    """An objective with pieces of different lengths.
+
+    The layer ``first`` is applied only to piece 0, which the first rank computes. The layer
+    ``unused`` must not decay.
+    """
 
     def __init__(self) -> None:
         super().__init__()

@@ -1,5 +1,7 @@
-"""Tests that worlds can be used as torchrl environments, and torchrl and gymnasium environments as
-worlds."""
+"""Tests that worlds work as torchrl environments, and that environments work as worlds.
+
+The environments are from torchrl and gymnasium.
+"""
 
 from __future__ import annotations
 

@@ -256,7 +256,8 @@ def test_read_episodes_memory_does_not_grow(tmp_path):
         finally:
             tracemalloc.stop()
 
-    assert peak(2000) < peak(125) + 2_000_000  # 2 MB, although the larger file has 15 MB more text
+    # the peak rises by less than 2 MB, although the larger file has 15 MB more text
+    assert peak(2000) < peak(125) + 2_000_000
 
 
 PEAK = """
@@ -276,7 +277,8 @@ def test_real_episodes_need_little_memory(name, count):
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=True)
     episodes, grown = map(int, done.stdout.split())
     assert episodes == count
-    assert grown < 8 * 1024  # kB of memory after the imports; train.json has 18 MB of text
+    # maximum growth of the memory in kB after the imports; train.json contains 18 MB of text
+    assert grown < 8 * 1024
 
 
 @needs_r2r_ce

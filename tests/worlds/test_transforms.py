@@ -179,7 +179,7 @@ def test_corrupt_observation_explains_a_missing_modality():
     reported = CorruptObservation(Corruption("foreign_object", 1.0))(data.clone())
     assert (reported["rgb"] == out["rgb"]).all()
     assert out["rgb"].shape == (2, 3, 8, 8, 3) and (out["rgb"][..., 4, 4, :] == 0).all()
-    # samples only clean frames, but may need depth in another run
+    # all frames stay clean, but the corruptions of the schedule need depth
     mostly_clean = Schedule("per_frame", 0.6, clean_share=1.0)
     for schedule in (Schedule.always("multipath", 1.0), mostly_clean):
         with pytest.raises(

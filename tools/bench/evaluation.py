@@ -40,9 +40,7 @@ class Pace:
 
 
 def paces(count: int) -> dict[str, Pace]:
-    """Measure ``count`` episodes under the suite in this process; return the speed by
-    checkpoint.
-    """
+    """Measure ``count`` episodes of each checkpoint under the suite, in this process."""
     cfg = read(conf.load_config("evaluate"))
     by_checkpoint = {}
     for weights in CHECKPOINTS:

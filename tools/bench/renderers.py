@@ -33,7 +33,7 @@ _POSES = 40  # number of random poses of MiniWorld's agent
 def ours(size: int) -> Callable[[], int]:
     """Return a function that renders a panorama at a random free pose.
 
-    The result of the returned function is the number of views that it rendered.
+    The returned function returns the number of views that it rendered.
     """
     apartment = Apartment(7)
     renderer = Renderer(size)
@@ -50,11 +50,12 @@ def ours(size: int) -> Callable[[], int]:
 
 
 def miniworld(scene: str, size: int) -> dict[str, Callable[[], int]]:
-    """Return functions that render one view of a MiniWorld scene, in two ways.
+    """Return two functions that each render one view of a MiniWorld scene.
 
-    The public calls ``render_obs`` and ``render_depth`` render a view twice. The second way renders
-    a view once and reads both images; no public call can do this. MiniWorld stores every scene in
-    OpenGL's display list 1, so only the scene that was opened last can be rendered.
+    The first function uses the public calls ``render_obs`` and ``render_depth``, which render a
+    view twice. The second function renders a view once and reads RGB and depth from it, for which
+    MiniWorld has no public call. MiniWorld stores every scene in OpenGL's display list 1, so only
+    the scene that was opened last can be rendered.
 
     Raises:
         ImportError: If MiniWorld is not installed. If system libraries are missing, pyglet raises

@@ -12,7 +12,7 @@ from tools.bench.tensors import Batch
 from tools.bench.timing import machine
 from tools.bench.training import CAPS, LAYOUTS, Stage, table
 
-AIM = 0.15  # target: maximum fraction of a training step during which no network computes
+AIM = 0.15  # target: maximum fraction of a training step in which no network is running
 COLUMNS = (
     "corruption",
     "steady",
@@ -148,7 +148,7 @@ def _training(stages: dict[bool, list[Stage]]) -> list[str]:
         "are medians of a few steps, and all parts are timed in one run.",
         "",
         "- **waiting**: fraction of a step during which the trainer waits for its batch.",
-        "- **no network**: fraction of a step during which no network computes, neither for "
+        "- **no network**: fraction of a step in which no network is running, neither for "
         f"training nor in rollouts (target: at most {AIM:.0%}).",
         "- The columns from **rendering** to **other**: milliseconds that one core needs for each "
         "part of the work on a batch.",

@@ -2,7 +2,7 @@
 
     python -m tools.bench.steps runs/native runs/capped --most 4
 
-CI trains once with all instructions of the processor, and once with the instructions of an older
+CI trains once with the full instruction set of the processor, and once with that of an older
 processor (``ONEDNN_MAX_CPU_ISA=AVX2 ATEN_CPU_CAPABILITY=avx2``). Both runs log every step
 (``trainer.log_every=1``) and use one thread (``OMP_NUM_THREADS=1``), so that other programs hardly
 influence the CPU seconds of a step. In each stage, the step with the fewest CPU seconds is used,
@@ -44,7 +44,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def step_costs(run: Path) -> dict[str, float]:
-    """Return, by stage, the fewest CPU seconds of a step. The first step is ignored.
+    """Return the minimum CPU seconds per step for each stage. The first step is ignored.
 
     The CPU seconds are read from TensorBoard files.
 
@@ -76,7 +76,7 @@ def slower(reference: dict[str, float], other: dict[str, float]) -> dict[str, fl
 
 
 def _cheapest(stage: Path) -> float:
-    """Return the fewest CPU seconds of a step in a stage. The first step is ignored."""
+    """Return the minimum CPU seconds per step of a stage. The first step is ignored."""
     from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
     events = EventAccumulator(str(stage), size_guidance={"scalars": 0})  # 0: keep all

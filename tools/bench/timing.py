@@ -15,7 +15,7 @@ from datetime import date
 from importlib import metadata
 from pathlib import Path
 
-# number of different inputs that the timed calls of the steady state repeat in a cycle
+# number of different inputs that the timed calls use in turn
 CYCLE = 8
 LEAST = 5  # minimum number of measured calls, even if they take longer than the given time
 PACKAGES = ("numpy", "numba", "opencv-python-headless", "torch")

@@ -92,7 +92,7 @@ class Stage:
 
     @property
     def elsewhere(self) -> float:
-        """Return the fraction of a step during which no network computes.
+        """Return the fraction of a step in which no network is running.
 
         This is the waiting time minus the time in which networks compute rollouts.
         """

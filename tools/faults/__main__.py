@@ -5,9 +5,9 @@ recipe is trained twice (``debug=smoke``, four steps per stage): once undisturbe
 faults in turn, each at a seeded random time. The weights of both runs must be equal bit for bit.
 Faults are injected into evaluations in the same way, and the rows must be equal byte for byte.
 Other commands must end with the documented result. The tool prints how many faults were injected
-and how many were survived. It exits with status 1 if a fault was not survived or no fault was
-injected. ``--write`` inserts the table into docs/lab/fault-injection.md, with earlier results of
-the same seed for other recipes.
+and how many of them the programs survived. It exits with status 1 if a program did not survive a
+fault, or if no fault was injected. ``--write`` inserts the table into docs/lab/fault-injection.md.
+Recipes that were not run keep their earlier results of the same seed.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         results = pool.map(lambda name: inject_faults(name, options), options.recipes)
         for name, new in zip(options.recipes, results, strict=True):
             outcomes[name] = new
-            # if the run without faults fails, its only outcome is UNBROKEN
+            # a failed run without faults has the single outcome UNBROKEN, which replaces all others
             before = {} if report.UNBROKEN in new else stored.get(name, {})
             stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
             write_bytes(file, json.dumps(stored, indent=1).encode())

@@ -44,7 +44,7 @@ HARDENED = "checkpoints/hardened/harden"  # a shipped folder without program.pt2
 
 
 class Commands:
-    """A folder for the commands that faults are injected into."""
+    """A folder in which commands run while faults are injected."""
 
     def __init__(self, folder: Path, rng: random.Random) -> None:
         self.folder = make_folder(folder)
@@ -171,7 +171,7 @@ def die_first_address(commands: Commands) -> str:
 
 
 def interrupt_export(commands: Commands, number: int, *flags: str) -> str:
-    """Send a signal to the export of a training run at a random time, and repeat the export."""
+    """Send a signal to ``mitigate export`` of a training run at a random time, and repeat it."""
     run, problem = trained(commands)
     if problem:
         return problem
@@ -182,7 +182,7 @@ def interrupt_export(commands: Commands, number: int, *flags: str) -> str:
 
 
 def interrupt_programs(commands: Commands, number: int) -> str:
-    """Send a signal to an export that adds a program to a folder, and repeat the export."""
+    """Send a signal to ``mitigate export --programs`` at a random time, and repeat it."""
     folder = make_folder(commands.folder / f"programs{number}")
     for name in ("harden", "undisturbed"):
         shutil.copytree(ROOT / HARDENED, folder / name)
@@ -194,8 +194,9 @@ def interrupt_programs(commands: Commands, number: int) -> str:
 def interrupt_and_repeat(
     commands: Commands, number: int, words: list[str], target: Path, undisturbed: list[str]
 ) -> str:
-    """Send a signal to an export at a random time, and repeat the export; check the folder
-    ``target`` after both.
+    """Send a signal to the command ``words`` at a random time, and repeat the command.
+
+    The folder ``target`` is checked after both runs.
     """
     began = time.monotonic()
     problem = commands.start(*undisturbed).problem(0)
@@ -250,7 +251,7 @@ FAULTS: dict[str, Callable[[Commands], str]] = {
 
 
 def break_commands(out: Path, seed: int, faults: list[str]) -> dict[str, str]:
-    """Return the outcome of each fault, which is "survived", "not run: ..." or the problem."""
+    """Return the outcome of each fault: "survived", "not run: ..." or an error message."""
     commands = Commands(out, random.Random(f"{seed} commands"))
     outcomes = {}
     for name in faults:

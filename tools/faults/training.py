@@ -1,9 +1,9 @@
 """Inject faults into the training run of a recipe, and compare its weights with the weights of
 an undisturbed run.
 
-The same training run is disturbed by all faults in turn, and resumes after each. A training run may
-end before a fault is injected. Then its weights are compared, and the run is deleted and started
-again.
+The same training run is disturbed by all faults in turn, and resumes after each. If it ends before
+a fault is injected, its weights are compared with those of the undisturbed run. Then the run is
+deleted and started again.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tools.faults.processes import TIMEOUT, Command, workers
 from tools.faults.report import UNBROKEN
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
-RECIPE_OPTIONS = {  # options that make a recipe faster, or without which it cannot run
+RECIPE_OPTIONS = {  # options that a recipe requires, or that make it faster
     "dagger": ("agent=recurrent", "stages.policy.recipe.every=2"),
     "encoder": ("stages.encoder.recipe.frames=48", "stages.encoder.recipe.batch=8",
                 "stages.encoder.recipe.micro_batch=8", "agent=encoder",
@@ -37,11 +37,11 @@ RECIPE_OPTIONS = {  # options that make a recipe faster, or without which it can
 STATUS = {signal.SIGTERM: 143, signal.SIGINT: 130, signal.SIGKILL: -signal.SIGKILL}
 STAGE_START = "workers make batches"  # part of the first line that a stage prints
 REPLACED = "a new one repeats its work"  # part of the message that reports a dead worker
-# seconds after which a dead worker is usually noticed, because its work is missing
+# seconds until a dead worker is usually noticed by its missing results
 NOTICE_TIME = 10.0
-TRIES = 4  # maximum attempts to inject a fault before training ends
+TRIES = 4  # maximum number of attempts if training ends before the fault
 DISK = 800  # size in MB of the file system that is filled
-# bytes that stay free on the full disk; less than a checkpoint needs (heuristic)
+# maximum free bytes after the disk is filled; too few for a checkpoint (heuristic)
 MAX_FREE = 12 << 20
 
 
@@ -125,7 +125,7 @@ class Training:
         return ""
 
     def finish(self) -> str:
-        """Run to the end. Return the problem, or ""."""
+        """Run to the end. Return an error message, or "" after success."""
         command = self.start()
         start = time.monotonic()
         problem = command.problem(0) or self.check_resumed(command)
@@ -186,7 +186,7 @@ def flip_bytes(training: Training) -> str:
 
 
 def _checkpoints_with_older(folder: Path) -> list[Path]:
-    """Return the complete checkpoints of stages that also have an older complete checkpoint."""
+    """Return all complete checkpoints except the oldest one of each stage."""
     complete = [p for p in folder.glob("*/step-*.pt") if checksums.sidecar(p).is_file()]
     return [p for p in complete if any(o.parent == p.parent and o.name < p.name for o in complete)]
 
@@ -198,7 +198,7 @@ def delete_cache(training: Training) -> str:
 
 
 def start_twice(training: Training) -> str:
-    """Start two training runs in one folder. One of them must be rejected and change no file."""
+    """Start two training runs in one folder. One must be rejected without changing a file."""
     both = [training.start(), training.start()]
     problem = check_one_rejected(both)
     running = next((command for command in both if command.runs()), both[0])
@@ -206,7 +206,7 @@ def start_twice(training: Training) -> str:
 
 
 def check_one_rejected(both: list[Command]) -> str:
-    """Wait until one of two commands is rejected. Return the problem, or ""."""
+    """Wait until one of two commands is rejected. Return an error message, or "" after success."""
     for _ in range(int(TIMEOUT / 0.1)):
         ended = [command for command in both if not command.runs()]
         if ended:
@@ -229,7 +229,7 @@ def kill_worker(training: Training) -> str:
     os.kill(training.rng.choice(pids), signal.SIGKILL)
     if command.wait_for(lambda: REPLACED in command.output(), NOTICE_TIME):
         return training.send_signal(command, signal.SIGTERM)
-    # three cases remain: the step takes long, the last batch was already finished, or the run hangs
+    # the step is slow, or the last batch was already finished, or the run hangs
     problem = command.problem(0)
     noticed = REPLACED in command.output()
     return problem or ("" if noticed else "not run: all batches were made before")
@@ -299,7 +299,7 @@ def plant_link(training: Training) -> str:
     os.replace(outside, file)
     if not unchanged:
         return "the file behind the link was changed"
-    if command.process.returncode == 0:  # no step was left, so nothing was to be logged
+    if command.process.returncode == 0:  # no steps were left, so nothing was logged
         raise TooLate
     return problem
 

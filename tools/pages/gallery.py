@@ -80,12 +80,13 @@ def contact_sheet(
     """Write a picture with corruptions as rows and ``severities`` as columns.
 
     Args:
-        rgb: uint8 [H, W, 3] or [V, H, W, 3].
-        depth: float32 metres [H, W], [H, W, 1] or [V, H, W, 1] of the same time step and size.
-        path: file of the picture (.png, .jpg, .jpeg); parent folders are created.
-        key: the random key of the whole sheet; if a name is repeated, it gets a new key.
-        views: the views of a panorama that each cell shows, from left to right.
-        names: names of the corruptions.
+        rgb: RGB frame of one view or of V views, uint8 [H, W, 3] or [V, H, W, 3].
+        depth: Depth of the same views in metres, float32 [H, W], [H, W, 1] or [V, H, W, 1].
+        path: File of the picture (.png, .jpg, .jpeg). Missing parent folders are created.
+        severities: Severities of the columns.
+        key: Random key of the sheet. Repeated names get different keys, so that their rows differ.
+        views: Views of a panorama that each cell shows, from left to right.
+        names: Corruptions of the rows.
 
     The result is the picture, uint8 RGB. Raises ValueError if the frames do not match or ``path``
     has an unsupported suffix.
@@ -195,8 +196,9 @@ def read_frame(rgb: Path, depth: Path) -> tuple[np.ndarray, np.ndarray]:
 
 
 def main(arguments: list[str] | None = None) -> None:
-    """Run from the command line (see the module's docstring). Invalid input prints one line, and
-    the exit status is 2.
+    """Run from the command line (see the module's docstring).
+
+    If the input is invalid, print one line and exit with status 2.
     """
     parser = argparse.ArgumentParser(prog="tools.pages.gallery", description=__doc__)
     parser.add_argument("--out", type=Path, help="picture to write: .png, .jpg or .jpeg")

@@ -1,6 +1,7 @@
 """Generate the page ``docs/unseen-corruptions.md``.
 
-The page contains the formula, the half (validation or test) and the strength of each corruption.
+The page states the formula and the strength of each corruption, and whether it is for validation or
+for test.
 """
 
 from __future__ import annotations

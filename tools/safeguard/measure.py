@@ -153,8 +153,7 @@ def attacked(
     seed: int,
     authors: Sequence[str] = AUTHORS,
 ) -> Iterator[tuple[dict, str, str, str]]:
-    """Yield (attack, place, route, corrupted text): each attack is inserted into ``each`` routes,
-    at each possible place.
+    """Yield (attack, place, route, corrupted text) for ``each`` random routes per attack and place.
 
     An attack that fits before or after a route is tried in both places.
     """

@@ -156,9 +156,7 @@ def _option_table(lines: list[str]) -> list[str]:
 
 
 def configs_page() -> str:
-    """Return the page with all options of the Hydra commands, which shows the commented config
-    files.
-    """
+    """Return the page of all options of the Hydra commands: their config files with comments."""
     parts = [
         "# Configuration",
         "",

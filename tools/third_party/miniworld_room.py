@@ -1,5 +1,7 @@
-"""Train on MiniWorld's ``OneRoomS6Fast``, in which the agent must go to the red box. The policy is
-PPO of stable-baselines3 on RGB."""
+"""Train on MiniWorld's ``OneRoomS6Fast``, in which the agent must go to the red box.
+
+The policy is trained on RGB frames with the PPO of stable-baselines3.
+"""
 
 from __future__ import annotations
 

@@ -17,7 +17,7 @@ from torchrl.modules import ConvNet, ProbabilisticActor, ValueOperator
 from torchrl.objectives import ClipPPOLoss
 from torchrl.objectives.value import GAE
 
-from tools.third_party.miniworld_room import make, make_world  # noqa: F401 - the same world
+from tools.third_party.miniworld_room import make, make_world  # noqa: F401 - for results.py
 from tools.third_party.ppo import WEIGHTS
 
 PATH = WEIGHTS / "miniworld_torchrl.safetensors"

@@ -1,6 +1,7 @@
 """Harden a policy from another library with several seeds, or add a guard to it.
 
-The success of the policy before and after is compared under known and unseen corruptions.
+The tool compares the success of the original and the changed policy under known and unseen
+corruptions.
 
     python -m tools.third_party.results vizdoom_basic --seeds 0 1 2
     python -m tools.third_party.results vizdoom_basic --method ppo --set w_kl=0.1

@@ -1,4 +1,4 @@
-"""Tests of the recurrent agent: decisions in a batch equal decisions step by step."""
+"""Tests of the recurrent agent: batched decisions equal the decisions of single steps."""
 
 from __future__ import annotations
 

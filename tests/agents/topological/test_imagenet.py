@@ -39,8 +39,9 @@ def test_checkpoint_leaves_out_public_weights(tmp_path):
     assert not any(name.startswith(("rgb_encoder.stem", "rgb_encoder.stages")) for name in content)
     again = agent()
     with torch.no_grad():
+        # this also changes the public weights, which both agents share; loading restores them
         for parameter in again.parameters():
-            parameter.add_(0.1)  # also changes the shared public weights, which loading restores
+            parameter.add_(0.1)
     checkpoint.load_weights(again, tmp_path)
     assert torch.equal(features(new_agent), features(again))
     assert torch.equal(features(new_agent), features(copy.deepcopy(new_agent)))

@@ -83,7 +83,7 @@ def test_free_directions_gives_free_distances():
 @pytest.mark.parametrize("quarters", [1, 2, 3])
 def test_free_directions_turns_against_the_heading(quarters):
     space, xy = room(5, 3), np.array([1.0, 1.2])
-    # a turn of the agent shifts the directions in the opposite direction
+    # if the agent turns left, the relative directions shift to the right
     turned = free_directions(space, xy, quarters * np.pi / 2)
     assert np.array_equal(
         np.roll(free_directions(space, xy, 0.0), quarters * ANGLES // 4, 0), turned

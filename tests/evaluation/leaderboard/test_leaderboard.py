@@ -1,4 +1,4 @@
-"""Tests that the figures of leaderboard entries match their rows and a repeated evaluation."""
+"""Tests that leaderboard figures match their rows, and that an evaluation reproduces them."""
 
 from __future__ import annotations
 

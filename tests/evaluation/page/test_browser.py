@@ -33,7 +33,7 @@ def made_rows() -> list[dict]:
 
 
 def made_walk(rows: list[dict]) -> dict:
-    """Return the page's data about one episode, which ``base`` repeats clean and under spatter."""
+    """Return the page's data of one episode that ``base`` ran clean and under spatter."""
     walk = {
         "episode": "0",
         "instruction": EVIL,
@@ -144,8 +144,7 @@ def test_cells_open_at_any_severity(page, tmp_path, severity):
 
 
 def test_cell_summary_averages_seeds_per_episode(page, tmp_path):
-    """Seed 1 has no row of the last episode, so the mean in the grid leaves this episode out for
-    seed 0 too."""
+    """The last episode has no row for seed 1, so the mean also excludes its row for seed 0."""
     first = column(10, {"spatter": 10})
     second = column(10, {"spatter": 0}, seed=1)
     rows = first + [r for r in second if r["episode_id"] != "9"]
@@ -330,7 +329,7 @@ def test_names_and_ids_of_strangers_do_nothing(page, tmp_path):
 
 
 def _addresses(page):
-    """Return the requests of the page, except its embedded pictures."""
+    """Return the URLs that the page requested, except those of embedded pictures."""
     return [url for url in page.requests.values() if not url.startswith("data:image")]
 
 

@@ -116,8 +116,8 @@ def test_cell_is_packed_with_all_seeds_or_none(rows):
 
 
 def test_page_share_uses_common_episodes(rows):
-    """The displayed share is the retained fraction of the success, like a PRS. It uses only
-    episodes that were run both clean and corrupted."""
+    """The displayed share is the fraction of clean success that is retained, like a PRS. It uses
+    only episodes that were run both clean and corrupted."""
     sure = column(10, {"spatter": 10}, name="sure", agent="cccccccccccc", spl=0.4)
     lost = [r | {"success": 0, "spl": 0.1} if r["episode_id"] == "9" else r for r in sure]
     fewer = [r for r in lost if (r["episode_id"], r["corruption"]) != ("9", "spatter")]

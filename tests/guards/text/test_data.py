@@ -1,4 +1,4 @@
-"""Tests of training texts (varied, separate from test texts) and of reading chat files."""
+"""Tests that training texts are varied and exclude test texts, and tests of reading chat files."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def test_draw_pair_targets_fit_their_kind(pairs):
     assert all(p.source == p.target for p in pairs if p.kind == "identity")
     attacked = [p for p in pairs if p.kind == "black_box"]
     before_plain = sum(p.source.endswith(p.target) for p in attacked) / len(attacked)
-    # the other attacks precede a spoken passage, whose target is a plain version of the passage
+    # the other attacks precede a spoken passage, and the target is the plain text of this passage
     assert 0.6 < before_plain < 0.95
     assert 0.1 < sum(not p.target for p in attacked) / len(attacked) < 0.5
 

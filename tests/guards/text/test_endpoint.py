@@ -29,7 +29,8 @@ class Server(ThreadingHTTPServer):
     def __init__(self):
         super().__init__(("127.0.0.1", 0), Handler)
         self.replies, self.requests = [], []
-        # the server sends its answer in pieces: bytes per piece, and seconds before each piece
+        # ``drops`` is the number of bytes in each piece of an answer.
+        # ``pause`` is the delay in seconds before each piece.
         self.drops, self.pause = 1 << 30, 0.0
         self.headers = 0  # number of header bytes that are sent slowly before the first piece
         self.url = f"http://127.0.0.1:{self.server_port}/v1"

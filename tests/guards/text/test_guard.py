@@ -64,7 +64,7 @@ def test_canonicalise_removes_attacks_of_known_mechanisms(safeguard, attack, pla
 
 
 def test_canonicalise_removes_most_fresh_attacks(safeguard):
-    """The bound is below the measured fraction. The test uses the half "choose" of the texts."""
+    """The bound is below the measured fraction. The texts are those for choosing settings."""
     plain = [line["plain"] for line in bank("styles", "choose")]
     good = [
         is_removed(line["text"], route, value) and not is_lost(route, value)

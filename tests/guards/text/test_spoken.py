@@ -1,5 +1,4 @@
-"""Tests of hand-written texts in different styles: which are used for training, and which for
-reported figures."""
+"""Tests of hand-written texts in different styles, and of their split into train and test texts."""
 
 from __future__ import annotations
 

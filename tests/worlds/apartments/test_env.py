@@ -25,7 +25,7 @@ def episodes():
 
 
 def actions_for(name: str, count: int) -> list[int]:
-    """Return random actions; ``name``, the name of an episode's run, is the seed.
+    """Return random actions, seeded by the name of an episode's run.
 
     About every tenth action is STOP.
     """

@@ -75,7 +75,7 @@ def test_depth_and_ids_equal_ray_casting(renderer, seed):
         same = drawn == hit
         assert np.abs(seen - metres)[same].max() < 1e-5
         # The renderer rounds edges to the nearest pixel.
-        # It may confuse distant faces that are 1 cm apart.
+        # Far from the camera, it may confuse two faces that are 1 cm apart.
         assert same.mean() > 0.8
         assert same[inner(hit)].mean() > 0.98
 

@@ -48,7 +48,7 @@ def test_expert_solves_ten_episodes(episodes):
     rows = [run_episode(OracleAgent(world), world, e, CLEAN, 0) for e in episodes]
     assert [row["success"] for row in rows] == [1] * 10
     assert min(row["spl"] for row in rows) > 0.8
-    # no decisions are counted, because the expert reads no frame
+    # no decisions are counted, because the expert does not read frames
     assert [row["decisions"] for row in rows] == [0] * 10
 
 
@@ -185,8 +185,10 @@ def test_reset_explains_an_unknown_scene(episodes, scene, words):
 
 
 def test_reset_rejects_positions_outside_free_space(episodes):
-    """Without this check, a sign error in z or positions of a different scene would only lower the
-    success rate."""
+    """Without this check, a wrong sign of z or positions from another scene would go unnoticed.
+
+    They would only lower the success rate.
+    """
     first = episodes[0]
     x, y, z = first.start_position
     for wrong in (
