@@ -6,7 +6,7 @@ each method changes nothing. Examples of guards are the safeguard (for text), th
 frames), users' callables, and the methods of test-time adaptation. ``opening.py`` builds them from
 the options ``safeguard=``, ``restore=`` and ``adapt=``.
 
-This module needs no torch.
+This module does not need torch.
 """
 
 from __future__ import annotations
@@ -126,7 +126,7 @@ class Guard:
         and ``version``.
 
         Raises:
-            ValueError: If a part of the guard cannot be read, and ``version`` is None.
+            ValueError: If the hash cannot cover all of the guard, and ``version`` is None.
         """
         from mitigate.agents.fingerprint import contents, hash_of
 
@@ -264,7 +264,7 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """Wrapper around a world in which a guard changes the frames.
+    """World wrapper in which guards change the frames.
 
     The guard runs only when the agent reads a frame, so frames that are not read cost nothing. A
     guard that remembers frames receives all of them. ``observation.clean`` does not change.

@@ -96,7 +96,7 @@ def open_guards(
 
 
 def open_restorer(choice: str | None, sensors: Collection[str] = SENSORS) -> Guard | None:
-    """Build the guard of ``restore=`` (``frames/choices.py``), or return None for None and "none".
+    """Build the guard that ``restore=`` selects. If ``choice`` is None or "none", return None.
 
     Raises:
         FileNotFoundError: If the folder contains no restorer.

@@ -219,9 +219,9 @@ def _origin(card: dict[str, Any]) -> str:
 
 
 def _hashes(card: dict[str, Any]) -> str:
-    """Return a text with the hashes of the exported and the original weights.
+    """Return a string with the hashes of the exported and the original weights.
 
-    The text also names the agent fingerprints in the result rows.
+    The string also names the agent fingerprints in the result rows.
     """
     exported, before = card["agent"], card.get("run_agent", card["agent"])
     rounded = f" (`{before}` before rounding)" if before != exported else ""

@@ -43,7 +43,7 @@ from mitigate.worlds.episodes import Episode, read_episodes, read_extras, write_
 
 ORIGINAL = "original_text"  # key under which the output file stores the clean text
 STALE = ("timed_instruction",)  # key in RxR files that stores the clean words and their times
-SUMMARY = ".summary.json"  # suffix that is added to the name of the output file to name its summary
+SUMMARY = ".summary.json"  # suffix of the summary; OUT is summarised in OUT.summary.json
 NAMES = tuple(name for name in INSTRUCTION if name != "white_box")
 USES = {"black_box": ("split",), "mask": ("mask_token", "tagger"), "capitalize": ("tagger",)}
 
@@ -150,7 +150,10 @@ def check_for_file(corruption: str) -> None:
 
 
 def _check_target(source: Path, out: Path) -> None:
-    """Raise ValueError if ``out`` exists and is not an unchanged output of :func:`run`."""
+    """Raise ValueError if :func:`run` must not write to ``out``.
+
+    An existing file may be replaced only if :func:`run` wrote it and it has not changed since.
+    """
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):

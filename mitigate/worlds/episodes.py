@@ -105,7 +105,7 @@ class Record:
         return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
-        """Return the entries of the object whose keys are not in ``known``."""
+        """Return all entries except those whose keys are in ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
 
     def _items(self, key: str) -> list[Any]:

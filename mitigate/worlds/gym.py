@@ -1,4 +1,4 @@
-"""Use a gymnasium environment whose observations contain frames as a world."""
+"""Use a gymnasium environment as a world. Its observations must contain frames."""
 
 from __future__ import annotations
 

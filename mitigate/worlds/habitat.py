@@ -36,7 +36,7 @@ def corrupt_habitat(
     turn: str = "left",
     normalised: bool = True,
 ) -> dict:
-    """Corrupt all cameras of the modality that the corruption changes, as one panorama.
+    """Corrupt an observation of Habitat. All cameras of one modality form one panorama.
 
     By default, depth must be normalised by Habitat (``normalize_depth: True``). Missing depth
     becomes 0, the value that Habitat writes if a ray hits nothing (``sensor.missing`` = 0.0
@@ -61,14 +61,14 @@ def corrupt_habitat(
         not corrupted are not copied.
 
     Raises:
-        ValueError: If the corruption is a fault, or if no camera has its modality. Also if the yaw
+        ValueError: If the corruption is a fault, or if no camera has its modality. If the yaw
             of a camera is not 0, 30, ..., or 330 degrees, or if cameras of one modality have the
             same yaw or different sizes. Errors of ``corrupt_normalised`` are passed on.
     """
     check_turn(turn)
     if fault := family(check_corruption(corruption).name):
         raise ValueError(
-            f"corrupt_habitat corrupts one time step, but {corruption.name!r} is a {fault} fault. "
+            f"corrupt_habitat does not support faults, got the {fault} fault {corruption.name!r}. "
             "Use mitigate run, the gymnasium wrapper, or a FrameStream (docs/faults.md)."
         )
     corrupt_frames = corrupt_normalised if normalised else corrupt_observation

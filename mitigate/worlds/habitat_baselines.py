@@ -56,8 +56,8 @@ class CorruptObservation(ObservationTransformer):
 
     Raises:
         ValueError: If the observation space or a batch has no camera that a corruption of the
-            schedule can change. In ``forward``, also if ``corruption_key`` is missing, or if
-            ``corrupt_habitat`` raises ValueError.
+            schedule can change. ``forward`` also raises it if ``corruption_key`` is missing, or if
+            ``corrupt_habitat`` raises it.
     """
 
     def __init__(

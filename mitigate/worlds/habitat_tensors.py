@@ -46,11 +46,11 @@ def corrupt_habitat_tensors(
         backend: As in ``corrupt_tensors``.
 
     Returns:
-        A new dictionary with the same entries, dtypes, shapes and devices. An entry is not copied
-        if no row corrupts it.
+        A new dictionary with the same entries, dtypes, shapes and devices. Entries that no
+        corruption changes are not copied.
 
     Raises:
-        ValueError: If no camera has the modality of a corruption. Also if the yaw of a camera is
+        ValueError: If no camera has the modality of a corruption. If the yaw of a camera is
             not 0, 30, ..., or 330 degrees, or if cameras of one modality have the same yaw or
             different sizes. Errors of ``corrupt_observations`` are passed on.
     """
@@ -83,7 +83,7 @@ def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> 
     """Return the frames as one tensor [B, V, H, W, C].
 
     The index on the second axis is the view number. V is the largest view number plus 1. Views
-    without a camera are 0.
+    without a camera are filled with zeros.
     """
     first = observations[next(iter(views))]
     for entry in views:

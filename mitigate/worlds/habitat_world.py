@@ -172,8 +172,8 @@ class HabitatWorld(World):
     def measures(self) -> dict[str, float]:
         """Return the measures of the episode so far, with lengths and distances in metres.
 
-        success and spl equal Success and SPL of habitat-lab. ndtw compares the path with the
-        reference path, and its threshold is the distance of the success rule.
+        ``success`` and ``spl`` are defined as in habitat-lab. ``ndtw`` compares the path with the
+        reference path; its threshold is ``Rule.path_metres``.
         """
         values = measures.of_episode(
             self._rule,

@@ -24,7 +24,7 @@ class Rule:
     Attributes:
         name: Name of the benchmark that uses the rule.
         metres: Maximum distance.
-        stop: Whether the agent must take STOP.
+        stop: Whether the agent must end the episode with the action STOP.
         inclusive: Whether a distance of exactly ``metres`` is a success.
         view_points: Whether the distance is measured to the nearest point from which the goal is
             visible. If false, it is measured to the goal itself.
@@ -47,8 +47,8 @@ class Rule:
     def path_metres(self) -> float:
         """Threshold of nDTW in metres, which is the success distance of the rule.
 
-        For a rule that uses view points, the threshold is the success distance of VLN-CE, because
-        view points do not lie on the reference path.
+        A rule that uses view points measures distances to them, not to the reference path. Its
+        threshold is therefore the success distance of VLN-CE.
         """
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
@@ -74,7 +74,7 @@ class Rule:
         return f"{self.name}: {f'STOP and {distance}' if self.stop else f'{distance}, STOP or not'}"
 
 
-RULES = {  # rules by the name that options use; docs/agents.md lists the source of each rule
+RULES = {  # success rules by option value; docs/agents.md lists the source of each rule
     "vln_ce": Rule("vln", SUCCESS_DISTANCE),
     "etpnav": Rule("etpnav", 3.0, stop=False, inclusive=True),
     "habitat_vln": Rule("habitat-lab vln", 0.2),
@@ -105,7 +105,7 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
     """
     for name, metres in (("geodesic distance", geodesic_distance), ("path length", length)):
         if not 0 <= metres < math.inf:
-            raise ValueError(f"The {name} of SPL must be finite metres >= 0, got {metres}.")
+            raise ValueError(f"The {name} of SPL must be finite and >= 0 metres, got {metres}.")
     longer = max(geodesic_distance, length)
     return float(succeeded) * (geodesic_distance / longer if longer else 1.0)
 
@@ -180,5 +180,5 @@ def _points(path: ArrayLike, name: str) -> np.ndarray:
     if points.ndim != 2 or not len(points) or points.shape[1] not in (2, 3):
         raise ValueError(f"The {name} must be [N, 2] or [N, 3] with N > 0, got {points.shape}.")
     if not np.isfinite(points).all():
-        raise ValueError(f"The {name} must be finite metres, got NaN or infinity.")
+        raise ValueError(f"The {name} must have finite coordinates, got NaN or infinity.")
     return points

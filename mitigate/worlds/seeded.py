@@ -61,7 +61,7 @@ class Ending:
     steps: int
 
 
-WHOLE = ""  # entry name that stands for an observation that is a single frame
+WHOLE = ""  # entry name used if the observation is a single frame and not a dict
 
 
 @dataclass(frozen=True)
@@ -131,9 +131,9 @@ class SeededWorld(World):
             takes an :class:`Ending`. The default is the entry "success".
         unit: Metres per unit of depth (default 1). It is required if depth consists of integers or
             if its maximum is 1 or less.
-        limit: Maximum number of steps. If None, only the environment ends its episodes. With a
-            limit, the measures also contain ``limit`` and ``cut``; ``cut`` is 1 if the limit ended
-            the episode.
+        limit: Maximum number of steps. If None, episodes end only when the environment ends them.
+            With a limit, the measures also contain ``limit`` and ``cut``; ``cut`` is 1 if the limit
+            ended the episode.
         rule: The success rule in words, for rows and tables. The default is the name of the entry.
             A rule is required if ``success`` is a function.
         score: "success", or "return" for a task without a success criterion. With "return", rows
@@ -257,8 +257,8 @@ class SeededWorld(World):
                 f"At the end of episode {self._name} the environment must report success, but it "
                 f"has no entry {self.success!r}, only {_listed(self._report())}. Set success= to "
                 "an entry that is False after a failure, or to a function, such as "
-                'success=lambda end: end.total > 0, rule="return > 0". For a task without a '
-                'success set score="return".'
+                'success=lambda end: end.total > 0, rule="return > 0". If the task has '
+                'no success criterion, set score="return".'
             )
         return self._observation(parts)
 
@@ -349,7 +349,7 @@ class SeededWorld(World):
         if absent:
             raise ValueError(
                 f"The observation after step {self._steps} of episode {self._name} must have the "
-                f"entry {absent[0]!r}, which its space names, got {_listed(values)}."
+                f"entry {absent[0]!r} of the observation space, got {_listed(values)}."
             )
         frames = {name: np.array(values[entry]) for name, entry in self.entries.items()}
         for name in {RGB, DEPTH}.intersection(frames):
@@ -445,7 +445,7 @@ def _check_unit(entry: str, dtype: str, high: float, unit: float | None) -> None
         )
     if unit is None and high <= 1:
         raise ValueError(
-            f"The depth {entry!r} ends at {high:g}, so it may be normalised to [0, 1]. Set unit= "
-            "to the metres that the value 1 represents (10 for a sensor of 0 to 10 m), or unit=1.0 "
-            "if the depth is in metres."
+            f"The maximum of depth {entry!r} is {high:g}, so it may be normalised to [0, 1]. Set "
+            "unit= to the depth in metres that the value 1 means (10 for a sensor of 0 to 10 m), "
+            "or unit=1.0 if the depth is in metres."
         )

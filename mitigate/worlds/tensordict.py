@@ -165,7 +165,7 @@ class EnvWorld(SeededWorld):
     def _reset_env(self, seed: int) -> dict[str, Any]:
         self.env.set_seed(seed)
         # torchrl resets a gymnasium environment twice.
-        # Without the seed, the second reset would start a different episode from ``GymWorld``.
+        # Without the seed, the second reset would start a different episode than ``GymWorld`` does.
         is_gym = isinstance(getattr(self.env, "base_env", self.env), GymLikeEnv)
         self._now = self.env.reset(seed=seed) if is_gym else self.env.reset()
         return self._parts()
@@ -210,7 +210,7 @@ def _space_of(spec: Any) -> ActionSpace:
     raise ValueError(
         "The action of the environment must be Categorical, OneHot, MultiCategorical, Bounded or "
         f"Unbounded, got {kind} {list(spec.shape)}. Wrap the environment in a transform that "
-        "converts an action of one of these types into its own."
+        "converts an action of one of these types into the environment's own type."
     )
 
 

@@ -50,15 +50,15 @@ class CorruptObservation(Transform):
         depth: Name of the depth entry. The data may lack this entry.
         sensor: Depth range, and the value that marks missing depth.
         normalised: Whether depth is normalised to [0, 1] over the range of the sensor. If False or
-            None, depth is in metres. With None, data of a replay buffer must have a depth value
-            above 1. Otherwise the unit is unclear, and an error is raised.
+            None, depth is in metres. None adds a check for replay buffers: if no depth value is
+            above 1, the depth may be normalised, so an error is raised.
         hfov: Horizontal field of view of the cameras in degrees; camera faults require it.
         backend: "torch" computes on the device of the frames, and "numpy" computes on the CPU. If
             None, torch is used for frames on a GPU and numpy for frames on the CPU.
 
     Raises:
         ValueError: If the data has no episode or frame number, or if the schedule corrupts a
-            missing entry. Also if a temporal fault is applied to a replay buffer. Errors of
+            missing entry. If a temporal fault is applied to a replay buffer. Errors of
             ``corrupt_observation`` are passed on.
     """
 
@@ -93,8 +93,9 @@ class CorruptObservation(Transform):
             high = float(spec.space.high.max()) if isinstance(spec, Bounded) else math.inf
             if high <= 1.0:
                 raise ValueError(
-                    f"The depth spec ends at {high:g}, so it may be normalised to [0, 1]. Set "
-                    "normalised=True and sensor=DepthSensor(z_min, z_max), or use a spec in metres."
+                    f"The maximum of the depth spec is {high:g}, so depth may be normalised to "
+                    "[0, 1]. Set normalised=True and sensor=DepthSensor(z_min, z_max), or use a "
+                    "spec in metres."
                 )
         return observation_spec
 
@@ -132,7 +133,7 @@ class CorruptObservation(Transform):
             readings = depth[depth.isfinite() & (depth > 0)]
             if readings.numel() and readings.max() <= 1.0:
                 raise ValueError(
-                    f"No depth of these data exceeds {float(readings.max()):.3g}, so it may be "
+                    f"The maximum depth of the data is {float(readings.max()):.3g}, so it may be "
                     "normalised to [0, 1]. Set normalised=True and sensor=DepthSensor(z_min, "
                     "z_max), or normalised=False for depth in metres."
                 )
@@ -173,7 +174,7 @@ class CorruptObservation(Transform):
         return data
 
     def _uses_torch(self, stored: dict[str, torch.Tensor]) -> bool:
-        """Return whether the frames are corrupted with torch on their device."""
+        """Return whether torch corrupts the frames. Otherwise numpy corrupts them on the CPU."""
         if isinstance(self.schedule, Corruption) and family(self.schedule.name):
             return False
         if self._backend is not None:
@@ -230,16 +231,15 @@ class EpisodeCounter(Transform):
     """Add the entries ``episode`` and ``frame`` (int64 [*batch, 1]) to an environment that has
     neither.
 
-    ``episode`` counts the runs of episodes, and ``frame`` counts the steps since the reset. If the
-    batch has n rows, row i runs the episodes i, i + n, i + 2 * n and so on. A partial reset
+    ``episode`` is the number of the episode, and ``frame`` is the number of steps since the reset.
+    If the batch has n rows, row i runs the episodes i, i + n, i + 2 * n and so on. A partial reset
     advances only the rows in its mask, so the numbers of a row do not depend on the other rows.
 
     Args:
         worker: Index of this environment if environments run in several processes. The rows of all
             processes are numbered as one batch.
-        workers: Number of processes that run environments. None means 1; a warning is then given in
-            a child process, because environments in its sibling processes would get the same
-            corruptions.
+        workers: Number of processes that run environments. None means 1. In a child process,
+            None also causes a warning, because all processes would get the same corruptions.
 
     Raises:
         ValueError: If ``worker`` is not between 0 and ``workers`` - 1.

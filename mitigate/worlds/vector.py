@@ -39,7 +39,7 @@ class CorruptVectorObservation(VectorWrapper):
     one environment do not depend on the others. The random numbers depend on the episode number, as
     with ``EpisodeCounter`` of ``mitigate.worlds.transforms``. A reset with a seed restarts the
     episode numbers. A reset with ``options={"reset_mask": mask}`` starts new episodes only in the
-    environments of the mask.
+    environments that the mask selects.
 
     Args:
         env: The vector environment.
@@ -94,7 +94,7 @@ class CorruptVectorObservation(VectorWrapper):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """Start the next episode in all environments, or in the environments of the reset mask."""
+        """Start the next episode in all environments, or in those that the reset mask selects."""
         observations, info = self.env.reset(seed=seed, options=options)
         if seed is not None:
             self._resets.zero_()

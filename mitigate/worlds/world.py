@@ -419,7 +419,7 @@ class _ExpertView(Expert):
 
 
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
-    """Check that depth values are plausible if they are in metres.
+    """Raise ValueError if depth values are too large to be in metres.
 
     Args:
         depth: Depth as float32 of any shape, where 0 means missing.

@@ -35,9 +35,9 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
 
     The observation is an RGB frame (``Box`` uint8 [H, W, 3] or [V, H, W, 3]), a depth frame
     (``Box`` float32 [H, W], [H, W, 1] or [V, H, W, 1]), or a ``Dict`` that contains one or both.
-    The wrapper does not change spaces, dtypes, the order of entries, or other entries. Apply this
-    wrapper before frames are stacked, transposed or converted to float. In a vector environment,
-    wrap each environment separately.
+    The wrapper changes only the content of frames. Spaces, dtypes, other entries and their order
+    stay the same. Apply this wrapper before frames are stacked, transposed or converted to float.
+    In a vector environment, wrap each environment separately.
 
     Episodes are named by the seed of ``reset(seed=n)`` and the number of resets since then: "n-0",
     "n-1", ... ``frame`` is the number of steps since the reset. The corruption of a frame depends
@@ -67,9 +67,9 @@ class CorruptObservation(gymnasium.ObservationWrapper, gymnasium.utils.RecordCon
         key: Random key of the last frame.
 
     Raises:
-        ValueError: If the observation space has no such frames, or lacks the modality of a
-            corruption in the schedule, or its bounds are smaller than the range of the depth
-            sensor.
+        ValueError: If the observation space has no frames of these formats, or lacks the modality
+            of a corruption in the schedule. If the bounds of depth frames are smaller than the
+            range of the depth sensor.
     """
 
     def __init__(

@@ -305,7 +305,7 @@ def test_gym_world_requires_the_unit_of_normalised_depth():
     from mitigate.worlds.gym import GymWorld
 
     near = Deep(np.float32(0.25), most=1.0)
-    with pytest.raises(ValueError, match=r"'depth' ends at 1, .*normalised.*Set unit="):
+    with pytest.raises(ValueError, match=r"'depth' is 1, .*normalised.*Set unit="):
         GymWorld(near)
     for unit in (10, 1.0):
         world = GymWorld(near, unit=unit)

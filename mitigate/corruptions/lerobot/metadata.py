@@ -189,7 +189,7 @@ def read_tasks(path: Path) -> dict[int, str]:
             for number, task in zip(integers(batch, "task_index", path), values, strict=True):
                 if not isinstance(task, str) or len(task) > MAX_TASK:
                     raise ValueError(
-                        f"{path}: task {number} must be a text of at most {MAX_TASK} characters, "
+                        f"{path}: task {number} must be a string of at most {MAX_TASK} characters, "
                         f"got {short(task)}. {FIX}"
                     )
                 tasks[number] = task

@@ -152,7 +152,7 @@ class LeaderboardEntry:
         return Path(path)
 
     def __str__(self) -> str:
-        """Return a text with one line per score; success rates are in %."""
+        """Return a string with one line per score; success rates are in %."""
         size = f"{counted(self.episodes, 'episode')} of {self.split}"
         lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
         for title, numbers in self.scores.items():

@@ -1,4 +1,7 @@
-"""Parse the values of ``adapt=``, such as "norm", "tent:never" or "norm+tent". Needs no torch."""
+"""Parse the values of ``adapt=``, such as "norm", "tent:never" or "norm+tent".
+
+This module does not need torch.
+"""
 
 from __future__ import annotations
 

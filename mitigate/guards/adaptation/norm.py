@@ -59,7 +59,7 @@ class Norm(Adaptation):
             yield
 
     def _update(self, layer: Any, inputs: tuple[Tensor, ...]) -> None:
-        # a guard that computes gradients runs the decision again; that input is not counted twice
+        # Tent runs the network a second time with gradients; do not count the same input twice
         if torch.is_grad_enabled():
             return
         values = inputs[0].detach().float().movedim(1, 0).flatten(1)

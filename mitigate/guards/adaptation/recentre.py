@@ -36,8 +36,8 @@ class Recentre(Adaptation):
         modules: names of the modules whose outputs are shifted. The modules belong to the agent, or
             to the network of a policy. The default is the agent's image encoders, or the last
             convolution of a policy.
-        prior: weight of the clean mean in the mean of the episode, as a number of observations. A
-            larger value shifts the first frames less.
+        prior: number of observations that the clean mean counts as when it is averaged with the
+            observations of the episode. A larger value shifts the first frames less.
         reset: see :class:`Adaptation`.
 
     Attributes:

@@ -73,8 +73,8 @@ class Tent(Adaptation):
     @contextmanager
     def adapting(self, agent: Any) -> Iterator[None]:
         adapted = self.tensors(agent)
-        # All weights require gradients, because GroupNorm's backward pass may crash the process.
-        # It does so for channels_last input that requires no gradient (torch 2.13, CPU).
+        # All weights require gradients: otherwise GroupNorm's backward pass may crash the process.
+        # This happens for channels_last input that requires no gradient (torch 2.13, CPU).
         weights = dict.fromkeys(
             parameter
             for module in modules_of(agent)

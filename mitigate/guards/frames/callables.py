@@ -1,6 +1,7 @@
 """Use a user's callable as a restorer, with ``restore=module:callable``.
 
-The callable may be a network for depth completion or denoising, or a filter. Needs no torch.
+The callable may be a network for depth completion or denoising, or a filter. This module does
+not need torch.
 
 If the callable is a class, it is instantiated once per process, without arguments. Any other object
 is used directly. If the resulting object is a :class:`~mitigate.guards.guard.Guard`, it is used as
@@ -112,7 +113,7 @@ class FramesCallable(Guard):
     def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
         """Raise ValueError if ``results`` has an entry that is not in ``frames``.
 
-        A result with another shape or dtype than the frame is also an error.
+        A result whose shape or dtype differs from the frame's is also an error.
         """
         if not isinstance(results, Mapping):
             self._reject(f"returned a {type(results).__name__}, not a dict")
@@ -167,7 +168,7 @@ def open_callable(choice: str) -> Guard:
 
 
 def _form(frame: Any) -> str:
-    """Return a text with the dtype and shape of an array, or with the type of another object."""
+    """Describe an array by its dtype and shape, or another object by its type."""
     if isinstance(frame, np.ndarray):
         return f"{frame.dtype} {list(frame.shape)}"
     return f"a {type(frame).__name__}"
@@ -177,7 +178,7 @@ def _form(frame: Any) -> str:
 def _source_sha(module: ModuleType) -> str:
     """Return the sha256 of a module's source file, or "" if there is no such file.
 
-    The file is not read again, because a later edit does not change the loaded module.
+    The hash is cached, because later edits of the file do not affect the loaded module.
     """
     try:
         file = inspect.getsourcefile(module)

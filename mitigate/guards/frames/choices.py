@@ -2,7 +2,7 @@
 
 A value is the folder of a restorer, ``hold`` (``hold.py``), or a user's ``module:callable``
 (``callables.py``). The suffixes in ``FOLDER:rgb`` and ``FOLDER:depth`` restrict the restorer to one
-sensor. Needs no torch.
+sensor. This module does not need torch.
 """
 
 from __future__ import annotations
@@ -40,10 +40,10 @@ def parted(choice: str) -> tuple[str, str | None]:
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``, or None if ``choice`` is a folder.
+    """Return the parts of ``module:callable``, or None if ``choice`` names a folder.
 
-    ``choice`` is a folder if a path with this name exists, or if the part after the colon is a
-    sensor, as in ``FOLDER:rgb``.
+    ``choice`` names a folder if this path exists, or if it has the form ``FOLDER:SENSOR``, as in
+    ``FOLDER:rgb``.
     """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():

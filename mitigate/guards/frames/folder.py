@@ -109,7 +109,7 @@ def fill(restorer: Restorer, folder: str | Path) -> None:
     if not folders.is_listed(file):
         raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
     wrong = folders.problem(file)
-    # The error of load_weights would advise the user to delete the checksum, which is required.
+    # load_weights would report this too, but would suggest deleting the checksum, which is required
     if wrong:
         raise ValueError(f"{file} is truncated or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)

@@ -1,7 +1,7 @@
 """Replace empty frames by the last frame that was not empty, with ``restore=hold``.
 
 A receiver without this guard passes a lost frame on as black pixels or as depth without a reading,
-which an agent takes for a dark room or an open space. Needs no torch.
+which an agent takes for a dark room or an open space. This module does not need torch.
 """
 
 from __future__ import annotations

@@ -18,7 +18,7 @@ from mitigate.core.observation import HFOV_DEGREES, VIEW_STEP_DEGREES, VIEWS
 
 # a 90-degree view overlaps with the views that are 1 and 2 steps (30 and 60 degrees) away
 STEPS = (1, 2)
-# if the squared trusts of the neighbours sum to this, their mean has the confidence 1/2 (heuristic)
+# sum of the neighbours' squared weights at which their mean has a confidence of 1/2 (heuristic)
 SURE = 0.05
 # weight of the coarser level if a hole is filled from the pixels around it (heuristic)
 FAINT = 0.02

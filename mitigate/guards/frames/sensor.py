@@ -1,10 +1,15 @@
 """Restore the frames of one sensor: detect corruption, correct pixels and fill lost pixels.
 
+The value x of a pixel is restored as follows, separately for each colour:
+
     low, high = smallest and largest value in the other views of the panorama
-    lost, gain, bias = U-Net(x, low - x, high - x) zero-initialised: at first nothing changes
-    trust = sigmoid(-lost - alone * distance of x outside [low, high]), per colour
-    y = x gain + bias                              corrects light, blur, noise
-    out = y where trusted, else from other views of the panorama, else from pixels around
+    lost, gain, bias = U-Net(x, low - x, high - x)
+    trust = sigmoid(-lost - alone * distance of x from [low, high])
+    y = gain * x + bias
+    out = y where trusted, else the other views of the panorama, else the surrounding pixels
+
+``y`` corrects light, blur and noise. The U-Net is zero-initialised, so ``y`` equals ``x`` at the
+start of training.
 
 If frames are larger than the working size, the U-Net processes reduced frames and its output maps
 are enlarged. ``x`` and the other views keep their full size, so that detail is preserved.
@@ -29,8 +34,8 @@ TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of th
 # About 99 % of clean pixels differ from the other views by less than the margin.
 # On 20 panoramas of val_seen, the share was 98.6 % for RGB and 99.2 % for depth.
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-# This is the initial value of a trained weight (heuristic).
-# The trust logit of a pixel decreases by this weight times the pixel's contradiction.
+# A pixel is trusted less if it lies outside the range of values in the other views.
+# This is the initial value of the trained weight of this effect (heuristic).
 ALONE = 2.0
 LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
@@ -38,15 +43,15 @@ SUREST = 6.0
 # The limits for depth are heuristic, and depth frames of the apartments stay far below both.
 # The maximum depth of the apartments is 10 m.
 # In 600 panoramas, at most 1.3 % of a view was farther away.
-# In corrupted time steps, the median change of depth by restoration was at most 0.4 m.
+# In each corrupted time step, restoration changed half of the pixels by at most 0.4 m.
 # This was measured on 400 single views and 200 panoramas with all depth corruptions.
 # The only exceptions were single views in which every pixel had a depth of exactly 10 m.
 BEYOND = 0.1  # maximum fraction of pixels beyond ``far``; training contained no such pixels
 # Depth is not changed if over half of the pixels would change by more than this.
 # The value is a fraction of the range.
 MOVED = 0.1
-# These are limits of the log gain, so the gain is 0.14 to 37.
-# They are heuristic: low light reduces brightness to 0.03.
+# limits of the logarithm of the gain, so the gain is 0.14 to 37 (heuristic)
+# Low light reduces brightness to 0.03, and a gain of 33 reverses this.
 GAINS = (-2.0, 3.6)
 
 
@@ -61,7 +66,7 @@ class SensorRestorer(nn.Module):
         far: depth in metres that is scaled to 1.
 
     Attributes:
-        threshold: a frame is restored if the gate's logit is above this value, which training sets.
+        threshold: a frame is restored if the gate's logit is above this value. Training sets it.
     """
 
     threshold: Tensor
@@ -123,20 +128,23 @@ class SensorRestorer(nn.Module):
 
         Returns:
             Three values. The first one contains the feature maps of the U-Net. The second one is
-            the contradiction of each pixel with the other views, float [n, c, h, w]. It is 0 for
-            distances up to ``MARGIN``, and grows by 1 for each further ``MARGIN``. The third one is
-            the logit of the gate for each time step.
+            how far each pixel is outside the range of the other views, float [n, c, h, w]. It is 0
+            for distances up to ``MARGIN``, and grows by 1 for each further ``MARGIN``. The third
+            one is the logit of the gate for each time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
         return maps, outside, self.gate(maps.stats, texture(x, valid), views)
 
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
-        """Return the input of the U-Net, and the contradiction of each pixel with the other views.
+        """Return the input of the U-Net, and how far pixels are outside the other views' range.
 
-        The input consists of the frame, the mask of valid pixels (only for depth), the differences
-        from the smallest and the largest value in the other views, and a mask of the pixels for
-        which another view has a valid pixel.
+        The input consists of the following channels:
+
+        - the frame;
+        - the mask of valid pixels (only for depth);
+        - the differences from the smallest and the largest value in the other views;
+        - the mask of the pixels for which another view has a valid pixel.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
@@ -218,7 +226,7 @@ class SensorRestorer(nn.Module):
         return near
 
     def unscaled(self, out: Tensor) -> Tensor:
-        """Convert values [n, c, H, W] to frames [n, H, W, c]: uint8 colours, or metres above 0."""
+        """Convert values [n, c, H, W] to frames [n, H, W, c]: uint8 RGB, or depth above 0 m."""
         out = out.clamp(0, 1).permute(0, 2, 3, 1)
         if self.sensor == RGB:
             return (out * self.range).round().to(torch.uint8)

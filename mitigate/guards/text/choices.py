@@ -83,7 +83,7 @@ def kind(folder: str | Path) -> str | None:
 
 
 def label(choice: str) -> str:
-    """Return the label of a safeguard for column names.
+    """Return the label that identifies a safeguard in column names.
 
     The label is the safeguard's name, the name of its folder with a hash, or the host and the model
     of an endpoint.
@@ -101,7 +101,7 @@ def label(choice: str) -> str:
 
 
 def identity(choice: str) -> str:
-    """Return the label of a safeguard with a hash of its version and weights.
+    """Return a safeguard's label, followed by a hash of its version and weights.
 
     The weights of an endpoint are unknown, so they are not hashed. "none" has no hash.
     """

@@ -170,7 +170,7 @@ class Classifier:
         return self.segmenter.attack(features(text, clauses, self), bonus)
 
     def styled(self, text: str) -> bool:
-        """Return whether a sentence is in an unusual style, and not worded as a plain route."""
+        """Return whether the style of a sentence differs from plain route instructions."""
         index, value = weighted(terms(decode(text, self.known), text, False), self.idf)
         norm = math.sqrt(float(value @ value)) + 1e-6
         return float(self.arrays["style"][index] @ value) / norm + self.style_bias > 0

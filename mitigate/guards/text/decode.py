@@ -43,15 +43,14 @@ _MORSE_CODES = (
 )
 _MORSE_LETTERS = dict(zip(_MORSE_CODES.split(), "abcdefghijklmnopqrstuvwxyz", strict=True))
 _JOINERS = "\u200c\u200d"  # invisible joiners, which are needed in Indic scripts and in Persian
-# ENGLISH and HIDDEN are fractions of the letters of a text that belong to known words.
-# A text is deciphered only if its fraction is at most HIDDEN.
-# A deciphered text is used only if its fraction is at least ENGLISH.
+# A text is deciphered only if at most the fraction HIDDEN of its letters is in known words.
+# The result is used only if at least the fraction ENGLISH of its letters is in known words.
 ENGLISH, HIDDEN = 0.6, 0.45
 
 
 @dataclass(frozen=True)
 class Decoded:
-    """The readable copy of a text.
+    """A text after its hidden words were decoded.
 
     ``marks`` names the methods by which words were hidden, such as "code" or "leet".
     """
@@ -123,9 +122,9 @@ def _letters(text: str, marks: set[str]) -> str:
 
 
 def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
-    """Decode a match of a code's pattern.
+    """Decode the encoded part of a text that a regular expression matched.
 
-    If the result does not consist mostly of letters, return the code unchanged.
+    If the result does not consist mostly of letters, return this part unchanged.
     """
     coded = match.group()
     try:

@@ -18,10 +18,10 @@ from mitigate.guards.text.pieces import Piece, without
 
 # if more than this fraction of the letters is not Latin, the route may be in a non-Latin script
 FOREIGN = 0.3
-ROUTE = -1.0  # English text whose log odds of an attack are below this is certainly a route
+ROUTE = -1.0  # English text is treated as a route if its log odds of an attack are below this
 ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
-# The regression may give the detected span lower log odds than this.
-# The difference is then subtracted from the networks' score.
+# The networks' score is reduced if the regression gives the detected span log odds below this.
+# It is reduced by the difference between this value and the regression's log odds.
 # Without this second opinion, three times as many R2R-CE routes were harmed.
 SURE = 1.0
 LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remained in the text
@@ -65,9 +65,10 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
     """Return the pieces of a text that are attacks.
 
-    At most one piece is returned, except for a text that has non-Latin parts. All English attacks
-    in such a text are returned if more than the fraction ``FOREIGN`` of its letters is not Latin.
-    They are also returned if the Latin parts are not certainly a route.
+    At most one piece is returned, except for a text with non-Latin parts. For such a text, all
+    English attacks are returned if the route may be in the non-Latin parts. This is assumed if more
+    than the fraction ``FOREIGN`` of the letters is not Latin, or if the log odds of an attack in
+    the Latin parts are above ``ROUTE``.
     """
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]

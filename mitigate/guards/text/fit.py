@@ -3,11 +3,10 @@
 The command needs a checkout of the repository, because it reads the texts in
 ``tools/safeguard/data``. First, two logistic regressions are trained: one predicts whether a
 sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then
-``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. The
-training texts of the networks are honest texts to which attacks were added. The regression scores
-of a training text come from regressions that were trained without the text's fold. Otherwise, the
-scores would be more accurate than the scores of new texts, and the networks would rely on them too
-much.
+``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. They
+are trained on benign texts, most of which contain an inserted attack. The regression scores of a
+training text come from regressions that were trained without the text's fold. Otherwise, the scores
+would be more accurate than the scores of new texts, and the networks would rely on them too much.
 """
 
 from __future__ import annotations
@@ -46,7 +45,7 @@ WORDS = 6000
 BACKWARDS = 50  # a word counts as written backwards if its reversal is this many times as frequent
 RIDGE = 2.0  # weight of the L2 penalty
 STEPS, STYLE_STEPS = 90, 50
-FOLD_STEPS = 40  # number of training steps of the regressions for the folds
+FOLD_STEPS = 40  # training steps of the attack regression that leaves out one fold
 NETWORKS = 2  # number of networks; their scores are averaged
 Weights = tuple[np.ndarray, float]
 Pair = tuple[Weights, Weights]
@@ -72,7 +71,7 @@ class Regressions:
         pair = self.complete if fold is None else self.folds[fold]
         (alone, bias), (style, style_bias) = pair
         config = {"words": self.words, "bias": bias, "style_bias": style_bias}
-        # a term that occurs only in the fold has the weight 0, so it is treated as an unknown term
+        # terms that occur only in the left-out fold have the weight 0 and are treated as unknown
         idf = np.where(alone == 0, 0, self.idf)
         return Classifier(
             config, {"idf": idf, "alone": alone, "style": style} | dict(network or {})
@@ -182,7 +181,7 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
 def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
     """Return the TF-IDF matrix of the terms, with rows normalised to unit norm.
 
-    Terms with an IDF of 0, which occur only once, are omitted.
+    Terms that occur only once are omitted; their entry in ``idf`` is 0.
     """
     rows = []
     for terms in term_counts:

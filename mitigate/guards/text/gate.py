@@ -21,7 +21,7 @@ KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
 LONG = 3000  # texts longer than this are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
 LENGTH = 200
-TIMES = 4  # a longer rewrite may have up to this many times the length of the original (heuristic)
+TIMES = 4  # above LENGTH, maximum ratio of a rewrite's length to the original's length (heuristic)
 LONGER = 3  # a rewrite may have at most this many more words than the original
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")

@@ -29,7 +29,8 @@ CACHE = "runs/endpoint-answers.sqlite"
 ENDPOINT_SECONDS = 120.0
 SECONDS = 20.0  # time limit of the language model in seconds per instruction
 REMEMBERED = 4096  # maximum number of texts whose decisions are cached
-# words per passage that is rewritten at once, about a sentence; with 30, the model lost clauses
+# maximum number of words in a passage of several sentences, which the model rewrites together
+# With 30 words, the model omitted clauses.
 PASSAGE = 12
 # a text with more characters is not rewritten (heuristic; 600 words have about 3,300)
 TOO_LARGE = 6000
@@ -51,8 +52,8 @@ class Decision:
 
     ``route`` is "clean" if the instruction is unchanged, "classifier" if it was changed without a
     language model, "model" if the model rewrote it, and "fallback" if no answer of the model was
-    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is this instruction's
-    part of the computing time.
+    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is the average computing
+    time per instruction of the batch.
     """
 
     original: str

@@ -134,7 +134,7 @@ def _landmarks_kept(repair: Repair) -> tuple[int, int]:
 def pairs(text: str) -> list[tuple[str, str]]:
     """Return the pairs of adjacent words.
 
-    A text of one word gives one pair of this word and "".
+    For a text of one word, return the single pair (word, "").
     """
     tokens = words_of(text)
     return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]

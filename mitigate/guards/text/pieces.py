@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.language.words import bag
 
-# This matches blocks such as tags and comments, which no route contains; each block is one piece.
+# HTML tags, code comments and similar blocks never occur in a route; each block is one piece.
 # The text between most delimiters is limited to 4,000 characters (heuristic).
 # Searches from each opening delimiter to the end of the text would take quadratic time.
 _BLOCK = re.compile(
@@ -143,8 +143,8 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 def _seams(part: str) -> list[tuple[int, int]]:
     """Return the positions inside a sentence where an attack may begin or end without a full stop.
 
-    Such a position is before a word with a capital letter, before an interjection such as "um", or
-    at the start or end of several words in capitals.
+    Such a position is before a capitalised word, before an interjection such as "um", or at the
+    start or end of a sequence of words in capitals.
     """
     cuts = []
     words = list(re.finditer(r"\S+", part))
@@ -176,7 +176,7 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return the script of at least half of the letters: "latin" or "other".
+    """Return "latin" if at least half of the letters are Latin, otherwise "other".
 
     For a text without letters, return "".
     """

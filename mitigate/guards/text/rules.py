@@ -1,4 +1,4 @@
-"""Repair words in capitals and masked words in instructions with rules."""
+"""Use rules to repair instructions with words in capitals or masked words."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from mitigate.guards.text.learning.routes import draw_route
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
 # Words in capitals are converted to lower case only if enough of them are known words.
-# Their number must be at least SHOUTS, and at least the fraction SHOUTED of all words of the text.
+# SHOUTS is the minimum number of such words, and SHOUTED their minimum fraction of all words.
 # A text with only a few words in capitals may quote a sign.
 SHOUTS, SHOUTED = 2, 0.15
 # number of generated routes whose words are counted; this takes about one second per process
@@ -76,8 +76,8 @@ def lower_capitals(text: str, known: frozenset[str]) -> str:
 def fill_masks(text: str) -> str:
     """Replace each sequence of masks in ``text`` by the function word that fits best.
 
-    A mask that seems to hide a noun, a turn or part of a word is kept. A mask that seems to hide an
-    adjective before a noun is removed.
+    A mask is kept if it seems to hide a noun, a turn or part of a word. A mask is removed if it
+    seems to hide an adjective before a noun.
     """
     if not re.search(r"[A-Za-z]", MASK.sub(" ", text)):
         return text

@@ -1,9 +1,9 @@
 """Use small recurrent networks to find the span of clauses that forms an attack.
 
 A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
-the network predicts a score for being part of an attack. For each boundary between clauses, it
-predicts a score for being the start or end of an attack. The score of a span is the sum of the
-scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
+the network predicts a score for whether it is part of an attack. For each boundary between clauses,
+it predicts a score for whether an attack starts or ends there. The score of a span is the sum of
+the scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
 network reads each clause in its context, it does not take an unusual style for an attack. The
 scores of several networks are averaged. Inference needs only numpy;
 :mod:`mitigate.guards.text.learning.segmentation` trains a network.
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 FEATURES = 22  # number of features of a clause
 EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
-# maximum number of characters from a clause back to the last character that is not a space
+# number of characters before a clause in which the last non-space character is searched
 GAP = 80
 # This is added to the score of each boundary inside the text.
 # The reason is that few training texts have an attack inside a route.
@@ -41,11 +41,11 @@ NAMES = (
 def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
     """Return the features of clauses, shape [clauses, FEATURES].
 
-    The first ten features are numbers. Seven features are the log odds of an attack in the clause,
-    in its sentence, in the text up to and including the clause, in the text before it, in the text
-    from the clause on, in the text after it, and in the whole text. One feature is the style score
-    of the clause. Two features are the log word counts of the clause and of the text. The other
-    twelve features are 0 or 1.
+    The first ten features are real numbers, and the other twelve are 0 or 1. Seven features are the
+    log odds of an attack in the clause, in its sentence, in the text up to and including the
+    clause, in the text before it, in the text from the clause on, in the text after it, and in the
+    whole text. One feature is the style score of the clause. Two features are the log word counts
+    of the clause and of the text.
     """
     count = len(clauses)
     products = np.array([clause.product for clause in clauses])

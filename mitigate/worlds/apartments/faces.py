@@ -52,7 +52,7 @@ class FaceBuilder:
     shading.
     """
 
-    # brightness of faces by the axis of their normal, for its negative and its positive direction
+    # axis: (brightness of faces towards its negative side, towards its positive side)
     _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
 
     def __init__(self, apartment: Apartment) -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _FILE = Path(__file__).with_name("templates.json")
 TEMPLATES: dict[str, dict[str, list[str]]] = json.loads(_FILE.read_text(encoding="utf-8"))
-# fraction of turns just after a doorway that training texts mention before the doorway (heuristic)
+# probability that a training text mentions a turn too early, before the doorway (heuristic)
 SAID_BEFORE = 0.25
 # maximum metres between a doorway and a turn that is described together with it (heuristic)
 _BESIDE = 1.6
@@ -31,9 +31,7 @@ _NEAR_PATH = 1.3  # maximum distance in metres from the path to a mentioned land
 
 @dataclass(frozen=True)
 class Event:
-    """An event on a path that an instruction can mention, ``at`` metres from the start of the
-    path.
-    """
+    """An event that an instruction can mention, ``at`` metres from the start of the path."""
 
     at: float
     kind: str

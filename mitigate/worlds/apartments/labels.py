@@ -32,11 +32,11 @@ YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return which straight paths from a pose are free of obstacles, as float32 [120, 12] with
-    values 0 and 1.
+    """Return a mask that is 1 where the straight path from a pose is free of obstacles.
 
-    The first axis is the angle to the right of the heading; bin ``10 * k + i`` is at ``30 * k - 15
-    + 3 * (i + 0.5)`` degrees. The second axis is the distance in steps of 0.25 m.
+    The mask is float32 [120, 12]. The first axis is the angle to the right of the heading; bin
+    ``10 * k + i`` is at ``30 * k - 15 + 3 * (i + 0.5)`` degrees. The second axis is the distance in
+    steps of 0.25 m.
     """
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
@@ -48,7 +48,7 @@ def ahead(directions: np.ndarray) -> np.ndarray:
     shape is [30, 12], from left to right.
     """
     half = round(ANGLES * HFOV_DEGREES / 720)
-    # number of bins from bin 0 to the heading, which is half the angle between neighbouring views
+    # The heading is this many bins to the right of the left edge of bin 0.
     middle = round(ANGLES / VIEWS / 2)
     return np.roll(directions, half - middle, 0)[: 2 * half]
 

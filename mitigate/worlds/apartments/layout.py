@@ -85,8 +85,10 @@ class Door:
     rooms: tuple[int, int]
 
     def area(self, across: float, along: float) -> Rect:
-        """Return the rectangle that extends ``across`` metres to both sides of the wall and
-        ``along`` metres to both sides of the centre.
+        """Return a rectangle around the centre of the doorway.
+
+        It extends ``across`` metres to each side of the wall, and ``along`` metres in both
+        directions along the wall.
         """
         dx, dy = (across, along) if self.axis == 0 else (along, across)
         return self.x - dx, self.y - dy, self.x + dx, self.y + dy

@@ -12,7 +12,7 @@ from scipy.sparse.csgraph import dijkstra
 
 CELL = 0.1  # width of a grid cell in metres
 RADIUS = 0.18  # radius of the agent in metres (0.1 to 0.2 for the LoCoBot-like agent of VLN-CE)
-# number of cached graphs (heuristic); a graph takes half a megabyte, and 1.3 ms to build
+# number of cached graphs (heuristic); a graph uses 0.5 MB, and building it takes 1.3 ms
 GRAPHS = 32
 # distance in metres between the points of a straight move that are checked for collisions
 _SAMPLE = 0.04
@@ -21,8 +21,8 @@ _SAMPLE = 0.04
 class FreeSpace:
     """The grid cells, ``CELL`` metres wide, in which the centre of an agent may be.
 
-    ``free`` is a bool array ``[ny, nx]``. Cell (i, j) covers the x range from j * CELL to (j + 1) *
-    CELL, and y correspondingly with i.
+    ``free`` is a bool array ``[ny, nx]``. Cell (i, j) covers x from j * CELL to (j + 1) * CELL,
+    and y from i * CELL to (i + 1) * CELL.
     """
 
     def __init__(self, blocked: np.ndarray) -> None:

@@ -49,7 +49,7 @@ _NEAR = 0.1
 
 
 def _panda() -> Any:
-    # an error in the first import would end the process, so it is not interrupted (panda3d 1.10.16)
+    # signals are delayed, because an error in the first import ends the process (panda3d 1.10.16)
     with uninterrupted():
         from panda3d import core
 

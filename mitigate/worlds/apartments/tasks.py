@@ -30,7 +30,7 @@ from mitigate.worlds.episodes import (
 )
 
 # R2R-CE uses 3.0 m for paths of 10 m.
-# This value is scaled to the shorter paths in apartments (docs/base-agent.md).
+# This value is smaller, because paths in apartments are shorter (docs/base-agent.md).
 SUCCESS_METRES = 2.0
 SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance from start to goal, in metres
 TASKS = ("vln", "ogn")
@@ -128,10 +128,10 @@ class DrawnEpisodes:
     ogn_share: float = OGN_SHARE
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Sample an episode with a newly generated instruction from some of the layouts: they are
-        split into ``count`` parts, and ``share`` = (index, count) selects one part.
+        """Sample an episode with a newly generated instruction.
 
-        Each layout has ``_POOL`` different paths.
+        The layouts are split into ``count`` parts, and ``share`` = (index, count) selects the part
+        to sample from. Each layout has ``_POOL`` different paths.
         """
         seeds = share_of(range(self.layouts), *share)
         seed = seeds[int(rng.integers(len(seeds)))]

@@ -64,7 +64,7 @@ class ApartmentsWorld(World):
         self.views = views
         self._rule = rule
         self.rule = str(RULES[rule])
-        # rows of older versions have distances to the goal itself, so their rule text must differ
+        # older rows hold distances to the goal itself, so the rule text of new rows must differ
         if RULES[rule].view_points:
             self.rule += ", as are all distances"
         self.sensors = cameras(size, views)
@@ -280,7 +280,7 @@ class ApartmentsWorld(World):
 
 
 class Labels(Mapping[str, np.ndarray]):
-    """The labels of a pose. Each label is computed when it is read.
+    """Labels of one pose, such as the visible objects. Each label is computed when it is read.
 
     Args:
         apartment: The apartment.

@@ -5,7 +5,7 @@ are images (``sensor_msgs`` Image and CompressedImage), ``CameraInfo`` and poses
 (``nav_msgs/Odometry``, ``geometry_msgs/PoseStamped`` and ``PoseWithCovarianceStamped``). Poses use
 the axes of REP 103: x forward, y left, z up. Times are read from the message headers. If messages
 have no headers, the times of receipt are used. The instruction may be in a text file next to the
-bag, which has the name of the bag with the suffix ``.txt``.
+bag. The name of this file is the name of the bag with the suffix ``.txt``.
 """
 
 from __future__ import annotations
@@ -186,7 +186,7 @@ class Bag(Source):
 
     @contextmanager
     def _explained(self) -> Iterator[None]:
-        """Convert errors that the content of the bag causes to a ValueError that names the bag."""
+        """Turn errors caused by the content of the bag into a ValueError that names the bag."""
         try:
             yield
         except OSError:
@@ -221,8 +221,8 @@ class Bag(Source):
         Args:
             reader: The open reader.
             names: Keys of ``self.topics``.
-            decode: Indices of the messages to decode for each name. All messages are decoded for
-                names that have no entry.
+            decode: Indices of the messages to decode for each name. For a name that has no entry,
+                all messages are decoded.
 
         Yields:
             The name, the two timestamps in seconds (from the header, and on receipt), and the

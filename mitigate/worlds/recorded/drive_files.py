@@ -63,7 +63,8 @@ class Frames(Source):
         kind = self.cameras[camera].kind
         if (frame.shape[-1] == 3) != (kind == RGB):
             raise ValueError(
-                f"{path} must be a {kind} frame, like the others of camera {camera!r}. Replace it."
+                f"{path} must be a {kind} frame, like the other frames of camera {camera!r}. "
+                "Replace it."
             )
         if kind == RGB:
             return frame

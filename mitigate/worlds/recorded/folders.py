@@ -102,7 +102,7 @@ def _read_episode(
     instruction = episode.get("text") or episode.get("category") or ""
     if not isinstance(instruction, str):
         raise ValueError(
-            f"{folder / EPISODE}: the instruction must be a text, got {short(instruction)}."
+            f"{folder / EPISODE}: the instruction must be a string, got {short(instruction)}."
         )
     file = recording / RECORDING
     unit = _number_or_none(read_object(file, FIX), "unit", file) or 0.001
@@ -160,7 +160,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """Return the number under a key of a JSON object, or None if it is missing or null.
+    """Return the number that ``values`` holds for ``key``, or None if it is missing or null.
 
     Raises:
         ValueError: If the value is not a number, or it is too large.

@@ -66,8 +66,8 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
     Raises:
         FileNotFoundError: If a file is missing.
         ValueError: If the dataset is damaged, or if an option names an unknown camera or episode.
-            Also if no camera or several cameras can be read, or if an episode is too long or has an
-            unknown task.
+            If no camera can be read, or if several cameras of one kind can be read. If an episode
+            is too long or has an unknown task.
     """
     dataset = open_dataset(path)
     chosen = []
@@ -89,7 +89,7 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
         name = f"{path.resolve().name}/episode-{episode.index:06d}"
         if episode.length > MAX_INSTANTS:
             raise ValueError(
-                f"{name} must have at most {MAX_INSTANTS} frames. Leave it out (episodes=)."
+                f"{name} must have at most {MAX_INSTANTS} frames. Exclude this episode (episodes=)."
             )
         if episode.data not in signals:
             signals = {episode.data: dataset.read_signals(episode.data)}

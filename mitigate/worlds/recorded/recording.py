@@ -50,7 +50,7 @@ MIN_MOVE = 0.05  # in metres; the odometry of a robot that stands still varies b
 # if the last step is shorter than this fraction of ``Step``, it is merged into the previous step
 MIN_LAST_STEP = 0.5
 MAX_FRAME_BYTES = 1 << 32  # maximum number of bytes that all frames of a drive may take
-# maximum fraction of moving steps whose direction may differ from the heading without a warning
+# a warning is given if more than this fraction of moving steps goes backwards or sideways
 MAX_OFF_HEADING = 1 / 3
 MIN_MOVING_STEPS = 5  # minimum number of moving steps for a warning about the heading
 MIN_READABLE = 0.5  # minimum fraction of steps whose images are undamaged
@@ -114,7 +114,7 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
         The drive with its frames in memory. Steps with a damaged image are left out.
 
     Raises:
-        ValueError: If the source lacks a camera, is too large, or most of its images are damaged.
+        ValueError: If the source lacks a camera or is too large, or most of its images are damaged.
     """
     if source.stepped and step != Step():
         raise ValueError(
@@ -173,10 +173,10 @@ def _read_views(
     """Read the square views at the chosen time steps. :func:`load` describes the arguments.
 
     Returns:
-        Four values: frames, readable, shapes and tangent. The frames are those of the readable
-        steps, in the format of :class:`Recording`. A chosen step is readable (bool [T]) if all its
-        images could be read. The shapes are the height and width of the images of each camera. The
-        tangent is that of half the field of view of the square views.
+        The tuple (frames, readable, shapes, tangent). ``frames`` contains the frames of the
+        readable steps in the format of :class:`Recording`. ``readable`` (bool [T]) states whether
+        all images of a chosen step could be read. ``shapes`` contains the height and width of each
+        camera's images. ``tangent`` is the tangent of half the field of view of the square views.
     """
     views = 1 + max(view for _, view in view_cameras)
     shape = (len(chosen), *([views] if views > 1 else []), size, size)

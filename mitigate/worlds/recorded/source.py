@@ -17,7 +17,7 @@ import numpy as np
 from mitigate.core.observation import POSE, VIEW_STEP_DEGREES
 
 # Heuristic limits.
-# maximum time in seconds between the frames of one time step, which is one frame at 10 Hz
+# maximum time in seconds between frames of one time step (the frame period of a 10 Hz camera)
 MAX_FRAME_GAP = 0.1
 # maximum time in seconds between recorded poses for which poses in between are interpolated
 MAX_POSE_GAP = 2.0
@@ -128,7 +128,7 @@ class Source:
         dropped: Number of time steps that were skipped because no pose or no frame of the other
             camera was near in time.
         signals: Recorded numbers by name, such as "action": float64 [N, size].
-        formats: Descriptions of where and how the frames of each camera and "pose" are stored.
+        formats: Description of where and how the data is stored, for each camera and for "pose".
             Examples are "/odom" and "16-bit PNG, 0.001 metres per count (assumed)".
         damaged: Descriptions of the damaged images that ``frames`` has found so far.
     """
@@ -159,8 +159,7 @@ class Source:
         image.
 
         Raises:
-            ValueError: If a frame is damaged in a kind of recording that must not contain damaged
-                frames.
+            ValueError: If a frame is damaged and this kind of source does not allow damaged frames.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
@@ -278,7 +277,7 @@ def match_times(
     times = np.sort(next(iter(stamps.values())))
     complete = np.ones(len(times), bool)
     frames = {}
-    distances = []  # from each time step to the nearest frame or pose
+    distances = []  # typical time differences as texts for the error message
     for name, seconds in stamps.items():
         order = np.argsort(seconds, kind="stable")
         nearest, distance = find_nearest(times, np.sort(seconds))
@@ -294,10 +293,10 @@ def match_times(
     if not complete.any():
         first = next(iter(stamps))
         raise ValueError(
-            f"{path}: the times of its frames and poses must be within {tolerance:g} s of each "
-            f"other, but those of {names.get(first, first)} typically differ from "
-            f"{' and '.join(distances[1:])}. Correct the clocks, allow more (tolerance=), or leave "
-            "one out."
+            f"{path}: the frames and poses of a time step must be at most {tolerance:g} s apart, "
+            f"but the times of {names.get(first, first)} typically differ from "
+            f"{' and '.join(distances[1:])}. Correct the clocks, increase tolerance=, or omit one "
+            "of these inputs."
         )
     return Instants(
         times[complete],

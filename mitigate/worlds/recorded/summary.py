@@ -30,7 +30,7 @@ class Camera:
         lens: Lens of the camera.
         shape: Height and width of the images in pixels.
         format: Description of where and how the images are stored.
-        border: Fraction of the pixels of a view that the camera does not cover.
+        border: Fraction of a view's pixels that lie outside the camera's field of view.
     """
 
     lens: Lens
@@ -90,7 +90,7 @@ def describe(
 
 
 def _depth_range(depth: np.ndarray, border: float) -> str:
-    """Return a text with the median and the maximum depth, and the fraction of missing readings."""
+    """Describe depth by its median, its maximum and the fraction of missing readings."""
     readings = depth[depth > 0]
     if not len(readings):
         return "no readings"

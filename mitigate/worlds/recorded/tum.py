@@ -82,8 +82,9 @@ def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
 
 
 def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
-    """Read lines of the form "time file time file". The files of the first line determine which
-    column contains RGB and which depth.
+    """Read lines of the form "time file time file".
+
+    The two files in the first line determine which column contains RGB and which contains depth.
 
     Raises:
         ValueError: If a file lies outside the folder, or both files have the same kind.

@@ -47,7 +47,7 @@ class Budget:
         if self.left < 0:
             raise Bomb(
                 f"it unpacks to more than {self.limit >> 20} MiB, over {RATIO} times its size, "
-                "which no drive does. Do not use it, or unpack it yourself"
+                "which no real recording does. Do not use it, or unpack it yourself"
             )
 
 

@@ -31,14 +31,14 @@ def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
         tangent = min(tangent, cx / fx, (width - cx) / fx, cy / fy, (height - cy) / fy)
     if tangent < math.tan(math.radians(MIN_HFOV / 2)):
         raise ValueError(
-            f"crop=true needs cameras that share a square field of view of {MIN_HFOV:g} degrees or "
-            "more around their principal point. Remove crop=true"
+            "crop=true needs cameras that all cover a square of at least "
+            f"{MIN_HFOV:g} x {MIN_HFOV:g} degrees around their principal point. Remove crop=true"
         )
     return tangent
 
 
 def border_fraction(lens: Lens, height: int, width: int, tangent: float = 1.0) -> float:
-    """Return the fraction of the pixels of a square view that an image does not cover."""
+    """Return the fraction of a square view's pixels that lie outside an image."""
     left, right, top, bottom = _edges(lens, height, width, tangent)
     covered_x = max(0.0, min(width, right) - max(0.0, left)) / (right - left)
     covered_y = max(0.0, min(height, bottom) - max(0.0, top)) / (bottom - top)
@@ -62,7 +62,7 @@ def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) 
         frame: uint8 [H, W, 3] or float32 [H, W].
         lens: Lens of the camera that took the frame.
         size: Height and width of the view in pixels.
-        tangent: Tangent of half the field of view of the view, which is 1 for 90 degrees.
+        tangent: Tangent of half the angle that the view covers, which is 1 for 90 degrees.
 
     Returns:
         The view, uint8 [size, size, 3] or float32 [size, size, 1]. If the frame already is such a

@@ -273,7 +273,7 @@ def test_open_recording_warns_about_missing_poses(recorded):
     [
         ("cameras.json", b'{"rgb": {"kind": "thermal"}}', "camera rgb must be rgb or depth"),
         ("cameras.json", b'{"rgb": 90}', "kind of camera rgb must be rgb or depth, got 90"),
-        ("episode.json", b'{"text": ["go"]}', "the instruction must be a text"),
+        ("episode.json", b'{"text": ["go"]}', "the instruction must be a string"),
     ],
 )
 def test_open_recording_rejects_odd_notes_of_an_episode(recorded, file, content, part):

@@ -235,7 +235,7 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
     changes no answer. In "int8", the adapter is never merged.
     """
     card, config = read_adapter(folder)
-    # damaged files raise an error before the base is loaded, which is slow
+    # check the adapter's files first, because loading the base model is slow
     adapter_tensors(folder, config)
     names = {
         "r": "r",

@@ -39,7 +39,7 @@ KINDS = {  # fraction of pairs of each kind (heuristic, chosen on the validation
     "black_box": 0.12,
 }
 MASKS = ("[MASK]", "[MASK]", "[MASK]", "<mask>", "[UNK]")
-# maximum number of characters of a line; a longer line is not a chat (heuristic)
+# maximum number of characters per line of a chat file; longer lines raise an error (heuristic)
 LONGEST_LINE = 1_000_000
 _HELD_OUT = 8  # one of every _HELD_OUT style phrases is excluded from training (heuristic)
 _SENTENCE = re.compile(r"(?<=[.!?])\s+")
@@ -77,8 +77,8 @@ def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0
         if pair is not None:
             return pair
     raise ValueError(
-        "No training pair can be made of these texts: they hold no English instruction that the "
-        "corruptions leave intact. Check the files in recipe.files."
+        "No training pair could be made from these texts: none of 100 sampled texts is an English "
+        "route instruction that the corruption can change. Check the files in recipe.files."
     )
 
 
@@ -212,7 +212,7 @@ def _tells(sentence: str, command: str) -> bool:
 
 
 def _window(sentences: list[str], rng: np.random.Generator) -> str:
-    """Return some consecutive sentences, as the safeguard splits a text into passages."""
+    """Return all sentences or 1 to 3 consecutive ones, similar to the safeguard's passages."""
     if rng.random() < 0.4:
         return " ".join(sentences)
     first = int(rng.integers(len(sentences)))

@@ -1,4 +1,4 @@
-"""Load the training texts of the classifier: attacks and honest texts."""
+"""Load the training texts of the classifier: attacks and benign texts."""
 
 from __future__ import annotations
 
@@ -20,16 +20,16 @@ from mitigate.guards.text.learning.styler import draw_styled
 
 ROUTES = 1200  # number of routes from templates, and also number of routes in random styles
 BLOCK = 20  # in files without named groups, this many consecutive lines form a group
-# Hand-written honest texts that look like attacks have the highest weight in training.
+# Hand-written benign texts that look like attacks have the highest weight in training.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
 
 
 @dataclass(frozen=True)
 class Line:
-    """A training text that is either entirely an attack or entirely honest.
+    """A training text that is either entirely an attack or entirely benign.
 
     ``group`` names the mechanism, the style or the source of the text. Texts of one group resemble
-    each other. ``styled`` states whether an honest text is in an unusual style, or is None if this
+    each other. ``styled`` states whether a benign text is in an unusual style, or is None if this
     is unknown. If an attack surrounds the route, its text contains the placeholder "{route}".
     """
 
@@ -92,7 +92,7 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
 
 
 def read_frames(folder: Path) -> tuple[list[str], list[str]]:
-    """Return short sentences that introduce attacks, and short sentences that close them."""
+    """Return short sentences to put before an attack, and short sentences to put after it."""
     texts = (folder / "banks/frames.txt").read_text(encoding="utf-8").split("\n\n")
     before, after = (part.splitlines() for part in texts)
     return [line for line in before if not line.startswith("# ")], after
@@ -129,7 +129,7 @@ def _text(file: Path) -> list[str]:
 def varied(lines: Sequence[Line]) -> list[Line]:
     """Return all texts, and additional changed copies of some texts.
 
-    In the copies, the writing is careless or the words are hidden.
+    The copies imitate careless writing, such as missing capitals, or hide the words of an attack.
     """
     results = list(lines)
     for number, line in enumerate(lines):
@@ -143,7 +143,7 @@ def varied(lines: Sequence[Line]) -> list[Line]:
             text = text.rstrip(".!")
         elif draw < 0.36 and line.attack and "{route}" not in text:
             text = HIDE[int(rng.integers(len(HIDE)))](text)
-        # honest text may also have digits instead of letters, for example if it was scanned
+        # benign text may also have digits instead of letters, for example if it was scanned
         elif draw < 0.38 and not line.attack:
             text = _leet(text, "o")
         else:

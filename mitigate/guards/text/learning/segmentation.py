@@ -1,8 +1,8 @@
 """Train the network that finds the span of an attack (:mod:`mitigate.guards.text.segmenter`).
 
-The first term of the loss is the negative log likelihood of the correct answer, which is one of all
-spans or "no attack". The second term is a binary cross-entropy for each clause, with a small
-weight.
+The first term of the loss is the negative log likelihood of the correct answer, which is either a
+span of clauses or "no attack". The second term is a binary cross-entropy for each clause, with a
+small weight.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ class Example:
 
 
 class Network(nn.Module):
-    """The network in torch, for training; :class:`Segmenter` computes the same with numpy."""
+    """The torch network, for training. :class:`Segmenter` is the same network in numpy."""
 
     def __init__(self) -> None:
         super().__init__()

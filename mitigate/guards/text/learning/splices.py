@@ -1,4 +1,4 @@
-"""Join attacks to honest texts.
+"""Insert attacks into benign texts.
 
 The resulting texts train the network that finds the span of an attack.
 """
@@ -47,9 +47,9 @@ def splices(
 ) -> Iterator[Splice]:
     """Yield training texts.
 
-    The attack and the honest text that are joined belong to the same fold.
+    An attack is inserted only into a benign text of the same fold.
 
-    ``frames`` contains sentences that introduce attacks, and sentences that close them.
+    ``frames`` contains sentences to put before an attack, and sentences to put after it.
     """
     sources = [_Source([line for line in lines if fold_of(line) == fold]) for fold in range(FOLDS)]
     for number in range(count):
@@ -102,7 +102,7 @@ class _Source:
         """Sample an attack.
 
         To imitate longer attacks, some attacks are joined with a second attack. Some also get a
-        sentence that introduces them, or one that closes them.
+        sentence before or after them.
         """
         line = self._line(self.attacks, rng)
         attack = line.text
@@ -134,7 +134,7 @@ class _Source:
 def _by_group(lines: Sequence[Line]) -> dict[str, list[Line]]:
     """Return the lines by group.
 
-    All numbered groups of one file with honest texts are merged.
+    Groups of benign texts whose names differ only in their number are merged.
     """
     groups: dict[str, list[Line]] = defaultdict(list)
     for line in lines:

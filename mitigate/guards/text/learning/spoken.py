@@ -1,6 +1,6 @@
 """Load hand-written texts in many styles, each paired with a plain version of the same route.
 
-These texts are training and test data. The texts are not part of the package, but in the folder
+These texts are training and test data. They are not in the package, only in the folder
 ``tools/safeguard/data/styles`` of a checkout. A line of a file ``<style>.jsonl`` has the form
 ``{"task": "route", "parts": [[styled, plain], ...]}``. The task may also be "object". Each part
 consists of whole sentences and a plain translation of them. The translation is empty if the part
@@ -73,7 +73,7 @@ def spoken(split: str) -> tuple[Spoken, ...]:
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:
-    """Sample consecutive parts of a random text whose style is used for training.
+    """Sample consecutive parts of a random training text.
 
     Returns these parts in their original style, and their plain translation.
     """
