@@ -1,4 +1,5 @@
-"""Train residual adapters in a frozen agent, so that corrupted frames give the clean features.
+"""Train residual adapters in a frozen agent, so that corrupted frames give the same features as
+clean frames.
 
 Only the adapters are trained; the backbone stays bit-identical. A setting of the agent inserts
 adapters after any module that returns a feature map (``agents/adapters.py``). ``Adapt`` trains any
@@ -24,7 +25,7 @@ from mitigate.training.parts import ADAPTERS, START
 from mitigate.training.poses import Poses
 from mitigate.training.rollouts import Rollouts
 
-# step numbers that training never reaches, so their views are not trained on
+# step numbers beyond the end of training, so that training never uses the same views
 HELD, FRESH = 1_000_000, 2_000_000
 
 
@@ -70,8 +71,8 @@ class AdaptViews(DistilViews):
     ``finish`` sets the thresholds of gates, if the encoders have any, and scales the adapters.
 
     Args:
-        agent: the agent, whose adapters in the encoders for the sensor in ``poses`` are trained in
-            place.
+        agent: the agent. Only the adapters in the encoders of the sensor that ``poses`` renders are
+            trained, in place.
         poses: the source of views.
         w_labels: same as in ``DistilViews``.
         w_feat: same as in ``DistilViews``.

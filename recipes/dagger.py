@@ -92,7 +92,7 @@ class Dagger(Imitate):
         return [(*job, expert) for job in jobs]
 
     def pieces(self) -> int:
-        """Return 1, because each process trains only on the rollouts that it stored."""
+        """Return 1, which requires a single process, because rollouts are stored per process."""
         return 1
 
     def work(self, job: tuple) -> Any:

@@ -119,10 +119,10 @@ class Distil(OnEpisodes):
         learned = any(feature.requires_grad for feature in features.values())
         if torch.is_grad_enabled() and not (self.w_il or self.w_kl or learned):
             raise ValueError(
-                "No weight would be trained: w_il and w_kl are 0, and decide() of "
-                f"{type(self.agent).__name__} returns no features that depend on a trained weight. "
-                f"Its features are: {', '.join(features) or 'none'}. Return such features in "
-                "Output.features, or set w_il or w_kl above 0."
+                "No weight would be trained, because w_il and w_kl are 0 and decide() of "
+                f"{type(self.agent).__name__} returns no trainable features (it returns: "
+                f"{', '.join(features) or 'none'}). Set w_il or w_kl above 0, or return features "
+                "that depend on a trained weight in Output.features."
             )
 
 
@@ -196,7 +196,7 @@ def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict
 def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:
     """Return the batch mean of KL(pi_T || pi_S) for logits [B, n] at ``temperature``.
 
-    Entries of -inf are not candidates. The logits of both networks must have the same candidates.
+    Entries of -inf are excluded. They must be at the same positions in the logits of both networks.
     """
     p = (teacher / temperature).log_softmax(-1)
     q = (student / temperature).log_softmax(-1)

@@ -234,8 +234,8 @@ class HardenEncoder(Objective):
         return {name: value * batch.get("share", 1.0) for name, value in values.items()}
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the encoder's own weights are unchanged, as 1 or 0. With adapters, they
-        must be unchanged.
+        """Return whether the encoder's own weights are unchanged, as 1 or 0. If adapters are
+        trained, these weights must not change.
         """
         return {"backbone_unchanged": float(backbone_sha(self.agent.model) == self.backbone)}
 

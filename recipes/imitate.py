@@ -19,7 +19,7 @@ from mitigate.training.objective import check_weights
 from mitigate.training.parts import train_only
 from mitigate.training.rollouts import OnEpisodes, Rollouts
 
-# fraction of the steps after which the share of expert decisions equals follow_oracle (heuristic)
+# fraction of training during which the share of expert decisions falls (heuristic)
 DECAY = 0.6
 
 
@@ -28,7 +28,7 @@ class Imitate(OnEpisodes):
 
     Args:
         agent: the agent, which is trained in place.
-        rollouts: the source of its decisions.
+        rollouts: the source of the agent's decisions to train on.
         train_parts: names of the agent's ``parts()``, or "adapters"; other parts stay frozen.
             "policy" means all parts except the encoders. If it is None, all parts except the
             adapters are trained.

@@ -25,7 +25,7 @@ from mitigate.worlds.world import TrainingEpisodes, World
 
 @dataclass(eq=False, repr=False)
 class StoredRollouts:
-    """Source of batches of decisions that are made on stored features.
+    """Source of batches of decisions that the agent computes from stored features.
 
     Args:
         agent: the agent, which acts with its current weights and has a method ``store``.

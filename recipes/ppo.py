@@ -142,13 +142,13 @@ class Ppo(Objective):
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
     def pieces(self) -> int:
-        """Return 1, because each process trains only on the episodes that it ran."""
+        """Return 1, which requires a single process, because a process keeps its own episodes."""
         return 1
 
     @torch.no_grad()
     def batch(self, step: int) -> dict[str, Any]:
-        """Return some of the environment steps of the round. Each environment step is used once per
-        epoch.
+        """Return a minibatch of the round's environment steps. Each environment step is used once
+        per epoch.
         """
         number, within = divmod(step, self.updates)
         if number != self._number:
@@ -342,7 +342,7 @@ def _discounted(rewards: np.ndarray, ends: np.ndarray, gamma: float) -> np.ndarr
 
 @contextmanager
 def _random(device: torch.device, *key: int | str) -> Iterator[None]:
-    """Seed torch's random numbers with ``key`` inside the context."""
+    """Seed torch's random number generators with ``key`` inside the ``with`` block."""
     with torch.random.fork_rng([device] if device.type == "cuda" else []):
         torch.manual_seed(digest(*key) & (2**63 - 1))
         yield

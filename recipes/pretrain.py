@@ -1,8 +1,9 @@
 """Train an agent's encoders on random poses with labels from the simulator.
 
-In the apartments, RGB labels describe the furniture, near furniture, colours and rooms that are
-visible in the middle of each view. Depth labels state how far the agent can move in a straight line
-in each direction. The encoders of the two sensors are independent, so each has its own stage.
+In the apartments, RGB labels describe the middle of each view: the furniture, which furniture is
+near, its colours, and the kinds of rooms. Depth labels state how far the agent can move in a
+straight line in each direction. The encoders of the two sensors are independent, so each has its
+own stage.
 """
 
 from __future__ import annotations

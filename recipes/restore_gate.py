@@ -34,7 +34,7 @@ CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 BETTER = 0.85
 # maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
 SPENT = 0.15
-# Number of the first step from which each data set of this recipe samples its time steps.
+# Each data set of this recipe samples its time steps with step numbers from its offset onwards.
 # The data sets do not overlap, and none contains time steps on which the network was trained.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
@@ -47,8 +47,7 @@ class Judged(NamedTuple):
         textures: input of the gate [N, V, t].
         before: mean error of the original frames [N], divided by the range.
         after: mean error of the restored frames [N].
-        spent: fraction of pixels within ``TOLERANCE`` before restoring, minus the fraction after
-            [N].
+        spent: decrease of the fraction of pixels within ``TOLERANCE`` through restoring [N].
     """
 
     stats: Tensor
@@ -197,8 +196,8 @@ class RestoreGate(Objective):
     def evaluate(self, step: int) -> dict[str, float]:
         """Return the threshold and the fractions of clean and of corrupted time steps above it.
 
-        The clean time steps were not used before, and the corrupted ones are those that restoring
-        improves. The threshold is set only at the end of training.
+        The clean time steps are not used elsewhere. The corrupted time steps are only those whose
+        error decreases through restoring. The threshold is set only at the end of training.
         """
         ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)

@@ -8,7 +8,7 @@ has four terms:
 * ``w_policy``: the KL divergence of the action distributions (the squared error for actions without
   a distribution),
 * ``w_imitation``: the cross-entropy of the teacher's most likely action (the squared error for
-  continuous actions); it is needed because small changes of nearly equal probabilities change the
+  continuous actions), without which a small shift of nearly equal probabilities could change the
   action,
 * ``w_feat``: the squared error of the features of one module, relative to their variance,
 * ``w_consistency``: the divergence between the student's answers to two corruptions of one frame.

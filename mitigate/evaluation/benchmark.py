@@ -86,12 +86,13 @@ def benchmark(
     ``out``; if it is interrupted, the same call continues from these rows.
 
     Args:
-        agent: an object with the interface in ``mitigate/agents/agent.py``, a path of weights, or a
-            policy of a supported library (``mitigate/agents/policies/``).
-        name: heading of the entry; the default is the name of the folder with the weights, or of
-            the agent's class.
-        version: string that identifies state of the agent that mitigate cannot read, such as hooks.
-            Without a version, rows of such an agent are not reused.
+        agent: an object with the interface in ``mitigate/agents/agent.py``, the path of a file or
+            folder with weights, or a policy of a supported library (``mitigate/agents/policies/``).
+        name: heading of the leaderboard entry; the default is the name of the folder with the
+            weights, or of the agent's class.
+        version: label for state of the agent that mitigate cannot inspect, such as hooks. Choose a
+            new one whenever this state changes. Without a version, rows of such an agent are not
+            reused.
         split: name of an episode list of the world. The default is the world's usual list. If you
             pass your own world, this is only a label for the episodes in ``listed``; the default is
             the name of the world's class.
@@ -118,13 +119,13 @@ def benchmark(
         world: function that creates your world, which replaces the world in ``options``. If your
             world has a different class, ``listed`` is required.
         listed: the episodes, or the path of an episode file.
-        training_data: description of the training data in the entry.
-        link: link in the entry.
+        training_data: text about the agent's training data, shown in the leaderboard entry.
+        link: URL of the weights or the paper, shown in the leaderboard entry.
         out: folder for the rows; None means a folder in runs/benchmark.
 
     Returns:
-        The leaderboard entry. If the score of the world is "return", a comparison with the returns
-        and the fraction of the clean return that is kept.
+        The leaderboard entry. If the world's score is "return", the result is instead a Comparison,
+        which lists the returns and the fraction of the clean return that the agent keeps.
 
     Raises:
         ValueError: If the agent, an option or a text for the entry is invalid, or ``out`` contains
@@ -288,8 +289,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: If there are no episodes, or if no episode list is given for a world of another
-            class than the configured world (``own``).
+        ValueError: If there are no episodes. It is also raised if ``listed`` is None although the
+            world's class differs from the configured class (``own``).
     """
     split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:
@@ -303,7 +304,9 @@ def _episodes(
     count = None if count is ... else count
     check_count(count)
     if isinstance(listed, Episode) or not isinstance(listed, (str, Path, Iterable)):
-        raise ValueError(f"listed must list episodes or name an episode file, got {listed!r:.80}.")
+        raise ValueError(
+            f"listed must be a list of episodes or the path of an episode file, got {listed!r:.80}."
+        )
     entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
     if others := [entry for entry in entries if not isinstance(entry, Episode)]:
         raise ValueError(

@@ -216,7 +216,8 @@ class _Scores:
     def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
         """Return one line.
 
-        If the measure has Wilson's interval, ``most`` is the value of a success; otherwise it is 0.
+        If the measure uses a Wilson interval, ``most`` is its value for a successful episode.
+        Otherwise ``most`` is 0.
         """
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
@@ -224,8 +225,8 @@ class _Scores:
         return Line(heading, estimates, changes)
 
     def retention(self, names: Sequence[str]) -> list[Line]:
-        """Return the lines with the retention of returns: for all corruptions together, and for
-        each one.
+        """Return the lines that show how much of the return is kept: on average, and for each
+        corruption.
         """
         random = self.values(RANDOM, CLEAN, RETURN)
         self.check_skill(RETURN, "returns")
@@ -262,8 +263,8 @@ class _Scores:
         ``names``.
 
         PRS divides by the clean success of the same agent, as the paper does. Retention divides by
-        the clean return of the first agent, so that an agent cannot get a higher retention by a
-        lower clean return.
+        the clean return of the first agent, so that an agent cannot raise its retention by doing
+        worse on clean frames.
         """
         values: dict[str, tuple[float, np.ndarray]] = {}
         for agent in self.agents:

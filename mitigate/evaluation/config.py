@@ -85,7 +85,7 @@ OmegaConf.register_new_resolver("times", times, replace=True)
 
 @dataclass
 class EnvConfig:
-    """Options in a file of ``conf/env``; other entries of the file also become attributes."""
+    """Options in a file of ``conf/env``; entries without a field here also become attributes."""
 
     name: str = ""
     world: dict[str, Any] = field(default_factory=dict)
@@ -96,7 +96,7 @@ class EnvConfig:
 
 @dataclass
 class SuiteConfig:
-    """Options in a file of ``conf/suite``; other entries of the file also become attributes."""
+    """Options in a file of ``conf/suite``; entries without a field here also become attributes."""
 
     conditions: list[str] = field(default_factory=list)
 
@@ -117,7 +117,7 @@ class EvaluateConfig:
 
     runs: str = "runs"
     checkpoint: str | None = None
-    # not an enum: check_choice checks the value, because Hydra's error would print an invalid value
+    # not an enum, because Hydra's type error would print the value, which may be a password
     safeguard: Any = "none"
     restore: str | None = None
     adapt: str | None = None

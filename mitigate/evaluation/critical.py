@@ -113,9 +113,9 @@ def next_severities(rates: dict[float, float], losses: Iterable[float]) -> list[
 
     ``rates`` maps each measured severity, including 0 and 1, to the success rate.
 
-    The target of a loss is ``1 - loss`` times the clean rate. If the fit falls to the target
-    between two neighbouring measured severities, the midpoint of these severities is measured next,
-    unless they are at most :data:`WIDTH` apart.
+    For each of ``losses``, the target rate is ``1 - loss`` times the clean rate. If the
+    fitted curve falls to this target between two neighbouring measured severities that are more
+    than :data:`WIDTH` apart, their midpoint is measured next.
     """
     severities = sorted(rates)
     fit = decreasing([rates[at] for at in severities])
@@ -136,8 +136,8 @@ def first_conditions(conditions: Sequence[Corruption], rule: str) -> list[Corrup
     corruptions at severity 1.
 
     Raises:
-        ValueError: If ``conditions`` contains no corruption or a severity of 0, or if the world has
-            no success criterion.
+        ValueError: If ``conditions`` contains no corruption, if a corruption has severity 0, or if
+            the world has no success criterion.
     """
     corrupted = [one for one in conditions if one.name != "clean"]
     if rule == RETURN:
@@ -201,9 +201,9 @@ class Score:
     Attributes:
         estimate: value and interval; ``inf`` means above 1.
         episodes: number of episodes. All severities, columns and seeds use the same episodes.
-        bound: "" if the value is exact. Means and differences count values above 1 as 1. The bound
-            is "lower" if the true value may be larger than ``estimate``, "upper" if it may be
-            smaller, and "unknown" if both columns of a difference have values above 1.
+        bound: "" if the value is exact. Means and differences count critical severities above 1 as
+            1, so ``estimate`` may only be a "lower" or an "upper" bound of the true value. The
+            bound is "unknown" if both columns of a difference have critical severities above 1.
     """
 
     estimate: Estimate
@@ -218,7 +218,7 @@ class Scores:
     Attributes:
         grid: the results.
         losses: the losses to search for, as fractions of the clean success rate.
-        columns: labels of the columns; the first one is subtracted in differences.
+        columns: labels of the columns; differences are relative to the first one.
         corruptions: corruptions for which at least one column has clean results and results at
             severity 1.
     """
@@ -237,8 +237,8 @@ class Scores:
     def groups(self) -> list[tuple[str, ...]]:
         """The groups of corruptions that have scores.
 
-        Each corruption is a group. If all columns share two or more corruptions, the last group
-        contains all of them, and its scores are means over them.
+        Each corruption is a group. If two or more corruptions have scores in all columns, the last
+        group contains all these corruptions, and its scores are means over them.
         """
         every = tuple(
             n for n in self.corruptions if all(self.seeds((c,), (n,)) for c in self.columns)
@@ -255,7 +255,7 @@ class Scores:
         return [(first,), *((c,) for c in others), *((c, first) for c in others)]
 
     def seeds(self, columns: Sequence[str], names: Sequence[str]) -> list[int]:
-        """Return the seeds for which all ``columns`` have a curve per corruption in ``names``."""
+        """Return the seeds for which each column has a curve for each corruption in ``names``."""
         runs = [set(self.grid.runs[column]) for column in columns]
         return [
             seed
@@ -267,8 +267,7 @@ class Scores:
         """Return the curve of a seed.
 
         The curve is empty if there are no clean successes or if severity 1 was not measured. The
-        curve omits severities with results for less than a fraction :data:`COVERAGE` of the
-        episodes.
+        curve omits a severity if the fraction of episodes with results is below :data:`COVERAGE`.
         """
         curve = {
             at: values
@@ -343,7 +342,7 @@ def _scored(
 
 
 def _estimate(values: np.ndarray) -> Estimate:
-    """Return the first value with the percentile interval of the other values.
+    """Return the first value with the percentile interval of the others, which are resamples.
 
     Each bound is one of the values and is not interpolated, because values may be infinite.
     """

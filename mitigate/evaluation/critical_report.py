@@ -18,7 +18,7 @@ from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLE
 from mitigate.evaluation.critical import Score, Scores
 from mitigate.evaluation.report import MOST_HEATMAPS, NO_PICTURE, is_drawable
 
-GRID_STEP = 0.05  # step between the severities of the full grid that ``_cost`` compares with
+GRID_STEP = 0.05  # spacing of the severities in the full grid with which ``_cost`` compares
 
 
 def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
@@ -117,7 +117,7 @@ def _episodes(part: Scores) -> str:
 
 
 def _cost(part: Scores) -> str:
-    """Return a sentence that compares the number of corrupted episodes with a full grid."""
+    """Return a sentence that compares the number of corrupted episodes with that of a full grid."""
     measured = whole = 0
     for column in part.columns:
         for name in part.corruptions:

@@ -74,7 +74,7 @@ def _no_exit(name: str) -> Iterator[None]:
 
 
 def action_of(answer: Any, agent: Any, space: ActionSpace | None = None) -> Any:
-    """Return ``answer``, which ``agent.act`` returned, as an action of ``space``.
+    """Convert ``answer``, the return value of ``agent.act``, to an action in ``space``.
 
     If ``space`` is None, actions are integers.
 

@@ -69,9 +69,10 @@ def training_episodes(world: World, training: Any) -> Callable[[int], Episode]:
         if training is None:
             raise ValueError(
                 f"adapt=recentre needs training episodes, but those of {type(world).__name__} are "
-                "unknown. Calibrate the guard on your own episodes: guard = Recentre() "
-                "(mitigate.guards.adaptation.recentre), guard.calibrate(agent, world, lambda "
-                "number: episodes[number]), adapt=guard."
+                "unknown. Create the guard with `guard = Recentre()` "
+                "(mitigate.guards.adaptation.recentre). Calibrate it on your own episodes with "
+                "`guard.calibrate(agent, world, lambda number: episodes[number])`. Then pass "
+                "adapt=guard."
             )
         return build.maker(training)().draw(generator(0, "calibration", number), (0, 1))
 
@@ -178,7 +179,7 @@ def keep_list_hash(folder: Path, split: str, source: str) -> None:
 
 
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:
-    """Return the rows of each episode list, ordered by the first row of each list.
+    """Return the rows grouped by episode list; the lists are ordered by their first rows.
 
     Two agents belong to the same list if both were evaluated on at least one common episode, or if
     a chain of other agents connects them in this way.

@@ -329,10 +329,11 @@ def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progr
 
 
 def _in_order(out: Path, identities: list[tuple]) -> list[dict[str, Any]]:
-    """Sort the rows with these identities in the file ``out``, and return them (``rows.unique``).
+    """Rewrite ``out`` so that its rows with these ``identities`` are in the order of
+    ``identities``; return these rows (``rows.unique``).
 
-    As a result, the order of rows in the file does not depend on the number of processes. Rows with
-    other identities keep their places.
+    As a result, the order of rows in the file does not depend on the number of processes. All other
+    rows keep their positions in the file.
 
     Raises:
         FolderLostError: If rows are missing.

@@ -48,8 +48,8 @@ PROMPT_ONLY = "white_box"  # agents without a system prompt have no rows of this
 def kind(corruption: str) -> str:
     """Return the name of the table that shows a corruption, one of :data:`KINDS`.
 
-    The suite's table also shows corruptions that other packages define. A pair that contains
-    ``intermittent`` counts as a temporal fault.
+    The table of the standard suite also shows corruptions that other packages define. A pair that
+    contains ``intermittent`` counts as a temporal fault.
     """
     if AND in corruption and parts(corruption)[0] != GATE:
         return PAIRS
@@ -61,8 +61,8 @@ def kind(corruption: str) -> str:
 def by_kind(rows: Iterable[Row]) -> dict[str, list[Row]]:
     """Return the rows of each table, including the clean rows of its agents.
 
-    Each table uses only its own rows, so other measurements do not change the suite's table. Agents
-    without corrupted rows are shown in the suite's table.
+    Each table uses only its own rows, so other measurements do not change the table of the standard
+    suite. That table also lists agents that have only clean rows.
     """
     rows = list(rows)
     kinds = {row["corruption"]: kind(row["corruption"]) for row in rows}
@@ -101,9 +101,9 @@ def label_columns(
 
     ``measured`` lists the (name, agent hash, seed) of every measured agent.
 
-    If the agents with a name have different seeds, they share one column, and each agent is one
-    training seed of it. Otherwise each agent has its own column, whose label contains the agent's
-    hash.
+    Agents that have the same name but different seeds share one column, in which each agent is one
+    training seed. If agents of one name have a seed in common, each of them has its own column,
+    whose label contains the agent's hash.
     """
     seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
     for name, agent, seed in measured:
@@ -186,7 +186,7 @@ class Grid:
         units: for each episode, the number of its unit. The episodes of a unit are resampled
             together.
         cut: for each label, a text that states how many episodes were ended by a step limit. Labels
-            without such episodes are missing.
+            without such episodes are omitted.
         begins: id of the first episode if another grid has the same split, suite and rule but a
             different episode list; otherwise empty.
     """
@@ -235,7 +235,7 @@ class Grid:
         return replace(self, cells=cells)
 
     def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that every column in ``labels`` has at ``severity``.
+        """Return the seeds that all columns in ``labels`` have in common at ``severity``.
 
         For the same seed, all columns were evaluated with the same random keys of corruptions.
         """
@@ -265,8 +265,8 @@ class Grid:
     def blocks_at(self, severity: float) -> dict[str, tuple[str, ...]]:
         """Return the corruptions measured at ``severity``, by block.
 
-        The block "Pairs" holds pairs of corruptions. The block "Other" holds corruptions of other
-        packages.
+        The block "Pairs" holds pairs of corruptions. The block "Other" holds corruptions that other
+        packages define.
         """
         measured = {name for _, name, at, _ in self.cells if at == severity and name != "clean"}
         rest = sorted(measured.difference(*BLOCKS.values()))
@@ -288,10 +288,10 @@ class Grid:
     ) -> list[Retention] | None:
         """Return the values for the PRS of each column over the corruptions ``names``.
 
-        All columns use the same corruptions and episodes. A corruption is used if every column
-        measured it on at least the fraction :data:`COVERAGE` of the episodes. An episode is used if
-        every column has it under all these corruptions. If no corruption or no episode remains,
-        return None.
+        All columns use the same corruptions and episodes. A corruption is left out if the fraction
+        of episodes for which all columns have its result is below :data:`COVERAGE`. An episode is
+        used if all columns have its clean result and its result under each of the corruptions. If
+        no corruption or no episode remains, return None.
         """
 
         def complete_at(name: str) -> np.ndarray:
@@ -401,7 +401,7 @@ def _complete_seeds(
     The results of complete seeds are averaged. A seed is complete if its row count is at least
     :data:`COVERAGE` times the largest row count of any seed. This must hold separately for clean
     rows and for corrupted rows. If no seed is complete, the seed with the most rows counts as
-    complete. Seeds without rows at ``severity`` are in neither result.
+    complete. Seeds without rows at ``severity`` are omitted from both returned values.
     """
 
     def rows(run: _Run, at: float) -> int:

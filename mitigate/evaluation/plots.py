@@ -58,7 +58,7 @@ def heatmap(section: Section, path: Path | str) -> Path:
 def severity_curves(grid: Grid, path: Path | str) -> Path:
     """Plot SR (%) against severity, one panel per corruption, with 95 % bootstrap bands.
 
-    Lines that coincide all remain visible, because later lines are dashed and have smaller markers.
+    Coinciding lines stay visible, because later lines are dashed and have smaller markers.
     """
     names = grid.corruptions
     across = min(3, len(names))
@@ -122,7 +122,7 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
 
 
 def _draw_curves(axis: Axes, grid: Grid, name: str) -> None:
-    """Plot the curves of one panel; dashes and marker sizes tell coinciding curves apart."""
+    """Plot the curves of one panel; their dashes and marker sizes differ in case they coincide."""
     columns = list(grid.columns)
     rim = min(RIM, (LARGEST - MARKER) / len(columns))
     for curve in curves(grid, name):

@@ -42,10 +42,9 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-# Contents of the agents that have no settings(), by the id() of the agent.
-# Each value is a tuple (function that returns the agent, contents after, contents before).
-# The contents are the data from which the hash of the agent is computed.
-# "After" means after the last evaluation, and "before" means before the first one.
+# Data from which the hashes of agents without settings() are computed, by the id() of the agent.
+# Each value is a tuple: a function that returns the agent, its newest data and its oldest data.
+# The newest data were read after the last evaluation, and the oldest data before the first one.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 # Hashes of the attributes of classes, and of the global names that their code uses.
 # Each key is a pair (classes of the world and its environments, version that the user passed).
@@ -61,10 +60,10 @@ class Known:
     functions that their code refers to. The object is used as a context manager around all
     episodes.
 
-    If an agent has no ``settings()``, its attributes are part of the hash, and episodes may change
-    these attributes. If only episodes have changed the agent since an earlier evaluation, the agent
-    keeps the hash that was computed before that evaluation. The attributes of the world's classes
-    are treated in the same way.
+    If an agent has no ``settings()``, its attributes are hashed instead, although they can change
+    during episodes. An agent that has not changed since the end of its last evaluation keeps the
+    hash that was computed before that evaluation. The attributes of the world's classes are treated
+    in the same way.
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
@@ -179,7 +178,8 @@ def keep(
     sums = {episode.episode_id: _sum(episode) for episode in episodes}
     entry = known.get(split, {})
     sensors = {name: asdict(one) for name, one in sorted(world.sensors.items())}
-    kind = json_hash([world.rule, sensors])  # the success rule and the sensors are part of rows
+    # A row identifies the success rule directly, and the sensors through the agent's hash.
+    kind = json_hash([world.rule, sensors])
     worlds, sums_before = entry.get("worlds", {}), entry.get("sums", {})
     if unreadable := described.pop(UNREADABLE, ""):
         owner = "the classes of this world"
@@ -302,7 +302,7 @@ def _sum(episode: Episode) -> str:
 
 
 def _spec(world: World) -> str:
-    """Return the id and arguments of the environment inside a world, or an empty text.
+    """Return the id and arguments of the environment inside a world, or an empty string.
 
     Worlds of the same class may differ only in these values.
     """
@@ -321,7 +321,7 @@ def _member(owner: Any, name: str) -> Any:
 
 MADE = "what makes it"  # keys and texts of stored notes, which must not change
 CHANGES = "changes while worlds are made"
-# maximum characters stored of a value (heuristic); a longer value is cut and its hash is added
+# maximum length of a stored value in characters (heuristic); longer values are cut and hashed
 SHOWN = 100
 
 
@@ -332,9 +332,9 @@ def first_world(
 
     If ``make`` comes from a config, the description contains the config's entries. For a function,
     the description contains the arguments, the defaults and the values that the code refers to. For
-    another callable object, it contains the class and the attributes. The description also contains
-    a hash of the values that the code of the world's classes refers to. A value that changes while
-    the world is constructed, such as a cache, is described as ``CHANGES``.
+    any other callable object, it contains the class and the attributes. The description also
+    contains a hash of the values that the code of the world's classes refers to. A value that
+    changes while the world is constructed, such as a cache, is described as ``CHANGES``.
 
     ``version`` is a string that the user sets if the state of a class cannot be read.
     """
@@ -359,9 +359,9 @@ def check_classes(agent: Any, world: World, expected: str) -> None:
     layers = tuple(type(layer) for layer in _layers(world))
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
         raise ValueError(
-            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or what their "
-            "code reads, differ in a worker process. Set them only where they are defined, or set "
-            "workers=1."
+            f"The class attributes of {type(agent).__name__} or {name_of(world)}, or global "
+            "variables that their code uses, have different values in a worker process. Set them "
+            "only where they are defined, or set workers=1."
         )
 
 
@@ -391,7 +391,7 @@ def kind_of(value: object) -> str:
 def json_hash(value: Any) -> str:
     """Return 12 hex digits of the hash of JSON data.
 
-    The data may contain numbers of NumPy and other libraries.
+    The data may contain number types of NumPy and other libraries.
     """
     return hashlib.sha256(json.dumps(value, default=float).encode()).hexdigest()[:12]
 

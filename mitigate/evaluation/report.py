@@ -23,7 +23,7 @@ from mitigate.evaluation.sections import Difference, Retained, Section, label, s
 
 NO_DIFFERENCE = Difference(None, None, {})
 # These limits for pictures are heuristic.
-# Plotting time grows with panels and cells, and result rows may be untrusted.
+# Without limits, rows from an untrusted source could make plotting very slow.
 MOST_CORRUPTIONS = 100  # of a picture
 MOST_COLUMNS = 50  # of a picture
 MOST_HEATMAPS = 50  # of a report
@@ -68,9 +68,9 @@ def write(
     Args:
         rows: result rows.
         folder: output folder.
-        first: the sections with this success rule come first.
-        least: minimum number of severities for which curves are plotted.
-        against: the reference column, as in :func:`sections`.
+        first: success rule whose sections come first.
+        least: minimum number of severities that a grid needs for its curves to be plotted.
+        against: name of the reference column, as in :func:`sections`.
         drawn: unit that the bootstrap resamples, as in :func:`sections`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
@@ -171,12 +171,12 @@ def _table(section: Section) -> str:
 
 
 def _changes(section: Section) -> list[Difference]:
-    """Return the difference of each column from the reference; the reference has no difference."""
+    """Return each column's difference from the reference; for the reference, it is empty."""
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
 def _mean_sr(section: Section, value: Retained | None, moved: bool = False) -> str:
-    """Return the text of a mean SR over all corruptions, or of a difference (``moved``)."""
+    """Format a mean SR over all corruptions, or a difference of two such means if ``moved``."""
     if value is None:
         return "–"
     text = _moved(section, value.estimate) if moved else _interval(value.estimate, "SR")
@@ -318,9 +318,9 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
 
     Args:
         section: the results.
-        paper: the key "columns" holds the paper's column names. Every other key is a row name, such
-            as "PRS-SR (RGB)" or "motion_blur", and holds the figures of that row in the order of
-            the columns.
+        paper: the paper's figures. The key "columns" holds the names of the columns. Every other
+            key is a row name, such as "PRS-SR (RGB)" or "motion_blur", and holds the figures of
+            that row in the order of the columns.
     """
     theirs = {
         name: dict(zip(paper["columns"], values, strict=True))

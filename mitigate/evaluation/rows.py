@@ -191,7 +191,7 @@ def upsert(*parts: Iterable[Row]) -> list[Row]:
 
 
 def cuts(rows: Iterable[Row]) -> str:
-    """Return a text that states how many episodes a world's ``limit=`` ended, or "" if none."""
+    """State how many episodes were cut off by the world's ``limit=``; return "" if none were."""
     rows = list(rows)
     cut = [row for row in rows if row.get("cut")]
     if not cut:
@@ -232,7 +232,7 @@ def unique(rows: Iterable[Row]) -> list[Row]:
             f"{len(different)} rows have another success or SPL than an earlier row of the same "
             f"agent, episode and condition (first {first['name']}, episode {first['episode_id']}, "
             f"{first['corruption']}). The last row counts. Name the files of one evaluation.",
-            # a constant location in the code makes Python print the same warning only once
+            # Python prints a repeated warning only once if it always comes from the same line
             stacklevel=1,
         )
     return list(by_identity.values())
@@ -252,8 +252,8 @@ def files(path: Path | str) -> list[Path]:
     row_files = [p for p in names if p.name.endswith(SUFFIXES) and _holds_rows(p)]
     if not row_files:
         raise FileNotFoundError(
-            f"No result rows under {path}: no {' or '.join(SUFFIXES)} file there begins with a "
-            "row. Name a run folder or a row file, or evaluate first with `make evaluate`."
+            f"No result rows under {path}: it has no {' or '.join(SUFFIXES)} file that begins with "
+            "a row. Name a run folder or a row file, or evaluate first with `make evaluate`."
         )
     return sorted(row_files)
 
@@ -300,7 +300,7 @@ def _problem(row: Any) -> str:
 
 
 def allowed(key: str, value: Any) -> str:
-    """Return a text on the allowed values if ``value`` is invalid for ``key``, else ""."""
+    """Describe the allowed values if ``value`` is invalid for ``key``, else return ""."""
     if key in _NUMBERS and isinstance(value, bool):  # bool is a subclass of int
         return "a number: 1 for true, 0 for false"
     if key in _SHARES and value is not None and not _number(value, 0, 1):

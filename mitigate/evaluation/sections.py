@@ -100,7 +100,7 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """The validation and test halves of blocks of unseen corruptions, by block and heading.
+        """For each block of unseen corruptions, its validation and test halves by heading.
 
         A block is left out if one of its halves was not measured.
         """
@@ -116,9 +116,9 @@ class Section:
 
     @cached_property
     def parts(self) -> dict[str, tuple[str, ...]]:
-        """The corruptions over which each PRS is computed, by part.
+        """For each part of the table, the corruptions over which its PRS is computed.
 
-        The blocks come first, followed by the validation and test halves of blocks.
+        The parts are the blocks, followed by the validation and test halves of blocks.
         """
         parts = self.halves.values()
         return self.blocks | {half: names for part in parts for half, names in part.items()}
@@ -193,7 +193,7 @@ class Section:
         return _mean_sr(retention) if retention else None
 
     def compare(self, column: str, reference: str) -> Difference:
-        """Return the difference of ``column`` from ``reference``, which can be any two columns."""
+        """Return ``column`` minus ``reference``; both can be any columns."""
         pair, severity = (column, reference), self.severity
         common = self.grid.common(pair, severity)
         if not common:
@@ -239,7 +239,7 @@ class Section:
         return fewer + f" † {measured}/{expected}" * (measured < expected) + " ‡" * value.near_floor
 
     def notes(self, escape: Callable[[str], str] = str) -> list[str]:
-        """Return a line for each unfinished seed and for each column with cut episodes.
+        """Return a line per unfinished seed, and one per column with episodes that a limit ended.
 
         The function ``escape`` is applied to the column labels.
         """
@@ -277,8 +277,8 @@ def sections(
 
     Args:
         rows: result rows.
-        against: name of the reference column, in sections that contain this column. The default is
-            :data:`REFERENCES`.
+        against: name of the reference column. Sections without it use their first column. The
+            default is :data:`REFERENCES`.
         drawn: unit that the bootstrap resamples, as in :func:`grids`.
 
     Raises:

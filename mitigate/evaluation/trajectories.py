@@ -26,7 +26,7 @@ from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
 
-# colour-blind safe colours of Okabe and Ito; under corruption, each agent has its own colour
+# colours that colour-blind readers can tell apart, mostly from Okabe and Ito
 REFERENCE, CLEAN_WALK = "#8a8a8a", "#0072b2"
 CORRUPTED_WALKS = ("#d55e00", "#009e73", "#cc79a7", "#8c564b")
 INCHES, DPI = (9.0, 10.5), 80

@@ -170,7 +170,7 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, retained: Retained) -> str:
-    """Return the label of a PRS in the model card, which is the name of its corruption block.
+    """Return the label of a PRS in the model card: the name of its block of corruptions.
 
     If the PRS does not cover all corruptions of the block, the label also states their number.
     """
@@ -403,5 +403,5 @@ def _metric(title: str, value: float, low: float | None, high: float | None) -> 
 
 
 def _tag(text: str) -> str:
-    """Convert ``text`` to a tag of the hub, which has lower-case letters, digits and dashes."""
+    """Convert ``text`` to a Hugging Face tag of lower-case letters, digits and dashes."""
     return re.sub(r"[^a-z0-9]+", "-", text.lower()).strip("-")

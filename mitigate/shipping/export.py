@@ -55,7 +55,8 @@ ROUNDED = 0.1  # maximum difference between float16 weights and the float32 weig
 # maximum length in characters of the line that a message quotes from a failed check (heuristic)
 REASON_WIDTH = 400
 MOST_PIXELS = 4096  # maximum side of the frames that exported programs read, in pixels (heuristic)
-WALKS = 2  # agents of other classes are checked on this number of episodes (heuristic)
+# an agent without exported programs is checked on this number of episodes (heuristic)
+WALKS = 2
 _RUN = "import sys; from mitigate.shipping import export; export.{}(*sys.argv[1:])"
 _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
@@ -65,7 +66,8 @@ class Walks:
     """Settings of a check that runs clean episodes with the exported agent in a new process.
 
     Attributes:
-        make_agent: function that constructs an agent, into which the folder is loaded.
+        make_agent: function that constructs the agent. The exported weights are then loaded into
+            it.
         make_world: function that constructs the world.
         episodes: a list of episodes. The check runs the first ``WALKS`` of them.
     """
@@ -99,17 +101,17 @@ def export(
         out: folder that contains it.
         rows: files or folders with result rows of the agent, in addition to those in the run
             folder.
-        overwrite: whether to replace ``out/name`` if it is a hardened folder.
+        overwrite: whether to replace ``out/name`` if an earlier export wrote it.
         onnx: whether to also write the two networks as ONNX files.
-        walks: settings of the check for agents of other classes. The folders of these agents
-            contain no programs.
+        walks: settings of a check that runs episodes, for agents that cannot be exported as
+            programs (all classes except TopologicalAgent).
 
     Raises:
         FileNotFoundError: If ``run`` contains no finished run.
         ValueError: If the run cannot be exported, if ``rows`` has no rows of this agent, or if the
             agent loaded from the new folder gives different outputs. It is also raised if
-            ``out/name`` exists, unless ``overwrite`` is true and it is a hardened folder. Nothing
-            is written.
+            ``out/name`` exists, unless ``overwrite`` is true and an earlier export wrote it. After
+            an error, nothing is written.
     """
     if not re.fullmatch(r"\w[\w.+-]*", name):
         raise ValueError(
@@ -152,9 +154,9 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
     kind = loading.kind_of(config)
     if walks is None and kind != loading.TARGET:
         raise ValueError(
-            f"{run} holds a {kind.rpartition('.')[2]}, which is exported without compiled "
-            "programs, so the export is checked by running episodes. Pass walks=Walks(...) (on the "
-            f"command line: agent={settings.named(kind)})."
+            f"{run} holds a {kind.rpartition('.')[2]}, which cannot be exported as programs. Its "
+            "export is checked by running episodes, which needs walks=Walks(...) (on the command "
+            f"line: agent={settings.named(kind)})."
         )
     agent = loading.build_from(config) if walks is None else walks.make_agent()
     checkpoint.load_weights(agent, weights)
@@ -166,7 +168,7 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 
 def add_programs(folder: Path) -> Path:
-    """Write ``program.pt2`` of the hardened ``folder`` again.
+    """Export the agent in the hardened ``folder`` again, and replace its ``program.pt2``.
 
     The outputs of the program on the probe inputs are compared with the outputs of the agent.
 
@@ -219,7 +221,7 @@ def _input_size(folder: Path) -> int:
 def _check_free(target: Path, overwrite: bool) -> None:
     """Raise ValueError if ``target`` exists and must not be replaced.
 
-    With ``overwrite``, only a hardened folder may be replaced.
+    With ``overwrite``, only a folder that an earlier export wrote may be replaced.
     """
     if not os.path.lexists(target):
         return
@@ -324,7 +326,7 @@ def _programs(
     """Write the exported programs of ``shipped``.
 
     Returns:
-        The entries of the card about the programs, and the outputs of ``shipped`` on the probe
+        The card's entries that describe the programs, and the outputs of ``shipped`` on the probe
         inputs.
     """
     size = agent.rgb_encoder.size
@@ -390,8 +392,8 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
     """Yield the rows of the exported agent, which are rows whose weight hash is in ``weights``.
 
-    The same weights with a blanked sensor or with a guard form a different agent. If the rows
-    belong to several agents, only the agent in the run's own rows is used. Raises ValueError if
+    The same weights count as a different agent if a sensor is blanked or a guard is added. If the
+    rows come from several such agents, only the agent in ``run_rows`` is used. Raises ValueError if
     this agent is not unique.
     """
     rows = [row for row in result_rows.upsert(run_rows, other_rows) if weights_of(row) in weights]
@@ -429,8 +431,8 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 def _run_apart(check: str, what: str, *paths: Path) -> None:
     """Call the function ``check`` of this module in a new process.
 
-    If the check fails, raise ValueError. The message states that the loaded agent did not give the
-    same ``what``, and quotes the last line of the output.
+    If the check fails, raise ValueError. The message states that ``what`` must be equal for the
+    exported and the original agent, and quotes the last line of the output.
     """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:
@@ -443,8 +445,8 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
         last = "".join(last_lines(errors, 1, REASON_WIDTH)) or "no message"
     if process.returncode:
         raise ValueError(
-            f"The agent in the folder did not give the same {what} in a new process ({last}). "
-            "Nothing was written."
+            f"The exported agent failed the check in a new process ({last}). Its {what} must equal "
+            "those of the original agent. Nothing was written."
         )
 
 

@@ -265,7 +265,7 @@ def harden(
         rows += several(after, name="after", version=after.version)
     report = compare(rows)
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
-    # change of the mean over all corruptions, or of the only corruption
+    # change of the mean over all corruptions, or of the single corruption if there is just one
     change = corrupted.changes["after"]
     if change.excludes_zero and change.value < 0:
         say(
@@ -287,8 +287,8 @@ def _check_folder(trainer: Trainer, folder: Path) -> None:
         return
     if changed := states.differences(states.as_json(newest[1]["config"]), trainer.config):
         raise ValueError(
-            f"{folder} holds the run of another policy or of other arguments "
-            f"({'; '.join(changed[:6])}). Use the old arguments to continue it, or choose another "
+            f"{folder} contains a run with a different policy or different arguments "
+            f"({'; '.join(changed[:6])}). Use the old ones to continue it, or choose another "
             "folder (out=...)."
         )
 
@@ -337,9 +337,9 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
         listed = [check_name(name) for name in suite if name != "clean"]
     if faults := [name for name in listed if family(name)]:
         raise ValueError(
-            f"suite={suite} has {faults[0]}, a {family(faults[0])} fault, but training supports "
-            "only corruptions of single frames. Harden with these, and measure faults with "
-            "mitigate.benchmark."
+            f"suite={suite} contains {faults[0]}, a {family(faults[0])} fault, but training "
+            "supports only corruptions of single frames. Leave out all faults, and measure them "
+            "with mitigate.benchmark."
         )
     kinds = {name: modality(name) for name in listed if name != "clean"}
     sensors = [sensor for sensor in (RGB, DEPTH) if sensor in policy.sensors]

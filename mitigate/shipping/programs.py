@@ -20,10 +20,9 @@ from typing import Any
 import torch
 from torch import Tensor, nn
 from torch.export import Dim, ExportedProgram
-from torch.export.pt2_archive._package import (  # private, but can store several programs in a file
-    load_pt2,
-    package_pt2,
-)
+
+# this module is private, but it can store several programs in one file
+from torch.export.pt2_archive._package import load_pt2, package_pt2
 from torch.func import functional_call
 
 from mitigate.agents.text import MAX_WORDS
@@ -119,7 +118,7 @@ class Stored(nn.Module):
 
 
 def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
-    """Return the two eager networks of ``agent`` by name.
+    """Return the two networks of ``agent`` in eager mode (not exported), by name.
 
     The networks share the weights of the agent.
     """
@@ -236,20 +235,20 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    Calls alternate between the kinds of network, such as eager and exported. A call of the first
-    network processes one panorama. A call of the second network makes one decision among three
+    Calls alternate between the variants of the networks, such as eager and exported. Each call to
+    ``perceive`` processes one panorama. Each call to ``decide`` makes one decision among three
     nodes and four ghosts.
 
     Args:
-        kinds: the two networks of each kind, such as ``{"eager": networks(agent), "exported":
-            ...}``.
+        kinds: maps the name of a variant to its two networks, such as ``{"eager": networks(agent),
+            "exported": ...}``.
         agent: the agent, for the probe.
         size: width of the views in pixels.
 
     Returns:
-        Two measurements for each kind and network: the fastest of ``TIMED`` calls ("wall"), and the
-        median CPU time over all threads of this process ("cpu"). Other programs on the machine
-        affect the CPU time less than the wall time.
+        Two measurements for each variant of each network. "wall" is the wall time of the fastest of
+        ``TIMED`` calls. "cpu" is the median CPU time over all threads of this process. Other
+        programs on the machine affect the CPU time less than the wall time.
     """
     inputs_by_name = probe(agent, size)
     single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
@@ -306,7 +305,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the type checks of stored tensors.
+    """Remove the checks of tensor types from the exported ``program``.
 
     A program contains more than a hundred of these checks, and none of them can fail.
     """
@@ -370,10 +369,10 @@ def save_onnx(agent: TopologicalAgent, size: int, folder: Path, most: float) -> 
 
 
 def check_onnx(folder: Path, agent: TopologicalAgent, size: int, most: float) -> None:
-    """Raise ValueError if the ONNX files in ``folder`` give other outputs than the agent.
+    """Raise ValueError if the outputs of the ONNX files in ``folder`` differ from the agent's.
 
-    The probe inputs are used twice: with both decisions and with only the first one. Differences up
-    to ``most`` are allowed.
+    The probe inputs contain a batch of two decisions. The outputs are compared for this batch, and
+    for only its first decision. Differences of at most ``most`` are allowed.
     """
     eager, probe_inputs = networks(agent), probe(agent, size)
     sessions = {name: _session(folder / f"{name}.onnx", INPUTS[name]) for name in eager}

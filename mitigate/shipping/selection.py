@@ -19,7 +19,7 @@ from mitigate.evaluation.comparison import CLEAN as CLEAN_NAME
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
-# fraction of the trained weights in each of the three candidates (0.75 is heuristic)
+# maps each candidate to the factor of the trained weights in its average (0.75 is heuristic)
 MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
 TIE = 1e-3  # scores count as equal if their relative difference is at most this (heuristic)
 
@@ -27,9 +27,9 @@ TIE = 1e-3  # scores count as equal if their relative difference is at most this
 def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., list[Row]]) -> str:
     """Load the best weights into ``policy``, and return their name, which is a key of ``MIXES``.
 
-    The score of weights is the mean of two numbers: the clean success rate, and the mean success
-    rate under the corruptions. If the world measures only the return, the score uses returns. If
-    scores are equal, the weights that come first in ``MIXES`` are chosen.
+    The score of a set of weights is the mean of two numbers: the clean success rate, and the mean
+    success rate under the corruptions. If the world measures only the return, the score uses
+    returns. If scores are equal, the weights that come first in ``MIXES`` are chosen.
 
     Args:
         policy: the trained policy, changed in place.

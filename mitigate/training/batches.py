@@ -1,4 +1,4 @@
-"""Assemble an objective's batches from pieces.
+"""Assemble an objective's batches from smaller parts, called pieces.
 
 A piece is the result of one job. Workers compute pieces in advance, or this process computes them.
 The number of pieces per step does not depend on the number of workers, and a piece is the same in
@@ -27,8 +27,8 @@ class Batches:
 
     If pieces do not depend on the weights (``objective.ahead``), they are requested ``AHEAD`` steps
     in advance. Other pieces are requested ``lag`` steps in advance, and are computed with the
-    weights at that time. A request with such a lag never reaches beyond the next multiple of
-    ``save_every``, so a resumed run computes the same pieces.
+    weights at that time. Pieces for the steps after a checkpoint (a multiple of ``save_every``) are
+    requested only after the checkpoint, so a resumed run computes them with the same weights.
     """
 
     def __init__(
@@ -79,7 +79,7 @@ class Batches:
         return objective.collate(step, receive())
 
     def _last(self, step: int) -> int:
-        """Return the last step whose pieces may be requested when training is at ``step``."""
+        """Return the last step for which jobs may be queued while training is at ``step``."""
         if self.objective.ahead:
             return min(step + AHEAD, self.steps - 1)
         saved = step - step % self.save_every + self.save_every if self.save_every else self.steps
@@ -105,7 +105,7 @@ class Batches:
             self.workers.take(self.objective, self.kind)
             self._taken = True
         # Consecutive values of ``turn`` select different workers for consecutive steps.
-        # If jobs need the current weights, only one step is requested at a time, so 0 is enough.
+        # If jobs need the current weights, steps are requested one at a time, so ``turn`` stays 0.
         turn = step if self.objective.ahead or self.lag else 0
         self.workers.order(jobs, turn)
         self._ordered.append((step, partial(self.workers.receive, len(jobs), turn)))

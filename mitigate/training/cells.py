@@ -35,7 +35,7 @@ OF_AGENT = ("agent=", "env=", "env.", "+env.", "--config-dir=")
 CELLS = ("agent", "checkpoint", "name", "seed", "out")
 # options that a table column must not set, because the table sets them
 PLACES = ("seed", "folder", "out", "workers", "evaluation")
-# options that a column without training must not set, in addition to PLACES
+# options that, like those in PLACES, must not be set in a column without training
 MEASURED = ("split", "episodes", "conditions", "severity")
 
 
@@ -141,10 +141,10 @@ class Cell:
         return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """Return all options for the evaluation of this cell that is called ``name``.
+        """Return all options for this cell's evaluation ``name``.
 
         ``options`` extend or override the options of the table. The number of episodes is at most
-        the number in the table.
+        ``config.episodes``.
         """
         return [
             f"name={self.column}",
@@ -168,7 +168,7 @@ class Cell:
         )
 
     def keep(self) -> None:
-        """Record the options that determine the agent of the cell's rows."""
+        """Record the options that determine which agent the cell's rows belong to."""
         write_text(self.folder / OPTIONS, json.dumps(self._agent_options))
 
     def check_kept(self) -> None:

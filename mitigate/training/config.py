@@ -139,7 +139,7 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the initial weights are weights for all parts of the agent.
+        """Whether the initial weights cover all parts of the agent.
 
         In that case, the agent is also evaluated with its initial weights.
         """

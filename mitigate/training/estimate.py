@@ -1,4 +1,4 @@
-"""Estimate the duration of a training run, for its first line of output."""
+"""Estimate how long a training run takes; the run prints this in its first line."""
 
 from __future__ import annotations
 

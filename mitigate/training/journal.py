@@ -39,7 +39,7 @@ class Journal:
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
         self._measured = start, time.process_time()
-        # a list may be shorter than others, because a batch may lack values
+        # lists can differ in length, because some batches do not report every value
         self._values: dict[str, list[float]] = defaultdict(list)
         self._since = start, time.monotonic()
 

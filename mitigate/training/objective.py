@@ -37,8 +37,8 @@ class Objective(nn.Module):
     JSON-compatible dict. The optimizer never receives parameters whose ``requires_grad`` is False.
 
     Attributes:
-        sources: maps the constructor parameter that receives the source of batches to the function
-            that builds the source, such as ``{"rollouts": Rollouts}``.
+        sources: maps a constructor parameter to the function that builds its value, which is a
+            source of batches. An example is ``{"rollouts": Rollouts}``.
         here: whether jobs run only in the training process, and never in a worker.
         ahead: whether workers may run jobs in advance, because jobs read no weights.
         needs: names of the agent's attributes that the objective uses.
@@ -55,7 +55,7 @@ class Objective(nn.Module):
 
     @classmethod
     def misfit(cls, agent: Any) -> str:
-        """Return why this objective cannot train ``agent`` and what to do, or "" if it can.
+        """Return an error message with advice if this objective cannot train ``agent``, else "".
 
         The method is called before the first stage, when a run is planned.
         """
@@ -101,8 +101,8 @@ class Objective(nn.Module):
 
         The list is empty if :meth:`batch` is overridden. The number of jobs must not depend on the
         number of workers. A job contains what :meth:`work` needs to know besides the settings, the
-        seed and the weights. Examples are the step, the index of the job and the state of the
-        schedule. Jobs and objectives are pickled.
+        seed and the weights. For example, it contains the step, the index of the job and the state
+        of the schedule. Jobs and objectives are pickled.
         """
         return []
 
@@ -236,9 +236,10 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
+    """For each part of ``batch``, run the forward pass in precision ``kind``, then the backward
+    pass.
 
-    If the loss of a part is not finite, no gradient is computed for it.
+    If the loss of a part is not finite, no gradient is computed for that part.
 
     Returns:
         The values that ``forward`` returned, summed over the parts.
@@ -344,8 +345,8 @@ def split_arguments(
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the arguments of the objective ``kind`` and the arguments of its source.
 
-    An argument that both constructors declare is in both results. Raises ValueError for an argument
-    that neither of them declares.
+    An argument that both constructors declare is in both of the returned dicts. Raises ValueError
+    for an argument that neither of them declares.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)

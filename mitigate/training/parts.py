@@ -105,12 +105,12 @@ def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> N
     """Set eval mode for the frozen BatchNorm layers in ``module``.
 
     In training mode, every batch would change their running statistics, although no weight is
-    trained. A normalisation layer may have no weights. It is then treated as frozen if the nearest
-    enclosing module with weights has only frozen weights; adapters are ignored.
+    trained. A normalisation layer may have no weights. Such a layer counts as frozen if all weights
+    of the nearest enclosing module that has weights are frozen. Adapters are ignored.
 
     Args:
         module: the module.
-        around: weights of the module that contains ``module``.
+        around: weights of the enclosing module, which decide if ``module`` has no weights.
     """
     weights = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
     around = weights or around

@@ -63,7 +63,7 @@ class StagePlan:
         folder: folder of its checkpoints and logs.
         objective: the objective, with its arguments.
         trainer: the settings of the Trainer that the recipe or the user set.
-        identity: the settings part of the stage's fingerprint; a run is not resumed if it differs.
+        identity: settings of the agent and the recipe; a run is not resumed if they differ.
     """
 
     name: str
@@ -231,7 +231,8 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
-    """Replace stages on random poses with None if the agent or the world does not support them.
+    """Set stages that train on random poses to None if the agent or the world does not support
+    them.
 
     If no other stage can train the agent, these stages are kept, and :func:`check_fit` then rejects
     them.
@@ -247,7 +248,9 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
         if not cause:
             world = maker(config.active_stages[name].recipe["world"])()
             if not isinstance(world, Placeable):
-                cause = f"{type(world).__name__} has no random poses (scenes, enter, point, put)"
+                cause = (
+                    f"{type(world).__name__} supports no random poses (scenes, enter, point, put)"
+                )
         if cause:
             config.stages[name] = None
             say(f"{name}: left out, {cause} (docs/bring-your-own.md)")

@@ -107,20 +107,21 @@ class Poses(DrawsBySuccess):
             world = self.world()
             if not isinstance(world, Placeable):
                 raise ValueError(
-                    f"{type(world).__name__} has no random poses (scenes, enter, point, put) to "
-                    "train encoders. Leave out those stages (stages.NAME=null), or add these "
-                    "methods to the world (docs/bring-your-own.md)."
+                    f"{type(world).__name__} does not support random poses, which encoder training "
+                    "needs. Leave out those stages (stages.NAME=null), or add scenes, enter, point "
+                    "and put to the world (docs/bring-your-own.md)."
                 )
             if self.camera_share and "mount" not in signature(world.put).parameters:
                 raise ValueError(
                     f"camera_share must be 0 in {type(world).__name__}, got {self.camera_share}: "
-                    "its put() has no argument mount, so it cannot render a displaced camera."
+                    "its put() does not take the argument mount, so it cannot render a displaced "
+                    "camera."
                 )
             self._placed = world
         return self._placed
 
     def identity(self) -> dict[str, str]:
-        """Return an empty dict, because the settings determine the poses and no file is read."""
+        """Return an empty dict of file hashes, because the poses depend only on the settings."""
         return {}
 
     @property

@@ -84,8 +84,8 @@ class Ranks:
 
         If the loss is a mean weighted by ``Objective.weight``, the result equals the gradient that
         a single process would compute from the whole batch. For other losses, the result is only
-        similar. Such losses are the KL divergence of distillation, the auxiliary losses of agents,
-        and errors that are divided by the variance of a batch.
+        similar. Examples of other losses are the KL divergence of distillation, the auxiliary
+        losses of agents, and errors that are divided by the variance of a batch.
         """
         if self.count == 1:
             return
@@ -111,7 +111,7 @@ class Ranks:
             values[name] = value
 
     def of_first(self, value: Any) -> Any:
-        """Return the ``value`` of the first rank on all ranks."""
+        """Broadcast the first rank's ``value`` to all ranks, and return it."""
         if self.count == 1:
             return value
         values = [value]

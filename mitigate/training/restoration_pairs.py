@@ -89,7 +89,7 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state for pickling without the frames. Workers receive only the frames of
+        """Return the state to pickle, which omits the frames. Workers receive only the frames of
         their jobs.
         """
         return {**self.__dict__, "frames": None}
@@ -132,8 +132,8 @@ def pairs_of(
 ) -> Pairs:
     """Return the source of pairs for an ``env`` config, which is a world or a folder of frames.
 
-    A folder of frames has no ``training`` episodes. If the source is a folder, ``frames`` of its
-    frames are read once.
+    A folder of frames has no ``training`` episodes. From a folder, a sample of ``frames`` frames is
+    read once.
 
     Raises:
         ValueError: If the schedule samples corruptions by success rate.

@@ -87,7 +87,7 @@ class Rollouts(DrawsBySuccess):
     def identity(self) -> dict[str, str]:
         """Return hashes of the files on which the batches depend."""
         prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
-        # a user's source of episodes may not use files
+        # a user-defined source of episodes that reads no files needs no method identity()
         files: dict[str, str] = getattr(self.training, "identity", dict)()
         return {**files, **prior}
 

@@ -45,7 +45,8 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
     Of the checkpoints up to this step, only the newest ``keep`` are retained. Checkpoints of later
-    steps are never deleted; they are damaged, so the run has resumed from an earlier checkpoint.
+    steps can exist only if they are damaged and the run has resumed from an earlier one. They are
+    not deleted.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"

@@ -31,7 +31,7 @@ from mitigate.evaluation.evaluate import write_table
 
 COMMANDS = ("train", "evaluate")
 LOGS = "logs"
-LONGEST = 100  # maximum characters of a log's name (heuristic)
+LONGEST = 100  # maximum length of a log's name in characters (heuristic)
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Compute tables of columns and seeds, as in Table I (agents) and Table II (methods) of the paper.
+"""Compute a table of results, such as Table I (agents) or Table II (methods) of the paper.
 
 A cell of the table is one column with one seed; it is trained and evaluated in its own processes.
 Several cells run at a time, on this machine or on the machines of ``launcher``. If the command is
@@ -96,9 +96,10 @@ def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write the report of the rows under ``paths``.
+    """Write a report that summarizes the rows found under ``paths``.
 
-    ``table.md`` contains pictures; ``overview.md`` also contains the figures of the paper.
+    ``table.md`` contains all tables and plots. ``overview.md`` contains short tables that also show
+    the results of the paper.
     """
     from mitigate.evaluation import report  # imports matplotlib
 
@@ -146,8 +147,8 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     """Plot episodes in which the first column of ``config.walks`` fails and the last column
     succeeds.
 
-    These episodes are run again with the agents of the first training seed and the guards of their
-    cells. Nothing is plotted if one of these columns has no cell.
+    These episodes are run again with the agents of the first training seed, each with the guards of
+    its column. Nothing is plotted if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards

@@ -26,11 +26,11 @@ from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import DEATHS, STUCK, WorkersDied, context, packed, portable
 from mitigate.training.objective import Objective, do
 
-# more do not help: a step has only 2 to 4 jobs, and few steps are computed in advance
+# More workers do not help: a step has only 2 to 4 jobs, and few steps are computed in advance.
 MOST = 8
 PRELOAD = "mitigate.evaluation.evaluator"  # preloaded module, which imports the slow modules
 # This is the number of jobs between two releases of memory.
-# A release after every job costs 7 % of the time, and after every 8 jobs 1 %.
+# Releasing memory after every job costs 7 % of the time; releasing it after 8 jobs costs 1 %.
 TRIM_EVERY = 8
 ALONE = "use plain data, or train with workers=0"
 

@@ -163,7 +163,7 @@ def test_report_rejects_changed_initial_weights(tmp_path, pictures, monkeypatch)
     cfg = config(tmp_path, pictures, *TINY, "agent.tune=all", "evaluation.enabled=false")
     out, trained = train.run(cfg), build(cfg.agent)
     monkeypatch.setattr("tests.encoders.shapes.tiny", lambda **_: TinyNet())
-    with pytest.raises(ValueError, match="has other weights than at the start of the training"):
+    with pytest.raises(ValueError, match="differ from those at the start of the training"):
         before_after(read(cfg), None, trained, out)
 
 

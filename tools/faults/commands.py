@@ -39,7 +39,7 @@ PRINTS = (
 )
 # maximum memory of a process in bytes; importing the packages needs about half (heuristic)
 MOST_MEMORY = 600 << 20
-MOST_OUTPUT = 1 << 16  # maximum bytes that `mitigate run` may print (heuristic)
+MOST_OUTPUT = 1 << 16  # maximum number of bytes that `mitigate run` may print (heuristic)
 HARDENED = "checkpoints/hardened/harden"  # a shipped folder without program.pt2
 
 

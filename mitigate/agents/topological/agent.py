@@ -67,7 +67,7 @@ _SCALE = 5.0  # the planner predicts distances in metres divided by this number
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
 # names of the frozen modules of the ImageNet encoder
 BORROWED = ("rgb_encoder.stem", "rgb_encoder.stages")
-FEATURES = 1 << 25  # maximum bytes of cached features (heuristic): about 900 panoramas
+FEATURES = 1 << 25  # maximum size of cached features in bytes (heuristic): about 900 panoramas
 
 PLANNER = {  # allowed values of the keyword arguments of ``Planner``
     "width": schema.whole(4, 1024),

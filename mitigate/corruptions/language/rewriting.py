@@ -29,7 +29,7 @@ PROMPT = (
     "down, straight and stop, in the same order. Keep every object, room, colour and number. Add "
     "no distance, no compass word and no object. Answer with the rewritten instruction alone."
 )
-LONGEST_LINE = 1 << 20  # maximum bytes of a cached answer (heuristic)
+LONGEST_LINE = 1 << 20  # maximum size of a cached answer in bytes (heuristic)
 _HALF = re.compile("[\ud800-\udfff]")  # lone surrogates; a text file cannot contain them
 
 

@@ -36,9 +36,9 @@ NUMBERS = (
 DTYPES = (*NUMBERS, IMAGE, VIDEO, "string", "language")
 # Heuristic limits.
 MAX_FEATURES = 1 << 12
-MAX_NAME = 200  # maximum characters in the name of a feature
-MAX_TEMPLATE = 200  # maximum characters in a path template
-MAX_TASK = 1 << 16  # maximum characters in a task
+MAX_NAME = 200  # maximum length of a feature's name in characters
+MAX_TEMPLATE = 200  # maximum length of a path template in characters
+MAX_TASK = 1 << 16  # maximum length of a task in characters
 MAX_INDEX = 10**6  # maximum index of chunks and files
 MAX_FPS = 1000.0
 

@@ -23,7 +23,8 @@ from mitigate.core.names import counted, short
 from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
-LARGEST = 1 << 18  # maximum bytes of an entry's file; an entry with 34 corruptions has 5,000
+# maximum size of an entry's file in bytes; an entry with 34 corruptions takes about 5,000 bytes
+LARGEST = 1 << 18
 # maximum PRS in an entry; the ratio grows without bound if the clean value is near 0
 GREATEST_PRS = 100.0
 _REWRITE = "Write it again with `mitigate leaderboard add`."
@@ -47,7 +48,7 @@ def _is_interval(numbers: Numbers) -> Numbers:
     value, *bounds = numbers or [0.0]
     known = [bound for bound in bounds if bound is not None]
     if value is None or known != sorted(known):
-        raise ValueError("it must be [value, low, high] in order")
+        raise ValueError("it must be [value, low, high] with low <= high")
     return numbers
 
 
@@ -105,15 +106,15 @@ class LeaderboardEntry:
     """The results of an agent on one split, suite, success rule and severity.
 
     Attributes:
-        name: heading.
+        name: heading of the entry in the leaderboard.
         agents: for each training seed, the content hash of its agent (``agents/fingerprint.py``)
             and the seed in its rows.
         sensors: one line per sensor.
-        training_data: training data of the agent, in the words of the submitter.
+        training_data: text in which the submitter describes the agent's training data.
         episodes: number of episodes per condition.
         listed: hash of the episode ids; a table compares only entries with the same episodes.
-        scores: the clean, mean and PRS values by title. Each entry is [value, low, high] with the
-            bounds of the 95 % interval, or None.
+        scores: maps the title of a score, such as "Clean SR", to [value, low, high] with the bounds
+            of the 95 % interval, or to None.
         SR, SPL: the success rate and SPL of each condition, in the same format.
         rows: the rows from which the figures are computed: "file" (a relative path, or empty),
             "sha256" and "count".

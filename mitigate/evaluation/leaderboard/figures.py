@@ -39,8 +39,8 @@ def entry_of(
 
     Raises:
         ValueError: If no rows match, or if a condition lacks episodes. It is also raised if the
-            rows mix several splits, episode lists, suites or success rules, or agents that are not
-            training seeds of one column.
+            rows mix several splits, episode lists, suites or success rules, or if two of their
+            agents have the same training seed.
     """
     chosen = _chosen(rows, name, severity, split)
     parts = [part for part in sections(chosen) if part.blocks] or sections(chosen)
@@ -90,8 +90,8 @@ def left_out(entry: LeaderboardEntry, rows: Iterable[Row]) -> str:
 def rows_sha(rows: Iterable[Row]) -> str:
     """Return a sha256 of rows that depends on neither their order nor the file format.
 
-    Each row is written as one line of JSON with sorted keys. The lines are hashed in the order of
-    the rows' identities.
+    Each row is written as one line of JSON with sorted keys. The lines are sorted by row identity
+    before they are hashed.
     """
     digest = hashlib.sha256()
     for row in sorted(rows, key=lambda row: tuple(map(str, identity(row)))):

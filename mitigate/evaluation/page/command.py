@@ -57,8 +57,8 @@ def run(
     document.check_out(out)  # checked first, because the rollouts take minutes
     if options and not walk:
         raise ValueError(
-            f"There is no file {options[0]}, and options apply only to agents that run episodes. "
-            "Check the path, or name agents with --walk NAME=WEIGHTS."
+            f"There is no file {options[0]}. Check the path. If it is an option, also name the "
+            "agents that run episodes with this option (--walk NAME=WEIGHTS)."
         )
     files = [file for path in paths for file in rows.files(path)]
     with Progress("rows", len(files), unit="file") as progress:

@@ -31,9 +31,9 @@ from mitigate.evaluation.sections import sections
 
 ASSETS = Path(__file__).parent / "assets"
 SUFFIXES = (".html", ".htm")
-# maximum number of values and differences in a page (heuristic; they take a minute to compute)
+# maximum number of results on a page (heuristic); computing this many takes a minute
 MOST_NUMBERS = 50_000
-# maximum number of characters of a page (heuristic; the episodes take up to 6 MB of them)
+# maximum length of a page in characters (heuristic); the episodes take up to 6 million of them
 LARGEST_PAGE = 1 << 26
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 

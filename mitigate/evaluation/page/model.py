@@ -21,7 +21,7 @@ from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
 BASELINES = 12  # the first columns, up to this number, can be chosen as baseline (heuristic)
-# number of values that take as long to compute as the fixed cost of a column (heuristic)
+# A column has a fixed cost, so it counts as at least this number of values (heuristic).
 LEAST_VALUES = 10
 DIGITS = 6
 CLEAN = "clean"
@@ -87,16 +87,16 @@ def numbers(estimate: Estimate | None) -> Numbers:
 
 
 def has_width(values: Sequence[Any]) -> bool:
-    """Return False if a number [value, low, high] has an interval of zero width."""
+    """Return False if the interval of ``values``, which are [value, low, high], has zero width."""
     return None in values[1:3] or values[2] - values[1] > ROUNDING
 
 
 def shortened(x: float) -> float:
-    """Return ``x`` rounded to ``DIGITS`` digits.
+    """Return ``x`` rounded to ``DIGITS`` decimal places.
 
     If rounding would change the number that the page shows, return ``x`` unchanged.
 
-    The page shows percentages with one digit, and other values with two digits.
+    The page shows percentages with one decimal place, and other values with two.
     """
     short = round(x, DIGITS)
     same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
@@ -199,7 +199,7 @@ def _single_prs(section: Section, column: str, name: str, metric: str) -> float 
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return the differences of each column from the columns that can be the baseline.
+    """Return each column's differences from those earlier columns that can be the baseline.
 
     The differences are paired over common episodes and common seeds. For a common seed, both
     columns were evaluated with the same random keys of corruptions.

@@ -47,9 +47,10 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     """Choose at most ``most`` pairs (episode id, corruption) that the first and last agent both
     ran.
 
-    Pairs are taken from the outcomes in :data:`KINDS` in turn, each time with another corruption.
-    The choice follows the order of ``rows``, which must all have the same seed. No episode is
-    repeated. The result is for display and is not a random sample; the tables show the frequencies.
+    The pairs cycle through the outcomes in :data:`KINDS`. When an outcome recurs, its next
+    corruption is used. The choice follows the order of ``rows``, which must all have the same seed.
+    No episode is repeated. The result is for display and is not a random sample; the tables show
+    the frequencies.
     """
     first, last = (
         {
@@ -67,7 +68,7 @@ def choose(rows: Sequence[Row], agents: Sequence[str], most: int) -> list[tuple[
     turns: dict[tuple[int, int], list[tuple[str, Corruption]]] = {}
     for number, by_corruption in enumerate(outcomes.values()):
         for index, (corruption, episodes) in enumerate(by_corruption.items()):
-            # the offset lets each outcome begin with a different corruption
+            # the offset makes the list of each outcome start at a different corruption
             turn = (index - number) % len(by_corruption)
             turns[turn, number] = [(episode, corruption) for episode in episodes]
     chosen: dict[str, Corruption] = {}

@@ -80,9 +80,10 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
     identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
     if checkpoint.weights_sha(encoder) != identity.get("encoder_sha256"):
         raise ValueError(
-            f"agent.model={config.agent['model']} has other weights than at the start of the "
-            "training (its file was changed, or its weights are random). Set agent.weights=FILE "
-            f"and train again in another folder. The trained encoder is in {folder / 'agent'}."
+            f"The weights of agent.model={config.agent['model']} differ from those at the start of "
+            "the training (the file was changed, or the weights are random). Set "
+            "agent.weights=FILE and train again in another folder. The trained encoder is in "
+            f"{folder / 'agent'}."
         )
     return encoder
 

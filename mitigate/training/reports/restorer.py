@@ -182,8 +182,8 @@ def sheet(
 ) -> np.ndarray | None:
     """Plot three views of one time step in their corrupted, restored and clean versions.
 
-    The time step is the one with the largest :func:`_far`, so that no plotted view shows mostly a
-    near wall.
+    The time step with the largest :func:`_far` is plotted, to avoid views that show mostly a nearby
+    wall.
 
     Returns:
         A uint8 RGB picture with one row per corruption, or None if no corruption applies to the
@@ -210,7 +210,7 @@ def sheet(
 def _far(frames: dict[str, np.ndarray]) -> float:
     """Return the smallest mean depth of the plotted views.
 
-    If it is small, a view mostly shows a near wall.
+    If it is small, a view shows mostly a nearby wall.
     """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())

@@ -111,8 +111,8 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
     For comparison, also report the metrics of the classifier and the metrics without a safeguard.
     ``cfg`` is the config of the training run. The first ``evaluation.episodes`` instructions of
     ``evaluation.split`` are used, and each is corrupted by one family of corruptions. The attacks
-    come from the test split. ``before`` is not used. The model before fine-tuning is obtained by
-    removing the adapter of the trained model and adding a prompt.
+    come from the test split. ``before`` is not used. For the metrics before fine-tuning, the
+    adapter of the trained model is disabled, and an explanatory prompt is used instead.
     """
     quick = cfg.evaluation
     listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
@@ -189,8 +189,8 @@ def read_lines(path: str, count: int | None) -> list[str]:
 
 
 def voices(split: str, count: int | None) -> list[Repair]:
-    """Return hand-written texts of a split, evenly spread over the styles. Each style is one
-    family.
+    """Return hand-written texts of a split, evenly spread over the styles. In the results,
+    ``family`` is the style.
     """
     texts = spoken(split)
     chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]

@@ -54,7 +54,7 @@ KINDS = (RGB, DEPTH)
 # The limits below are heuristic.
 # maximum number of poses per drive; this is enough for poses at 480 Hz with images at 30 Hz
 MAX_POSES = 16 * MAX_INSTANTS
-# maximum bytes of buffered images that wait for an image of another topic
+# maximum size in bytes of buffered images that wait for an image of another topic
 MAX_BUFFER_BYTES = 1 << 30
 
 
