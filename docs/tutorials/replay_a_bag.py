@@ -2,9 +2,9 @@
 # # Replay a ROS bag with your own policy
 #
 # This tutorial writes a ROS bag and shows its frames to a policy, once clean and once corrupted. It
-# measures how many decisions change. The tutorial takes about 30 seconds on a CPU. The bag is
-# simulated: it records an oracle in a generated apartment. Replace it with a bag of your robot. ROS
-# is not needed.
+# measures how many decisions change. The tutorial takes about 30 seconds on a CPU and needs no ROS.
+# The bag is simulated: it contains the drives of an oracle through a generated apartment.
+# Replace it with a bag of your robot.
 
 # %%
 import subprocess

@@ -122,9 +122,9 @@ def _heading(section: Section, several_rules: bool) -> str:
         f"## {markdown_of(grid.heading)}, {at}\n\n"
         f"N = {counted(len(grid.episodes), 'episode')}, {seeds}, corruption suite "
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
-        f"SR in %. PRS = mean over the block's corruptions of SR (SPL) / the same agent's clean "
-        f"SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over {_drawn(grid)}, "
-        f"{RESAMPLES:,} resamples; where all or none succeed, Wilson's."
+        f"SR in %. PRS is the agent's SR (SPL), averaged over the block's corruptions and divided "
+        f"by its clean SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over "
+        f"{_drawn(grid)}, {RESAMPLES:,} resamples; where all or none succeed, Wilson's."
     )
 
 

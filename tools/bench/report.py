@@ -177,8 +177,8 @@ def _evaluation(paces: dict[str, Pace], by_workers: dict[int, float]) -> list[st
     return [
         "## Evaluation",
         "",
-        "Values are CPU times of one process. The two variants alternate in one run. An episode "
-        "has one condition of the suite.",
+        "Values are CPU times of one process. The two variants alternate in one run. Here, an "
+        "episode is one run under one condition of the suite.",
         "",
         "- **alone**: every episode is run separately.",
         "- **together**: the conditions of an episode follow each other and share cached frames "
