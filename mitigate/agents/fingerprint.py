@@ -32,7 +32,7 @@ from mitigate.core.observation import Observation, Sensor
 # Shipped classes store a fixed name in this attribute, so moving a module changes no fingerprint.
 KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
-# hooks of this module are recorded by name, because state_dict() contains the adapters they call
+# record hooks of this module by name only: state_dict() already contains the adapters they call
 _OWN_HOOKS = "mitigate.agents.adapters"
 # The fingerprint skips the attributes that torch itself adds to modules.
 # It also skips the hook handle of an adapter and the last logits of a gate (``judged``).

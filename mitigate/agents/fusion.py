@@ -39,7 +39,7 @@ def reliability(views: Tensor, rate: float = RATE, cap: float = CAP) -> Tensor:
         ValueError: If ``rate`` or ``cap`` is negative.
     """
     if rate < 0 or cap < 0:
-        raise ValueError(f"rate and cap of the reliability must be >= 0, got {rate} and {cap}.")
+        raise ValueError(f"reliability rate and cap must be >= 0, got {rate} and {cap}.")
     size = views.norm(dim=-1)
     mean = size.sum(-1, keepdim=True) / size.shape[-1]
     deviation = (size - mean).abs() / mean.clamp(min=_TINY)
@@ -70,7 +70,7 @@ class LearnedReliability(nn.Module):
     def __init__(self, width: int, cap: float = CAP) -> None:
         super().__init__()
         if cap < 0:
-            raise ValueError(f"cap of the reliability must be >= 0, got {cap}.")
+            raise ValueError(f"reliability cap must be >= 0, got {cap}.")
         self.cap = cap
         self.norm = nn.LayerNorm(2 * width)
         self.hidden, self.score = nn.Linear(2 * width, HIDDEN), nn.Linear(HIDDEN, 1)

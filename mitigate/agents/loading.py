@@ -130,9 +130,8 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
     sha = checkpoint.weights_sha(filled)
     if sha != card["agent"]:
         raise ValueError(
-            f"An agent with the weights in {folder} must have the hash {short(card['agent'])} "
-            f"({CARD}), got {sha}. {_AGAIN} Convert an agent to another dtype only "
-            "after its weights are loaded."
+            f"The agent loaded from {folder} must have the hash {short(card['agent'])} ({CARD}), "
+            f"got {sha}. {_AGAIN} Convert an agent to another dtype only after loading its weights."
         )
     give_settings(filled, folder / CONFIG, _AGAIN)
     return filled.eval()

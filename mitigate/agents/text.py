@@ -82,8 +82,9 @@ class Vocabulary:
         return iter(self.ids)
 
     def encode(self, text: str) -> list[int]:
-        """Return the ids of the first ``MAX_WORDS`` words of an instruction, or the id of
-        ``[UNK]``.
+        """Return the ids of the first ``MAX_WORDS`` words of an instruction.
+
+        An unknown word gets the id of ``[UNK]``. A text without words gives only this id.
         """
         lowered = re.sub(r"\[mask\]", "[MASK]", text.lower())
         ids = [self.ids.get(word, UNKNOWN) for word in _WORD.findall(lowered)]

@@ -1,7 +1,8 @@
 """Make one attempt to measure a condition: run the user's command and a server for its frames.
 
-An attempt begins in an empty folder. It ends with a finished condition (``done.json``), or with the
-reason why the condition is not finished, even if the command ended with status 0.
+An attempt begins in an empty folder. It ends either with a finished condition (``done.json``) or
+with the reason why the condition is unfinished. A command that exits with status 0 can also leave
+its condition unfinished.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Describe an agent's cameras, lay out their frames in shared memory, and corrupt them.
 
 Cameras in one call form a panorama if they are level, have the same frame size, field of view and
-position, and face directions that differ by multiples of 30 degrees. Each camera outside a panorama
+position, and if their yaws are multiples of 30 degrees. Each camera outside a panorama
 forms a separate group with separate random numbers.
 """
 

@@ -35,11 +35,11 @@ from mitigate.corruptions.registry import record
 from mitigate.evaluation.plots import plain
 from mitigate.guards.guard import NO_GUARDS, Guards
 
-# maximum seconds until the first frame (heuristic); programs load their models before it
+# maximum seconds until the first frame (heuristic); programs load their models first
 FIRST_FRAME_LIMIT = 900.0
 MAX_DRAWN = 4  # maximum number of cameras of a panorama that the picture shows per row
 SIDE = 1.64  # side of one frame in the picture, in inches
-LINE_WIDTH = 22  # maximum number of characters per line of a camera's name
+LINE_WIDTH = 22  # maximum number of characters per line when camera names are wrapped
 HEADING = "heading"  # name of the array in ``first.npz`` that contains the agent's heading
 # maximum number of calls to try until a corruption changes a frame (heuristic)
 TRIED_CALLS = 40

@@ -148,8 +148,8 @@ def _check_watched(name: str) -> None:
 def command_name(command: Sequence[str]) -> str:
     """Return a short name for a command.
 
-    This is the name of its first script. Without a script, it is the first module (``-m``), and
-    without a module, it is the name of the executable.
+    This is the name of its first script. If there is no script, it is the first module (``-m``).
+    If there is no module either, it is the name of the executable.
     """
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]

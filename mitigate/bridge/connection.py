@@ -1,4 +1,4 @@
-"""Answer the messages of one environment of the user's command, over one connection.
+"""Answer the messages that one environment in the user's command sends over one connection.
 
 Episodes, errors and connections are written as events (``events.py``).
 """
@@ -36,8 +36,11 @@ def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, An
 
 
 def _describe_error(kind: str, error: Exception) -> str:
-    """Return the text that the agent's process gets if answering a message of this ``kind``
-    failed.
+    """Return the text to send to the agent's process if a message could not be answered.
+
+    Args:
+        kind: The kind of the message.
+        error: The error that was raised.
     """
     if type(error) in (ValueError, UnsafePathError):
         return str(error)

@@ -257,8 +257,8 @@ def _report(pipe: int, **message: object) -> None:
 def _reap(child: int, pipe: int) -> bool:
     """Reap ended processes; return whether any process still runs.
 
-    The fork ``child`` reports the status of the program. If the fork itself failed or was killed,
-    this function reports the status of the fork instead.
+    The forked process ``child`` reports the exit status of the program. If the forked process
+    itself failed or was killed, this function reports the status of the forked process instead.
     """
     while True:
         try:

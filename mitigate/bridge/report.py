@@ -151,7 +151,7 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
 
 
 def _read_cell(clean: Cell, file: Path) -> Cell | None:
-    """Return the condition that a ``done.json`` describes, with the options of ``clean``.
+    """Return the condition that a ``done.json`` describes; other options are taken from ``clean``.
 
     The result is None if the corruption no longer exists. Raises ValueError if the file or its
     events are damaged.

@@ -81,8 +81,8 @@ class Reports:
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Record the event that reports the end of an episode.
 
-        If an episode ended several times, the first event counts. The first event is replaced,
-        however, if it was a reset or a close and the later event says that the episode was over.
+        If an episode ended several times, the first event counts. There is one exception: an event
+        that says that the episode was over replaces an earlier reset or close.
         """
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
@@ -213,7 +213,7 @@ def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = No
     The common rule is omitted in each of these cases:
 
     - The task has no common rule. An example is PointNav, which has neither words nor objects.
-    - The common rule cannot judge an episode that the agent's own rule can judge.
+    - An episode can be judged by the agent's own rule, but not by the common rule.
     - Neither this condition nor the clean condition reports a distance.
     """
     requested = [RULES[rule]] if rule else []

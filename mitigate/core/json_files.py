@@ -20,7 +20,7 @@ LARGEST_VALUE = 1 << 25
 # maximum size in bytes of a JSON file that is read as a whole (heuristic)
 # For comparison, the card.json of a hardened agent has about 1e4 bytes.
 LARGEST_JSON = 1 << 24
-# maximum size in bytes of a JSON file that lists files, with about 100 bytes per file (heuristic)
+# maximum size in bytes of a JSON file that lists files (heuristic: 100 bytes per listed file)
 LARGEST_LIST = 1 << 28
 
 

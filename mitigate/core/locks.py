@@ -138,7 +138,7 @@ class FolderLock:
 
 
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
-    """Delete unfinished files in ``folder`` whose processes no longer run, and return their paths.
+    """Delete unfinished files in ``folder`` whose processes have ended, and return their paths.
 
     The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
     not searched.
@@ -154,7 +154,7 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
 
 
 def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
-    """Delete those ``drafts`` whose processes no longer run, and return their paths.
+    """Delete those ``drafts`` whose processes have ended, and return their paths.
 
     Args:
         drafts: Paths that may be unfinished files of ``mitigate/core/files.py``.

@@ -20,7 +20,7 @@ CONFIG_DIR = ("--config-dir", "-cd")
 
 
 def asks_help(arguments: Sequence[str]) -> bool:
-    """Return whether to show the help: there are no arguments, or one of them is a help flag."""
+    """Return whether ``arguments`` is empty or contains a help flag, so that help is shown."""
     return not arguments or any(name in arguments for name in HELP)
 
 

@@ -234,7 +234,8 @@ def is_regular(path: Path | str) -> bool:
     """Return whether the file ``path`` exists; links are followed.
 
     Raises:
-        UnsafePathError: If ``path`` is a FIFO, a socket or a device; reading it could wait forever.
+        UnsafePathError: If ``path`` is a FIFO, a socket or a device, since reading it could block
+            forever.
     """
     try:
         mode = os.stat(path).st_mode
@@ -242,7 +243,7 @@ def is_regular(path: Path | str) -> bool:
         return False
     if not stat.S_ISREG(mode) and not stat.S_ISDIR(mode):
         raise UnsafePathError(
-            f"{path} must be a regular file, got {_kind(mode)}. Reading it could wait forever. "
+            f"{path} must be a regular file, got {_kind(mode)}. Reading it could block forever. "
             "Delete it, or name another folder, and run the command again."
         )
     return stat.S_ISREG(mode)

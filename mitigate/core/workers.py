@@ -26,7 +26,8 @@ from mitigate.core.errors import error_message
 from mitigate.core.progress import Progress, duration
 from mitigate.core.signals import delay_signals, leave_to_parent, start_worker
 
-SECOND = 1.0  # seconds to wait for messages from workers before other checks
+# seconds to wait for messages from workers before checking for stuck workers and for Ctrl-C
+SECOND = 1.0
 STUCK = 60.0  # seconds after which a worker that is still busy with one job is reported
 DEATHS = 1  # maximum number of workers that are replaced
 ALONE = "set workers=1, or define its classes at the top level of a module"

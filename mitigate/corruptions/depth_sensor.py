@@ -73,7 +73,7 @@ def is_valid(z):
 def _is_near(pixels, limit):
     """Return whether enough of the sampled valid pixels are nearer than ``limit``.
 
-    The loop usually ends after a few pixels, so it costs nearly nothing per frame.
+    The loop usually ends after a few pixels, so it costs almost nothing per frame.
     """
     near = valid = 0
     step = pixels.size // UNIT_SAMPLES + 1

@@ -57,7 +57,7 @@ class Settings:
     unit: float | None = None
     z_max: float = Z_MAX  # maximum depth in metres; larger values are clipped
     missing: float = 0.0  # value of missing depth in metres
-    no_reading: int = NO_READING  # pixel value of a 16-bit PNG that means "no reading", like 0
+    no_reading: int = NO_READING  # pixel value of a 16-bit PNG that, like 0, means "no reading"
     hfov: float | None = None  # horizontal field of view in degrees, for camera faults
 
     def __post_init__(self) -> None:

@@ -37,7 +37,8 @@ PNG_START = b"\x89PNG\r\n\x1a\n"  # PNG specification, section 5.2
 COLOUR_TYPES = {0: "grey", 2: "RGB", 3: "palette", 4: "grey with alpha", 6: "RGB with alpha"}
 MAX_PIXELS = 1 << 26  # maximum pixels per frame (heuristic): 8192 x 8192
 MAX_COUNT = 65534  # maximum depth value in a 16-bit PNG
-# pixel value that means "no reading", like 0 (used by 7-Scenes, and for saturated pixels)
+# pixel value that, like 0, means "no reading"
+# The 7-Scenes data set uses this value, and it also marks saturated pixels.
 NO_READING = 65535
 SCALE_FILES = 16  # maximum number of files that ``check_scale`` reads (heuristic)
 SCALE_PIXELS = 8192  # maximum number of pixels that ``check_scale`` uses per file (heuristic)
@@ -93,7 +94,7 @@ def corrupt_file(
         unit: Metres per count of a 16-bit PNG.
         corrupt_frame: Function that corrupts one frame: uint8 [H, W, 3], or float32 metres in the
             shape of the file. Pixels that this function does not change keep their stored values.
-        no_reading: Pixel value of a 16-bit PNG that means "no reading", like 0.
+        no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
 
     Raises:
         LeftOutError: If the file is damaged or has an unsupported format.

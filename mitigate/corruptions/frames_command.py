@@ -21,7 +21,7 @@
               H.264 in RGB, and same uses the codec of the original, which is lossy.
   z_max       maximum depth in metres (10); valid depth beyond it is clipped
   missing     value in metres that replaces missing depth (0: no reading)
-  no_reading  pixel value of a 16-bit PNG that means "no reading", like 0 (65535)
+  no_reading  pixel value of a 16-bit PNG that, like 0, means "no reading" (65535)
   hfov        horizontal field of view in degrees; camera faults need it
   cameras     cameras of a LeRobot dataset, separated by commas; the default is all cameras that the
               corruption applies to

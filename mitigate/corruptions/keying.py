@@ -7,8 +7,10 @@ process, or on the order in which frames are corrupted. A resumed run gives the 
 
 Tables and masks are computed in float64 and then rounded to fixed point or float32. Kernels use
 only basic arithmetic. Therefore pixels do not depend on the last bit of functions such as ``exp``,
-which differs between machines. (After editing ``mix``, delete ``__pycache__``: numba does not
-notice changes of functions that are inlined in other files.)
+which differs between machines.
+
+After editing ``mix``, delete ``__pycache__``. Numba does not notice changes to functions that are
+inlined into other files.
 """
 
 from __future__ import annotations

@@ -237,7 +237,7 @@ def _span(severity: float | list[float]) -> str:
 def _table(entry: dict[str, Any]) -> str:
     rows = [[f"Clean {name}", _cell(value)] for name, value in entry["clean"].items()]
     rows += [[name, _cell(value)] for name, value in entry["PRS"].items()]
-    rows += [[f"SR, {label(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
+    rows += [[f"SR under {label(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
     table = markdown_table(["measure", "value, 95 % interval"], rows)
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
@@ -372,7 +372,7 @@ def _result(entry: dict[str, Any]) -> dict[str, Any]:
     intervals += entry["PRS"].items()
     metrics = [_metric(title, *value) for title, value in intervals if value[0] is not None]
     metrics += [
-        _metric(f"SR, {label(name)}", value, None, None)
+        _metric(f"SR under {label(name)}", value, None, None)
         for name, value in entry["SR"].items()
         if value is not None
     ]

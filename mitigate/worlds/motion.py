@@ -3,7 +3,7 @@
 The effect of a fault depends on the kind of action:
 
 * FORWARD, LEFT and RIGHT in a world that defines ``move`` (apartments, Habitat): slip and gain
-  scale the step of 0.25 m and the turn of 15 degrees. Drift turns the robot after
+  scale both the step of 0.25 m and the turn of 15 degrees. Drift turns the robot after
   FORWARD. A dropped action is a step without movement. STOP is always executed.
 * Actions in a ``Box``: slip and gain scale the action, and drift adds a bias to all
   its elements. A dropped action becomes zero. The result is clipped to the bounds of the ``Box``.

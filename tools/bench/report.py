@@ -62,7 +62,8 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
     lines = [
         f"## Corruptions, suite {SUITE_VERSION}, severity {SEVERITY}",
         "",
-        "Times are milliseconds per frame. At 12x64x64 they are per panorama of 12 views.",
+        "Times are milliseconds per frame. At 12x64x64, the times are for one panorama of 12 "
+        "views.",
         "",
         "- **steady**: time for consecutive frames of an episode: the fastest of many calls, "
         "averaged over a few episodes.",

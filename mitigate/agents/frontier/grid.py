@@ -285,9 +285,8 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 def object_cells(grid: Grid, least: float) -> np.ndarray:
     """Return the group of cells [n, 2] with the most evidence for the object.
 
-    A cell is in the group if its evidence is above ``least`` and above the fraction ``SHARE`` of
-    the highest evidence. So each observation that confirms earlier observations makes the group
-    smaller.
+    A cell is in the group if its evidence is above both ``least`` and ``SHARE`` times the highest
+    evidence. So each observation that confirms earlier observations makes the group smaller.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():

@@ -1,8 +1,8 @@
 """The topological map of one episode: visited nodes, ghost nodes (seen but not visited), routes.
 
 The rules are simplified from ETPNav: a waypoint within ``MERGE`` metres of a ghost or node is
-merged into it. A ghost stores the views that face it. When the agent arrives at a ghost, a node
-replaces it.
+merged into it. A ghost stores the views that face it. When the agent arrives at a ghost, the
+ghost is replaced by a node.
 """
 
 from __future__ import annotations
@@ -87,7 +87,7 @@ class TopologicalMap:
         return self._nodes_to(node, self._dijkstra()[1])
 
     def arrive(self, ghost: int) -> None:
-        """Remove a ghost that was reached, because a node replaces it."""
+        """Remove a ghost that the agent has reached; the ghost is replaced by a node."""
         self.ghosts.pop(ghost, None)
 
     def decision(self, pose: np.ndarray) -> Decision:

@@ -129,7 +129,7 @@ class AnsweringAgent(Agent):
     ) -> list[int]:
         """Return one low-level action per episode.
 
-        Observations of episodes with pending actions from an earlier answer are ignored.
+        An episode's observation is ignored while actions from an earlier answer are still pending.
         """
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:

@@ -92,8 +92,8 @@ def run_episode(
         target = int(expert.action())
         if target not in longest:
             raise ValueError(
-                f"Episode {episode.episode_id}: the expert takes the action {target}, but the "
-                f"answers of a vision-language agent stand for the actions {sorted(longest)}."
+                f"Episode {episode.episode_id}: the expert takes the action {target}, but a "
+                f"vision-language agent can answer only with the actions {sorted(longest)}."
             )
         answer = longest[target]
         expert_decides = rng.random() < expert_share

@@ -847,8 +847,8 @@ def _package(module):
 def _corrupt_acting_agent(sim, observations, agent_ids):
     """Corrupt the observations of the acting agent only.
 
-    Observations stay unchanged inside ``_call_clean``. They also stay unchanged if habitat-lab
-    requested them, because their frames are corrupted at the sensors of habitat-lab.
+    Observations stay unchanged inside ``_call_clean``. Observations that habitat-lab
+    requested also stay unchanged here, because habitat-lab's sensors corrupt them.
 
     Args:
         sim: The simulator.

@@ -2,9 +2,9 @@
 primitives.
 
 A primitive is a function that returns a changed copy of views, of the same shape. Its arguments are
-the views, a strength in (0, 1], and two random generators: ``rng`` for the episode and ``now`` for
-the frame. Constants without a source were chosen by this project. At that time, no agent trained
-with them had been evaluated under unseen corruptions.
+the views, a strength in (0, 1], and two random generators. The generator ``rng`` is for the
+episode, and the generator ``now`` is for the frame. Constants without a source were chosen by this
+project. At that time, no agent trained with them had been evaluated under unseen corruptions.
 """
 
 from __future__ import annotations

@@ -144,12 +144,12 @@ def check(paths: Sequence[Path | str] = ()) -> list[str]:
         name, verdict, omitted = str(file), "not a valid entry", ""
         try:
             entry = load(file)
-            name, verdict = f"{file}: {entry.name}", "NOT as its rows say"
+            name, verdict = f"{file}: {entry.name}", "does NOT match its rows"
             rows = rows_of(entry)
             problems, omitted = differences(entry, rows), left_out(entry, rows)
         except (OSError, ValueError) as error:
             problems = [error_message(error)]
-        print(f"{name}, {verdict if problems else 'as its rows say'}", flush=True)
+        print(f"{name}, {verdict if problems else 'matches its rows'}", flush=True)
         if omitted:
             print(f"{name}, WARNING: its rows also hold {omitted:.1000}", flush=True)
         wrong += [f"{name}, {line}" for line in problems]

@@ -134,9 +134,9 @@ def test_check_continues_after_a_damaged_entry(rows, tmp_path, monkeypatch, caps
     assert printed[:6] == [
         "entries/cut.json, not a valid entry",
         "entries/folder.json, not a valid entry",
-        "entries/lost.json: lost, NOT as its rows say",
+        "entries/lost.json: lost, does NOT match its rows",
         "entries/old.json, not a valid entry",
-        "entries/whole.json: base, as its rows say",
+        "entries/whole.json: base, matches its rows",
         "nowhere.json, not a valid entry",
     ]
     wrong = "entries/cut.json is truncated", "entries/folder.json", "lost, File name too long"
@@ -284,9 +284,9 @@ def test_check_warns_of_rows_that_an_entry_omits(rows, tmp_path, monkeypatch, ca
     result_rows.write("rows.jsonl", [*rows, *other, *more, *milder])
     assert command.main(["check", "a.json", "b.json"]) == 0
     assert capsys.readouterr().out.splitlines() == [
-        "a.json: base, as its rows say",
+        "a.json: base, matches its rows",
         "a.json: base, WARNING: its rows also hold seed 1 (agent cccccc)",
-        "b.json: base, as its rows say",
+        "b.json: base, matches its rows",
         "b.json: base, WARNING: its rows also hold seed 1 (agent cccccc), spatter",
     ]
 
