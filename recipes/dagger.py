@@ -126,8 +126,9 @@ class Dagger(Imitate):
         if not _is_plain(piece):
             raise ValueError(
                 f"{type(self.rollouts.agent).__name__}.collect must return plain data (dicts, "
-                f"lists, texts, numbers and tensors), got {type(piece).__name__}: rollouts are "
-                "stored and read without running code. Or choose recipe=imitation."
+                f"lists, texts, numbers and tensors), got {type(piece).__name__}. Files of "
+                "rollouts cannot store other objects. Return plain data, or choose "
+                "recipe=imitation."
             )
         buffer = io.BytesIO()
         torch.save(_floats(piece, torch.float16), buffer)

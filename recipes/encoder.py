@@ -3,11 +3,11 @@ corrupted frames.
 
     L = w_feat * mean((f(corrupted) - f0(clean))^2 / v) + w_gate * BCE(gates, is_corrupted)
 
-f0 is the original encoder, and v is the variance of its clean features between frames. Therefore
-features that do not depend on the frame have a loss of 1. No label, action, instruction or policy
-is needed. A fraction ``schedule.clean_share`` of the frames stays clean, because the rest of an
-agent expects that the features of clean frames do not change. Adapters with a gate learn to leave
-these frames unchanged.
+f0 is the original encoder, and v is the variance of f0(clean) across frames. Therefore features
+that do not depend on the frame have a loss of 1. No label, action, instruction or policy is needed.
+A fraction ``schedule.clean_share`` of the frames stays clean, because the rest of an agent expects
+that the features of clean frames do not change. Adapters with a gate learn to leave these frames
+unchanged.
 """
 
 from __future__ import annotations
@@ -244,7 +244,7 @@ class HardenEncoder(Objective):
 
 
 def variance(clean: Tensor, per_channel: bool) -> Tensor:
-    """Return the variance of features between frames at the same position.
+    """Return the variance of features across frames, computed separately for each position.
 
     Args:
         clean: features of shape [n, C], [n, C, h, w] or [n, T, C].

@@ -113,7 +113,8 @@ def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, f
     """
     if not isinstance(weights or {}, Mapping):
         raise ValueError(
-            f"recipe.losses must be weights by name, such as {{distance: 0.3}}, got {weights}."
+            "recipe.losses must map names of losses to weights, such as {distance: 0.3}, got "
+            f"{weights}."
         )
     check_weights(**{f"losses.{name}": value for name, value in (weights or {}).items()})
     return {**as_agent(agent).loss_weights, **(weights or {})}

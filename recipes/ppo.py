@@ -114,9 +114,9 @@ class Ppo(Objective):
         self.world: Any = world()
         if read(self.world, "reward") is None:
             raise ValueError(
-                f"{type(self.world).__name__} has no reward, which method='ppo' maximises. "
-                "GymWorld and EnvWorld have one; your own world needs the attributes reward "
-                "(of the last step) and terminated. Or use method='self_distil'."
+                f"{type(self.world).__name__} has no reward, but method='ppo' needs one. GymWorld "
+                "and EnvWorld have a reward. Your own world needs the attributes reward (of the "
+                "last step) and terminated. Or use method='self_distil'."
             )
         example = {
             name: np.zeros((1, *sensor.shape), sensor.dtype)

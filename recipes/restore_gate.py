@@ -7,8 +7,8 @@ error, and lowers its fraction of correct pixels by at most ``SPENT``. Otherwise
 The limit ``SPENT`` is needed, because blurring a partly wrong frame can reduce its mean error
 although details are lost. A corrupted frame is ignored if restoring makes it neither clearly better
 nor worse. The inputs of the gate do not change in this stage, so they are computed only once, for
-``instants`` random time steps. At the end, the threshold is set such that a fraction ``touched`` of
-held-out clean frames of the training scenes is above it.
+``instants`` random time steps. At the end, the threshold is set such that the gate's logit
+is above it for a fraction ``touched`` of held-out clean time steps from the training scenes.
 """
 
 from __future__ import annotations
@@ -34,8 +34,9 @@ CLEAN_SHARE = 0.35  # fraction of clean time steps in training (heuristic)
 BETTER = 0.85
 # maximum number of correct pixels that become wrong, as a fraction of all pixels (heuristic)
 SPENT = 0.15
-# Each data set of this recipe samples its time steps with step numbers from its offset onwards.
-# The data sets do not overlap, and none contains time steps on which the network was trained.
+# Each data set of this recipe uses the step numbers from its own offset onwards.
+# Training uses smaller step numbers, so the time steps of all data sets are sampled independently.
+# Frames of a folder can still occur in several data sets, because all of them share one pool.
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 

@@ -113,7 +113,7 @@ def _measure(views, streams, sd, origin, lateral, steps, bias, limits, missing, 
 def measured(
     name: str, profile: Profile, views: np.ndarray, severity: float, key: Key, sensor: DepthSensor
 ) -> np.ndarray:
-    """Return depth with the errors of the camera ``name``, which has this ``profile``.
+    """Return depth with the errors of the camera ``name``, as described by ``profile``.
 
     The published errors are multiplied by ``severity / PUBLISHED``; the range is divided by this
     factor.

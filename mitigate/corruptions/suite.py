@@ -108,13 +108,13 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
         return name
     if name in INSTRUCTION:
         raise ValueError(
-            f"The corruption must change frames ({', '.join(allowed)}), got {name!r}, "
+            f"corruption must be one of {', '.join(allowed)}, got {name!r}, "
             "which changes instructions. Corrupt instructions with mitigate corrupt_episodes, or "
             "with corrupt_instruction in Python."
         )
     if name in registry.FAULTS:
         raise ValueError(
-            f"The corruption must change single frames ({', '.join(allowed)}), got "
+            f"corruption must be one of {', '.join(allowed)}, got "
             f"the {registry.family(name)} fault {name!r}. A fault can be used as a condition of "
             f"an evaluation (conditions=[{name}]) or in a Corruption object; training schedules "
             "do not sample faults."

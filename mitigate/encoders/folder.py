@@ -90,8 +90,9 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load a folder that :func:`write` wrote into ``encoder``, which must have its original
-    weights.
+    """Load the trained weights of a folder into ``encoder``.
+
+    ``folder`` must come from :func:`write`, and ``encoder`` must have its original weights.
 
     Raises the same errors as :func:`card` and ``load_adapters``, and ValueError if the folder
     belongs to an encoder with different settings.

@@ -179,8 +179,8 @@ class Encoder(nn.Module):
         pool: how the report converts features to a vector: "mean" (over positions or tokens),
             "first" (the first token, which is CLIP's class token) or "flatten". In training,
             features are not pooled.
-        tune: which weights are trained: "adapters", or "all" weights of the encoder. BatchNorm
-            statistics stay fixed in both cases.
+        tune: "adapters" to train only the adapters, or "all" to train all weights of the encoder.
+            BatchNorm statistics stay fixed in both cases.
         adapters: a mapping with the keys targets ("auto", or regular expressions), sites (number of
             blocks for "auto"), and reduction, kernel, middle and gate (as in ``insert_adapters``).
 

@@ -1,4 +1,4 @@
-"""Insert the adapters in a folder into an encoder. To use this module, copy it into your project.
+"""Load adapters from a folder into an encoder. To use this module, copy it into your project.
 
     from plain_adapters import attach
 

@@ -85,7 +85,7 @@ OmegaConf.register_new_resolver("times", times, replace=True)
 
 @dataclass
 class EnvConfig:
-    """Options in a file of ``conf/env``; entries without a field here also become attributes."""
+    """Options in a file of ``conf/env``. Undeclared options become attributes too."""
 
     name: str = ""
     world: dict[str, Any] = field(default_factory=dict)
@@ -96,15 +96,13 @@ class EnvConfig:
 
 @dataclass
 class SuiteConfig:
-    """Options in a file of ``conf/suite``; entries without a field here also become attributes."""
+    """Options in a file of ``conf/suite``. Undeclared options become attributes too."""
 
     conditions: list[str] = field(default_factory=list)
 
 
 def open_entries(kind: type[Entries], entries: Mapping[str, Any]) -> Entries:
-    """Construct a dataclass ``kind`` from ``entries``; entries for which it has no field also
-    become attributes.
-    """
+    """Construct a dataclass ``kind`` from ``entries``. Undeclared entries become attributes too."""
     declared = {entry.name for entry in fields(kind)}  # type: ignore[arg-type]
     config = kind(**{name: value for name, value in entries.items() if name in declared})
     vars(config).update(entries)

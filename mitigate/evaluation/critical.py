@@ -255,7 +255,7 @@ class Scores:
         return [(first,), *((c,) for c in others), *((c, first) for c in others)]
 
     def seeds(self, columns: Sequence[str], names: Sequence[str]) -> list[int]:
-        """Return the seeds for which each column has a curve for each corruption in ``names``."""
+        """Return the seeds for which every column has a curve for every corruption in ``names``."""
         runs = [set(self.grid.runs[column]) for column in columns]
         return [
             seed

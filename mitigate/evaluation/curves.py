@@ -1,4 +1,4 @@
-"""Compute the curves of SR against severity in ``severity.png`` and in the HTML page."""
+"""Compute the curves of SR against severity that ``severity.png`` and the HTML page show."""
 
 from __future__ import annotations
 

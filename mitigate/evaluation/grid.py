@@ -101,9 +101,9 @@ def label_columns(
 
     ``measured`` lists the (name, agent hash, seed) of every measured agent.
 
-    Agents that have the same name but different seeds share one column, in which each agent is one
-    training seed. If agents of one name have a seed in common, each of them has its own column,
-    whose label contains the agent's hash.
+    Agents with the same name but different seeds share one column. If two agents with the same name
+    also have the same seed, every agent with this name has its own column, whose label contains the
+    agent's hash.
     """
     seeds: dict[str, dict[str, set[int]]] = defaultdict(lambda: defaultdict(set))
     for name, agent, seed in measured:
@@ -288,10 +288,11 @@ class Grid:
     ) -> list[Retention] | None:
         """Return the values for the PRS of each column over the corruptions ``names``.
 
-        All columns use the same corruptions and episodes. A corruption is left out if the fraction
-        of episodes for which all columns have its result is below :data:`COVERAGE`. An episode is
-        used if all columns have its clean result and its result under each of the corruptions. If
-        no corruption or no episode remains, return None.
+        All columns use the same corruptions and episodes. Only episodes with a clean result in
+        every column are used. A corruption is left out if less than a fraction :data:`COVERAGE` of
+        these episodes has its result in every column. An episode is left out if a result of a
+        remaining corruption is missing in any column. If no corruption or no episode remains,
+        return None.
         """
 
         def complete_at(name: str) -> np.ndarray:
@@ -396,11 +397,11 @@ def _cells(rows: list[Row], place: dict[str, int]) -> _Run:
 def _complete_seeds(
     runs: dict[int, _Run], severity: float
 ) -> tuple[tuple[int, ...], dict[int, tuple[int, int]]]:
-    """Return the complete seeds at ``severity``, and (actual, expected) row counts of the others.
+    """Return the complete seeds at ``severity``, and the row counts of each incomplete seed.
 
-    The results of complete seeds are averaged. A seed is complete if its row count is at least
-    :data:`COVERAGE` times the largest row count of any seed. This must hold separately for clean
-    rows and for corrupted rows. If no seed is complete, the seed with the most rows counts as
+    The row counts of a seed are the pair (actual, expected). A seed is complete if its row count is
+    at least :data:`COVERAGE` times the largest row count of any seed. This must hold separately for
+    clean rows and for corrupted rows. If no seed is complete, the seed with the most rows counts as
     complete. Seeds without rows at ``severity`` are omitted from both returned values.
     """
 

@@ -211,12 +211,12 @@ def _report_unreadable(
     """
     if earlier:
         raise ValueError(
-            f"{place} holds rows of {name}, perhaps of another {kind}: of {owner}, {unreadable} "
-            'cannot be read. Give version="..." to reuse rows of that version, and change it '
-            f"whenever the {kind}'s behaviour changes; or name another folder (out=...)."
+            f"{place} holds rows of {name}, which may come from another {kind}: in {owner}, "
+            f'{unreadable} cannot be read. Give version="..." to reuse rows of that version, and '
+            f"change it whenever the {kind}'s behaviour changes. Or use another folder (out=...)."
         )
     print(
-        f"{name}: of {owner}, {unreadable} cannot be read, so no later call can reuse these rows. "
+        f"{name}: in {owner}, {unreadable} cannot be read, so no later call can reuse these rows. "
         'Give version="..." to allow it.',
         flush=True,
     )
@@ -354,7 +354,7 @@ def first_world(
 def check_classes(agent: Any, world: World, expected: str) -> None:
     """Raise ValueError if the classes differ between a worker process and its parent process.
 
-    ``expected`` is ``Known.classes`` of the parent.
+    ``expected`` is the value of ``Known.classes`` in the parent process.
     """
     layers = tuple(type(layer) for layer in _layers(world))
     if _hash_of_classes(agent, _names_read(layers, None)[0]) != expected:
@@ -429,7 +429,10 @@ def _flat(name: str, values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 
 
 def _text(value: Any) -> str:
-    """Return ``value`` as JSON; other objects are replaced by the names of their classes."""
+    """Return ``value`` as JSON. An object that JSON does not support is converted by ``_as_data``.
+
+    If the conversion fails, return the name of the class. A long text is shortened.
+    """
     try:
         text = json.dumps(_with_text_keys(value), sort_keys=True, default=_as_data)
     except (TypeError, ValueError, RecursionError):  # a cycle, or an object that JSON rejects

@@ -204,9 +204,10 @@ def cuts(rows: Iterable[Row]) -> str:
 
 
 def gather(paths: Iterable[Path | str]) -> list[Row]:
-    """Return the rows of all ``paths``, which are row files or folders (:func:`unique`).
+    """Return the rows of all ``paths``, which are row files or folders.
 
-    Files in a folder that contain other JSON lines are ignored.
+    :func:`unique` removes duplicate rows. Files in a folder that contain other JSON lines are
+    ignored.
 
     Raises:
         FileNotFoundError: If a path does not exist, or a folder contains no rows.

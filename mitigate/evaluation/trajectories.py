@@ -88,7 +88,7 @@ def draw_episode(
 def first_sight(
     world: World, episode: Episode, corruption: Corruption, seed: int
 ) -> tuple[str, list[np.ndarray]]:
-    """Return the name of a sensor and its clean and corrupted frame at the start of an episode.
+    """Return the name of a sensor and its clean and corrupted frames at the start of an episode.
 
     The sensor is "depth" if ``corruption`` changes only depth or the world has no RGB, else "rgb".
     The frames are pictures, uint8 [H, W, 3]. For a world without frames, the name is "" and there

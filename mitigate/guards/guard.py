@@ -122,8 +122,9 @@ class Guard:
     def fingerprint(self) -> str:
         """Return a content hash that identifies this guard in rows.
 
-        The hash covers the class, the code of a user's class, ``settings()`` or attributes, weights
-        and ``version``.
+        The hash covers the class, the weights, ``settings()`` and ``version``. For a user's class,
+        it also covers the code. If the class does not define ``settings()`` itself, the hash also
+        covers the attributes.
 
         Raises:
             ValueError: If the hash cannot cover all of the guard, and ``version`` is None.
@@ -135,7 +136,7 @@ class Guard:
         if content.unreadable:
             raise ValueError(
                 f"The fingerprint of a {kind} must cover all of it, but {content.explain()} cannot "
-                "be read. Give the guard an attribute version, and change it whenever the guard's "
+                "be read. Give the guard a `version` attribute, and change it whenever the guard's "
                 "behaviour changes."
             )
         return f"{kind}-{hash_of(content.parts, {})}"

@@ -205,7 +205,8 @@ def probe(agent: TopologicalAgent, size: int, seed: int = 0) -> dict[str, Tensor
 def outputs(programs: dict[str, Any], probe_inputs: dict[str, Tensor]) -> dict[str, Tensor]:
     """Run both networks, eager or exported, on the probe inputs; return the outputs by name.
 
-    ``decide`` receives the view tokens that ``perceive`` returns, and not those in the probe.
+    ``decide`` receives the view tokens that ``perceive`` returns. View tokens in the probe are not
+    used.
     """
     results: dict[str, Tensor] = {}
     for name in (PERCEIVE, DECIDE):

@@ -37,8 +37,8 @@ class Objective(nn.Module):
     JSON-compatible dict. The optimizer never receives parameters whose ``requires_grad`` is False.
 
     Attributes:
-        sources: maps a constructor parameter to the function that builds its value, which is a
-            source of batches. An example is ``{"rollouts": Rollouts}``.
+        sources: maps a constructor parameter to the function that builds a source of batches for
+            it. An example is ``{"rollouts": Rollouts}``.
         here: whether jobs run only in the training process, and never in a worker.
         ahead: whether workers may run jobs in advance, because jobs read no weights.
         needs: names of the agent's attributes that the objective uses.

@@ -324,8 +324,8 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
         misfit = _misfit(locate(objective.target), agent)
         if misfit:
             raise ValueError(
-                f"{type(agent).__name__} cannot be trained by the stage {name} of recipe="
-                f"{config.name}: {misfit}"
+                f"{type(agent).__name__} cannot be trained with recipe={config.name}, stage "
+                f"{name}: {misfit}"
             )
         identity = {"agent": config.agent, "recipe": dict(_identity(stage.recipe))}
         trainer = stage.settings(config.trainer)

@@ -174,7 +174,7 @@ class Poses(DrawsBySuccess):
         first = int(rng.integers(self.every)) if self.every > 1 else 0
         views = list(range(first, VIEWS, self.every))
         clean, seen, truth = self._put(xy, heading, views, Key(self.seed, name, 0))
-        # A corruption may replace one view by another.
+        # A corruption may replace one view with another.
         # Views that were not rendered are therefore filled with copies of rendered views.
         sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
         seen = {**seen, self.sensor: seen[self.sensor][sources]}

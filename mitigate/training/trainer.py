@@ -44,7 +44,7 @@ class LossNotFinite(ValueError):
 
 @dataclass(eq=False, repr=False)
 class Trainer:
-    """Train ``objective`` for ``steps`` updates of AdamW in ``folder``.
+    """Train ``objective`` with AdamW for ``steps`` updates, with checkpoints in ``folder``.
 
     Args:
         objective: objective to train; see :class:`mitigate.training.objective.Objective`.

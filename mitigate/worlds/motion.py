@@ -60,7 +60,7 @@ class FaultyMotion(WorldWrapper):
             raise ValueError(
                 f"{fault.name!r} cannot change the actions of {type(_innermost(world)).__name__}. "
                 "It needs continuous actions (a Box), or a world that defines move(metres, "
-                "degrees). Of the motion faults, repeated_action works with all actions."
+                "degrees). The only motion fault for all kinds of actions is repeated_action."
             )
 
     def reset(self, episode: Episode) -> Observation:

@@ -114,8 +114,8 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return episode ``number`` and its unique name. Both depend only on ``number`` and on the
-        list of episodes or the seed.
+        """Return the episode with this number, and its unique name. Both depend only on ``number``
+        and on the list of episodes or the seed.
         """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)

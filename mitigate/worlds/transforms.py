@@ -289,7 +289,7 @@ class EpisodeCounter(Transform):
         return next_tensordict.set(FRAME, tensordict.get(FRAME) + 1)
 
     def forward(self, tensordict: TensorDictBase) -> TensorDictBase:
-        """Raise RuntimeError, because episodes and frames can be counted only in an environment.
+        """Raise RuntimeError, because this transform works only in an environment.
 
         Stored data must already contain the numbers of its episodes and frames.
         """

@@ -22,8 +22,8 @@ from mitigate.core.signals import Ended, raise_ended
 pytestmark = pytest.mark.xdist_group("launchers")  # as tests/cluster/test_launchers.py
 
 # This program appends missing rows to a file.
-# It creates the second file unless that file exists or is called "none".
-# If it creates the file, it kills its worker after two rows.
+# At the second row, it creates the second file and kills its parent process, which is a worker.
+# If the second file exists or is called "none", the program does neither.
 ROWS = """
 import os, pathlib, signal, sys, time
 file, note = map(pathlib.Path, sys.argv[1:])

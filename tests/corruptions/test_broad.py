@@ -48,8 +48,8 @@ def test_equal_keys_give_equal_pixels(name, panorama):
 
 
 def test_composition_is_constant_within_an_episode(panorama):
-    """The composition is sampled per episode, so a different frame number changes nothing in
-    compositions without noise."""
+    """All frames of an episode have the same composition, so a composition without noise corrupts
+    them in the same way."""
     remaining = [
         corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 0)).tobytes()
         == corrupt(panorama[0], "broad_rgb", 0.8, key=Key(0, f"e{i}", 1)).tobytes()

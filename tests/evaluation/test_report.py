@@ -148,8 +148,7 @@ def test_partial_table_lists_its_gaps():
 
 
 def test_unfinished_episode_is_left_out():
-    """The evaluator runs one episode after another, so some conditions of the last episode may be
-    missing."""
+    """If an evaluation was interrupted, some conditions of its last episode may be missing."""
     records = column(8, ALL)
     cut = [r for r in records if r["episode_id"] != "9" or r["corruption"] in ("clean", "flare")]
     (section,) = sections(cut)

@@ -1,4 +1,4 @@
-"""Tests of success rules: a name selects the rule of each paper, and every row contains its
+"""Tests of success rules: the rule of a paper is selected by name, and every row contains its
 rule."""
 
 from __future__ import annotations

@@ -183,7 +183,7 @@ def place(tmp_path_factory) -> Path:
 
 @pytest.fixture(scope="module")
 def traced(place) -> Path:
-    """The folder `whole` with its real programs, whose export takes half a minute."""
+    """The folder `whole` with real exported programs. The export takes half a minute."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(programs, "TIMED", 2)
         return export.export(place / "runs/whole", "whole", out=place / "traced")

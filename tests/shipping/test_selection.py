@@ -1,4 +1,4 @@
-"""Tests that the given, the trained or the averaged weights are chosen by validation episodes."""
+"""Tests that validation episodes decide which weights are kept: given, trained or averaged."""
 
 from functools import partial
 

@@ -437,7 +437,7 @@ def test_check_stages_stops_at_the_first_user_stage(monkeypatch):
             "+stages.imitation.recipe.losses={distance: abc}",
             "losses.distance must be a number from 0 to 1e+09, got 'abc'",
         ),
-        ("+stages.imitation.recipe.losses=[1]", "must be weights by name"),
+        ("+stages.imitation.recipe.losses=[1]", "must map names of losses to weights"),
     ],
 )
 def test_plan_rejects_invalid_recipe_arguments(tmp_path, option, words):

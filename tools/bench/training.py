@@ -78,7 +78,7 @@ class Stage:
         precision: Precision of the networks.
         whole: The whole step.
         waiting: Time of a step during which the trainer waits for the batch.
-        alone: Time of forward, backward and update without other processes.
+        alone: Time of forward pass, backward pass and update without other processes.
         parts: Mean time of each part of computing a batch on one core.
     """
 
@@ -174,7 +174,7 @@ def measure_stage(recipe: Objective, name: str, stage: str, steps: int, workers:
 
 
 def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
-    """Return a function that runs forward, backward and update for a batch."""
+    """Return a function that runs the forward pass, backward pass and update for a batch."""
     trained = [p for group in recipe.parameter_groups() for p in group["params"] if p.requires_grad]
     optimizer = torch.optim.AdamW(trained, lr=1e-6)
 

@@ -88,9 +88,9 @@ def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSen
 def _shade(views, offset, side, missing, z_max, out):
     """Remove pixels that no projector ray reaches.
 
-    Columns are counted from the side of the projector. The projector ray that hits column x at
-    depth z has the coordinate x + offset / z. A pixel is lit if the coordinate of its ray is
-    greater than the coordinates of all previous pixels in the row.
+    Columns are counted from the side of the projector. The ray that hits column x at depth z
+    leaves the projector at column x + offset / z. A pixel is lit if the projector column of its ray
+    is greater than those of all previous pixels in the row.
     """
     width = views.shape[2]
     for v in range(views.shape[0]):

@@ -57,8 +57,9 @@ def run(
     document.check_out(out)  # checked first, because the rollouts take minutes
     if options and not walk:
         raise ValueError(
-            f"There is no file {options[0]}. Check the path. If it is an option, also name the "
-            "agents that run episodes with this option (--walk NAME=WEIGHTS)."
+            f"There is no file {options[0]}. If it is a path, correct it. If it is an option of "
+            "mitigate evaluate, also pass --walk NAME=WEIGHTS for each agent that runs episodes "
+            "with this option."
         )
     files = [file for path in paths for file in rows.files(path)]
     with Progress("rows", len(files), unit="file") as progress:

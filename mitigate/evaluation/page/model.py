@@ -20,7 +20,7 @@ from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, STEPS
 from mitigate.evaluation.sections import Retained, Section, label
 
-BASELINES = 12  # the first columns, up to this number, can be chosen as baseline (heuristic)
+BASELINES = 12  # maximum number of columns, from the left, that can be the baseline (heuristic)
 # A column has a fixed cost, so it counts as at least this number of values (heuristic).
 LEAST_VALUES = 10
 DIGITS = 6

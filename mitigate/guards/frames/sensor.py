@@ -209,8 +209,8 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames are always within the range. Depth frames must have valid pixels, and at most the
-        fraction :data:`BEYOND` of the valid pixels may be beyond ``far``. If a larger fraction is
+        RGB frames are always within the range. Depth frames must have valid pixels, and no
+        more than a fraction :data:`BEYOND` of them may be beyond ``far``. If a larger fraction is
         beyond ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):

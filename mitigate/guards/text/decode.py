@@ -88,7 +88,7 @@ def visible(text: str) -> str:
     """Return ``text`` without invisible characters.
 
     Joiners that follow a letter outside ASCII are kept, because some scripts need them. The
-    characters after a right-to-left override are reversed, into the order in which they are
+    characters after a right-to-left override are reversed to match the order in which they are
     displayed.
     """
     if text.isascii():

@@ -33,7 +33,7 @@ GOAL = 17  # a sentence with fewer words than this is often only the name of a g
 BARE = 1.9
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
-# minimum number of words of an English attack that is removed from a text with non-Latin parts
+# In a text with non-Latin parts, an English attack is removed if it has at least this many words.
 SHORTEST = 3
 READ = 60_000  # maximum number of characters of a text that are analysed
 
@@ -65,10 +65,10 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
     """Return the pieces of a text that are attacks.
 
-    At most one piece is returned, except for a text with non-Latin parts. For such a text, all
-    English attacks are returned if the route may be in the non-Latin parts. This is assumed if more
-    than the fraction ``FOREIGN`` of the letters is not Latin, or if the log odds of an attack in
-    the Latin parts are above ``ROUTE``.
+    At most one piece is returned, unless the route may be in non-Latin parts of the text. In that
+    case, every English part that looks like an attack is returned. The route may be in the
+    non-Latin parts if more than the fraction ``FOREIGN`` of the letters is not Latin, or if the log
+    odds of an attack in the Latin parts are above ``ROUTE``.
     """
     clauses = classifier.clauses(text[:READ])
     english = [clause for clause in clauses if clause.script != "other"]

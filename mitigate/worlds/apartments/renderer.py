@@ -262,8 +262,10 @@ def _id_colours(ids: np.ndarray) -> np.ndarray:
 
 
 def _turn(mount: Mount, heading: float) -> np.ndarray:
-    """Return the rotation matrix [3, 3] that turns directions of a level camera rig into the plan
-    frame.
+    """Return the rotation matrix [3, 3] that applies ``mount`` to the directions of a camera rig.
+
+    The matrix maps the directions of a level rig with ``heading`` to those of the mounted rig. All
+    directions are in the plan frame.
     """
     if (mount.pitch, mount.roll, mount.yaw) == (0.0, 0.0, 0.0):
         return np.eye(3)

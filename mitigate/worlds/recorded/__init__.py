@@ -64,9 +64,9 @@ def open_recording(
         cameras: Names of the cameras to read from a dataset or a recording of ``mitigate run``. If
             None, all are read.
         episodes: Numbers of the episodes to read from a dataset. If None, all are read.
-        tolerance: Maximum time difference in seconds. In a bag or a TUM folder, it applies to the
-            messages of a time step (default 0.1). In a dataset, it applies to a row and its video
-            frame (default 0.0001).
+        tolerance: Maximum time difference in seconds between the messages of a time step in a bag
+            or TUM folder (default 0.1), or between a row of a dataset and its video frame (default
+            0.0001).
 
     Returns:
         The drives.

@@ -366,9 +366,9 @@ class Step:
     def choose(self, times: np.ndarray, poses: np.ndarray | None) -> np.ndarray:
         """Choose the recorded times at which an agent receives an observation.
 
-        The first time is chosen. After that, a time is chosen if it is about one step or more after
-        the previously chosen time. If poses are known, the final time is also chosen. If the final
-        two chosen times then have nearly the same pose, only the final time is kept.
+        The earliest time is always chosen. A later time is chosen if it is about one step or more
+        after the previously chosen time. If poses are known, the final time is also chosen. If the
+        final two chosen times then have nearly the same pose, only the final time is kept.
 
         Args:
             times: float64 [N], seconds.

@@ -105,7 +105,7 @@ def choose_topics(
         listed = ", ".join(f"{name} ({escaped(str(kind))})" for name, kind in some)
         raise ValueError(
             f"{path} has no topic with images. Its topics are {listed or 'none'}. Record a topic "
-            f"of {' or '.join(IMAGES)}."
+            f"of type {' or '.join(IMAGES)}."
         )
     infos = [name for name, kind in available.items() if kind == INFO]
     for option, kind in INFO_OPTIONS.items():

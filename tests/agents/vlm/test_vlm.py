@@ -36,7 +36,7 @@ FRAME = Corridor().reset(episode(2, 5))["rgb"]
 
 @pytest.fixture(scope="session")
 def folder_of(tmp_path_factory):
-    """A function that returns the folder with the tiny model of an architecture."""
+    """A function that takes an architecture and returns the folder of its tiny model."""
     folder = tmp_path_factory.mktemp("vlm")
     return cache(lambda name: write_model(folder / name, name))
 

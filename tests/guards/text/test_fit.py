@@ -25,8 +25,7 @@ ATTACKS = [
 
 @pytest.fixture(scope="module")
 def data(tmp_path_factory):
-    """Write a few lines to every text collection, including one attack of a kind that no other line
-    contains."""
+    """Write a few lines of every text collection, and attacks with a mechanism of their own."""
     folder = tmp_path_factory.mktemp("data")
     source = ROOT / "tools/safeguard/data"
     for part in ("banks", "styles"):

@@ -18,7 +18,7 @@ from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
 
-ROUTES = 1200  # number of routes from templates, and also number of routes in random styles
+ROUTES = 1200  # number of routes from templates; the same number is added in random styles
 BLOCK = 20  # in files without named groups, this many consecutive lines form a group
 # Hand-written benign texts that look like attacks have the highest weight in training.
 ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_routes": 2.0}
