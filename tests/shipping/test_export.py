@@ -282,7 +282,7 @@ def test_evaluation_and_training_take_a_folder_of_adapters(place):
     node = building.settings_of(node_of({}), folder)
     agent = building.build_agent(node, weights=folder, seed=0)
     assert checkpoint.weights_sha(agent) == loading.check_hardened(Path(folder))["run_agent"]
-    with pytest.raises(ValueError, match="other modules"):
+    with pytest.raises(ValueError, match="but names others"):
         building.build_agent(node_of(TINY), weights=folder, seed=0)
 
 

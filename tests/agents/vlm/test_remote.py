@@ -201,7 +201,7 @@ def test_settings_that_change_no_action_keep_the_fingerprint(server):
         ({"model": ""}, "agent.model"),
         ({"otherwise": "dance"}, "agent.otherwise must be one of stop, forward 25 cm"),
         ({"together": 0}, "agent.together"),
-        ({"url": "http://user:secret@host/v1"}, "contains a user"),
+        ({"url": "http://user:secret@host/v1"}, "must not contain @"),
     ],
 )
 def test_remote_explains_a_wrong_setting(settings, words):
