@@ -48,7 +48,7 @@ class Judged(NamedTuple):
         textures: input of the gate [N, V, t].
         before: mean error of the original frames [N], divided by the range.
         after: mean error of the restored frames [N].
-        spent: decrease of the fraction of pixels within ``TOLERANCE`` through restoring [N].
+        spent: how much restoring lowers the fraction of pixels within ``TOLERANCE`` [N].
     """
 
     stats: Tensor
@@ -197,8 +197,8 @@ class RestoreGate(Objective):
     def evaluate(self, step: int) -> dict[str, float]:
         """Return the threshold and the fractions of clean and of corrupted time steps above it.
 
-        The clean time steps are not used elsewhere. The corrupted time steps are only those whose
-        error decreases through restoring. The threshold is set only at the end of training.
+        The clean time steps are not used elsewhere. Of the corrupted time steps, only those with
+        target 1 are counted. The threshold is set only at the end of training.
         """
         ring = self.pairs.ring
         fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)

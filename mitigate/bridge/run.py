@@ -208,7 +208,7 @@ def _run_here(cells: Sequence[Cell], jobs: int) -> list[str]:
         while waiting or running:
             while waiting and len(running) < jobs:
                 attempt = Attempt(waiting.pop(0))
-                # append the attempt before its start, so that an interrupted start is cleaned up
+                # append the attempt first, so that it is also killed if _start() is interrupted
                 running.append(attempt)
                 if start_problem := _start(attempt):  # the other conditions continue
                     running.remove(attempt)

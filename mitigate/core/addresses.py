@@ -75,7 +75,7 @@ def check_choice(choice: object) -> None:
 
 
 def is_plain(choice: object) -> bool:
-    """Return whether a value of ``safeguard=`` cannot be the address of an endpoint.
+    """Return True if a value of ``safeguard=`` is certainly not the address of an endpoint.
 
     Only such values may be shown in messages, because an address may contain a password.
     """

@@ -152,9 +152,7 @@ def from_gymnasium(space: Any) -> ActionSpace:
 
 
 def _scalar(action: Any) -> Any:
-    """Return the element of an array or tensor that has only one; return other objects
-    unchanged.
-    """
+    """Return ``action``, or its element if it is an array or tensor of shape () or (1,)."""
     return action.item() if getattr(action, "shape", None) in ((), (1,)) else action
 
 

@@ -22,7 +22,8 @@ BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernel
 LONG_BLUR = 12.0  # lines of at least this length in px have taps only in every second column
 # maximum angle to the horizontal in degrees; it is small, because robots mostly turn in yaw
 BLUR_ANGLE = 10.0
-# sigma at severity 1 as a fraction of min(H, W); ImageNet-C disks have radii of 3 to 10 px at 224
+# sigma at severity 1 as a fraction of min(H, W)
+# For comparison, the blur disks of ImageNet-C have radii of 3 to 10 px in images of 224 px.
 DEFOCUS_SIGMA = 5.0 / 224.0
 DEFOCUS_SPREAD = 0.2
 DEFOCUS_LEAST = 0.15  # minimum sigma in px; a narrower Gaussian has no effect

@@ -81,8 +81,8 @@ def card(folder: str | Path) -> dict[str, Any]:
     file = Path(folder) / CARD
     if not file.is_file():
         raise FileNotFoundError(
-            f"{folder} must contain a hardened encoder, but {CARD} is missing. Name the folder "
-            "`agent` of a run of `make train RECIPE=encoder`."
+            f"{folder} must contain a hardened encoder, but {CARD} is missing. Give the path of "
+            "the folder `agent` that `make train RECIPE=encoder` writes into its run folder."
         )
     if damage := folders.problem(file):
         raise ValueError(f"{file} is truncated or damaged: it {damage}. {_AGAIN}")

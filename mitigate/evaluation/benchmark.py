@@ -289,8 +289,8 @@ def _episodes(
     """Return the split and the episodes to run.
 
     Raises:
-        ValueError: If there are no episodes. It is also raised if ``listed`` is None although the
-            world's class differs from the configured class (``own``).
+        ValueError: If there are no episodes. It is also raised if the world's class differs from
+            the configured class (``own``) and ``listed`` is None.
     """
     split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:

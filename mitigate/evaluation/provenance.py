@@ -44,7 +44,8 @@ from mitigate.worlds.world import World
 
 # Data from which the hashes of agents without settings() are computed, by the id() of the agent.
 # Each value is a tuple: a function that returns the agent, its newest data and its oldest data.
-# The newest data were read after the last evaluation, and the oldest data before the first one.
+# The newest data describe the agent as it was after its last evaluation.
+# The oldest data describe it as it was before its first evaluation since a user last changed it.
 _last: dict[int, tuple[Callable[[], Any], Any, Any]] = {}
 # Hashes of the attributes of classes, and of the global names that their code uses.
 # Each key is a pair (classes of the world and its environments, version that the user passed).
@@ -111,8 +112,8 @@ class Known:
         Return ``self``.
 
         Raises:
-            ValueError: If ``file`` already holds rows of this agent, but its state cannot be read
-                completely.
+            ValueError: If ``file`` already holds rows of this agent, but the agent's state cannot
+                be read completely.
         """
         rows = read(file) if file.exists() else []
         known = any(row["agent"] == self.hash for row in rows)

@@ -100,9 +100,10 @@ class Section:
 
     @cached_property
     def halves(self) -> dict[str, dict[str, tuple[str, ...]]]:
-        """For each block of unseen corruptions, its validation and test halves by heading.
+        """The validation half and the test half of each block of unseen corruptions.
 
-        A block is left out if one of its halves was not measured.
+        The outer keys are blocks, and the inner keys are headings of the halves. A block is left
+        out if one of its halves was not measured.
         """
         of_half = [(half, {n for n in UNSEEN if UNSEEN[n].half == half}) for half in HALVES]
         by_block = {

@@ -66,8 +66,8 @@ def walk(
     """Run ``agent`` on a recorded drive under ``corruption`` and return its decisions.
 
     After each step, the agent receives the driver's motion (``Agent.taken``). If the motion is
-    unknown and actions are discrete, the agent receives the motion of the action that it chose on
-    clean frames. So runs under different corruptions differ only in frames and instructions.
+    unknown and actions are discrete, the agent receives the motion of the action that it chose for
+    the clean frames. So runs under different corruptions differ only in frames and instructions.
 
     Args:
         agent: The agent.

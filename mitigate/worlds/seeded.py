@@ -395,9 +395,10 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
         valid = False
     if not valid:
         raise ValueError(
-            f"{source} must be a truth value, 0 or 1 (or an array or a list of these) at the end "
-            f"of episode {episode}, got {value!r:.80}. Set success= to a function that compares "
-            'it, such as success=lambda end: end.info["score"] >= 0.5, with rule="score >= 0.5".'
+            f"{source} must be True, False, 0 or 1 (or an array or a list of these) at the end of "
+            f"episode {episode}, got {value!r:.80}. Set success= to a function that returns True "
+            'or False, such as success=lambda end: end.info["score"] >= 0.5, with '
+            'rule="score >= 0.5".'
         )
     return any(parts)
 

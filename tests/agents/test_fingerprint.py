@@ -575,8 +575,7 @@ def _biased_planner(bias):
 
 
 def _with(owner, name, value, output):
-    """Return a function that replaces an attribute of a class or module during the test and returns
-    an agent."""
+    """Return a function that patches an attribute of ``owner`` and then creates an agent."""
 
     def make(number, patch):
         patch.setattr(owner, name, value(number), raising=False)

@@ -16,8 +16,10 @@ def panorama():
 
 @pytest.fixture
 def obs(panorama):
-    """Return an observation as ETPNav receives it: the entry rgb_A faces A degrees to the left and
-    is view 12 - A / 30."""
+    """Return an observation as ETPNav receives it.
+
+    The entry rgb_A faces A degrees to the left. It has the index ``12 - A / 30`` in the panorama.
+    """
     rgb, depth = panorama
     entries = {"instruction": "go", "rgb": rgb[0], "depth": depth[0]}
     for step in range(1, 12):

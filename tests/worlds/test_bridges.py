@@ -178,7 +178,7 @@ def test_gym_world_rejects_invalid_success_values(reported):
     from mitigate.worlds.gym import GymWorld
 
     world = GymWorld(Room(), success=lambda end: reported, rule="anything")
-    with pytest.raises(ValueError, match=r"must be a truth value, 0 or 1"):
+    with pytest.raises(ValueError, match=r"must be True, False, 0 or 1"):
         run_episode(Brightness(), world, episode(3), CLEAN, 0)
 
 

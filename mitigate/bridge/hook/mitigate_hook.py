@@ -1091,7 +1091,7 @@ def _check_number(value, name, most=math.inf):
 def _find_cameras(observations, cameras):
     """Return a copy of the observations and the description of each camera in them.
 
-    If an entry may be a frame but is not described, the process stops.
+    If an entry has the shape of a frame but no known type, the process stops.
     """
     observations, cameras, described = dict(observations), dict(cameras or {}), []
     for name, value in observations.items():
@@ -1124,7 +1124,7 @@ def _find_cameras(observations, cameras):
 
 
 def _find_frame(value, name):
-    """Return the name and shape of the first array in an entry that may be a frame, else None.
+    """Return the name and shape of the first array that has the shape of a frame, else None.
 
     Nested dicts and lists are searched.
     """
@@ -1144,9 +1144,7 @@ def _find_frame(value, name):
 
 
 def _may_be_frame(shape):
-    """Return whether an array of this shape may be a frame: two dimensions must be larger than
-    8.
-    """
+    """Return whether this is the shape of a frame: at least two dimensions are larger than 8."""
     return len(shape) > 1 and sorted(shape)[-2] > 8
 
 

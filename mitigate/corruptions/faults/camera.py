@@ -7,9 +7,9 @@ pixels whose rotation or field of view changes. Pixels that the original camera 
 black, or have no depth reading. A change of height cannot be computed from a frame: the world must
 render it.
 
-The cameras of a panorama form a rigid rig: all views move together. If the rig pitches, a camera
-that looks sideways rolls. In a pair of corruptions, the camera fault is applied first. The ranges
-are heuristic.
+The cameras of a panorama form a rigid rig: all views move together. If the rig pitches, the
+sideways-facing cameras roll. In a pair of corruptions, the camera fault is applied first. The
+ranges are heuristic.
 """
 
 from __future__ import annotations

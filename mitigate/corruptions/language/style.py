@@ -1,9 +1,10 @@
 """Rewrite instructions with rules in four styles: friendly, novice, professional and formal.
 
 Each clause of an instruction is classified (turn, climb, pass, enter and others) and rewritten with
-a template of the style. A clause of an unknown kind keeps its words and is inserted into a phrase
-of the style ("frame"). The fidelity gate checks each clause and the whole text. If the gate rejects
-a text, the instruction is rewritten again with fewer changes.
+a template of the style. A clause of an unknown kind keeps its words. Clauses that begin with a verb
+are then inserted into phrases of the style, such as "Then {}". The fidelity gate checks each clause
+and the whole text. If the gate rejects a text, the instruction is rewritten again with fewer
+changes.
 """
 
 from __future__ import annotations

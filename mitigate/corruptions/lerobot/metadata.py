@@ -240,7 +240,7 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
 
 
 def _template(file: Path, key: str, template: object) -> str:
-    """Return a path template of meta/info.json after checking it.
+    """Check a path template that meta/info.json contains, and return it.
 
     Raises:
         ValueError: If the template is not a relative path, leads outside of the dataset, or has a

@@ -273,6 +273,6 @@ def corrupt_video(
 
 
 def _video_frame(pixels: np.ndarray) -> Any:
-    """Return a frame for the encoder from RGB [H, W, 3] or codes of depth [H, W]."""
+    """Convert RGB [H, W, 3] or depth codes [H, W] to a frame for the encoder."""
     form = RGB_PIXELS if pixels.ndim == 3 else DEPTH_PIXELS
     return video_library().VideoFrame.from_ndarray(pixels, format=form)

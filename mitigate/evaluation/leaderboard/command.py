@@ -45,8 +45,9 @@ def rows_of(entry: LeaderboardEntry) -> list[Row]:
         raise ValueError(f"{entry.name} must name one file of rows, but {file} is not a file.")
     if not file or not path.exists():
         raise FileNotFoundError(
-            f"The rows of {entry.name} are not available ({file or 'the entry names no file'}): "
-            f"copy them to {file or 'a file'}, below the folder in which you run this."
+            f"The rows of {entry.name} are not available ({file or 'the entry names no file'}). "
+            f"Copy them to {file or 'a file and name it in the entry'} (relative to the current "
+            "folder)."
         )
     return result_rows.gather([path])
 

@@ -57,9 +57,9 @@ def run(
     document.check_out(out)  # checked first, because the rollouts take minutes
     if options and not walk:
         raise ValueError(
-            f"There is no file {options[0]}. If it is a path, correct it. If it is an option of "
-            "mitigate evaluate, also pass --walk NAME=WEIGHTS for each agent that runs episodes "
-            "with this option."
+            f"There is no file or folder {options[0]}. If you meant a path, correct it. If you "
+            "meant an option of mitigate evaluate, also pass --walk NAME=WEIGHTS for each agent "
+            "that runs episodes with this option."
         )
     files = [file for path in paths for file in rows.files(path)]
     with Progress("rows", len(files), unit="file") as progress:

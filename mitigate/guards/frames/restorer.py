@@ -79,8 +79,8 @@ class Restorer(nn.Module, Guard):
         """
         if sensor not in self.nets:
             raise ValueError(
-                f"This restorer is for {', '.join(self.nets)}, not for {sensor}: write restore= "
-                f"without :{sensor}."
+                f"This restorer is for {', '.join(self.nets)}, not for {sensor}. Remove "
+                f":{sensor} from restore=."
             )
         self.nets = nn.ModuleDict({sensor: self.nets[sensor]})
         self._settings["sensors"] = [sensor]

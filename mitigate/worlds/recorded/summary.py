@@ -79,7 +79,8 @@ def describe(
         lines.append(line)
     if recording.poses is None:
         lines.append(
-            f"{POSE}: none, so agents receive the motion of their own decisions on clean frames"
+            f"{POSE}: none, so agents receive the motion of the actions that they chose for the "
+            "clean frames"
         )
     else:
         metres = np.hypot(*np.diff(recording.poses[:, :2], axis=0).T).sum()

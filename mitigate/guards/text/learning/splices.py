@@ -23,7 +23,7 @@ SPLICES = 24_000  # number of training texts that are generated for the network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum number of characters of a training text
 SHORT = 7  # maximum number of words of an attack that is added to another attack
-CLAUSE = 12  # an attack with fewer words than this can become a clause of a sentence
+CLAUSE = 12  # an attack with fewer words than this can be inserted into a sentence as a clause
 JOINS = ("", "", "and ", "but ", "but first ", "no wait, ", "please ", "or rather ")
 SEPARATORS = ("\n", " - ", ", ", "; ", "... ", " / ")
 
