@@ -26,7 +26,7 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the repair rules; increase it whenever the repair of any text changes
-VERSION = "13"
+VERSION = "14"
 ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 

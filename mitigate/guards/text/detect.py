@@ -19,7 +19,7 @@ from mitigate.guards.text.pieces import Piece, without
 # if more than this fraction of the letters is not Latin, the route may be in a non-Latin script
 FOREIGN = 0.3
 ROUTE = -1.0  # English text is treated as a route if its log odds of an attack are below this
-ATTACK = 1.3  # a text contains an attack if the log odds of the networks are above this
+ATTACK = 1.0  # a text contains an attack if the log odds of the networks are above this
 # The networks' score is reduced if the regression gives the detected span log odds below this.
 # It is reduced by the difference between this value and the regression's log odds.
 # Without this second opinion, three times as many R2R-CE routes were harmed.

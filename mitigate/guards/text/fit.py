@@ -3,10 +3,10 @@
 The command needs a checkout of the repository, because it reads the texts in
 ``tools/safeguard/data``. First, two logistic regressions are trained: one predicts whether a
 sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then
-``NETWORKS`` networks with different seeds are trained to find where an attack begins and ends. They
-are trained on benign texts, most of which contain an inserted attack. The regression scores of a
-training text come from regressions that were trained without the text's fold. Otherwise, the scores
-would be more accurate than the scores of new texts, and the networks would rely on them too much.
+a network is trained to find where an attack begins and ends. It is trained on benign texts, most of
+which contain an inserted attack. The regression scores of a training text come from regressions
+that were trained without the text's fold. Otherwise, the scores would be more accurate than the
+scores of new texts, and the network would rely on them too much.
 """
 
 from __future__ import annotations
@@ -46,7 +46,6 @@ BACKWARDS = 50  # a word counts as written backwards if its reversal is this man
 RIDGE = 2.0  # weight of the L2 penalty
 STEPS, STYLE_STEPS = 90, 50
 FOLD_STEPS = 40  # number of training steps when the attack regression is fitted without one fold
-NETWORKS = 2  # number of networks; their scores are averaged
 Weights = tuple[np.ndarray, float]
 Pair = tuple[Weights, Weights]
 
@@ -78,8 +77,13 @@ class Regressions:
         )
 
 
-def fit(folder: Path, routes: int = ROUTES, texts: int = SPLICES) -> Classifier:
-    """Train a classifier on the data in a folder."""
+def fit(
+    folder: Path, routes: int = ROUTES, texts: int = SPLICES, earlier: Classifier | None = None
+) -> Classifier:
+    """Train a classifier on the data in a folder.
+
+    The scores of its network are averaged with the scores of the networks of ``earlier``.
+    """
     lines = read_lines(folder, routes)
     regressions = regress(lines)
     classifiers = [regressions.classifier(fold) for fold in range(FOLDS)]
@@ -88,12 +92,11 @@ def fit(folder: Path, routes: int = ROUTES, texts: int = SPLICES) -> Classifier:
         for splice in splices(lines, read_frames(folder), texts)
         if (example := _example(splice, classifiers[splice.fold]))
     ]
-    networks = []
-    for seed in range(NETWORKS):
-        say(f"training network {seed + 1} of {NETWORKS} on {len(examples)} texts")
-        networks.append(train(examples, seed))
-    arrays = {name: np.concatenate([network[name] for network in networks]) for name in NAMES}
-    return regressions.classifier(network=arrays)
+    say(f"training the network on {len(examples)} texts")
+    network = train(examples, seed=0)
+    if earlier is not None:
+        network = {name: np.concatenate([network[name], earlier.arrays[name]]) for name in NAMES}
+    return regressions.classifier(network=network)
 
 
 def regress(lines: Sequence[Line]) -> Regressions:
@@ -229,8 +232,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m mitigate.guards.text.fit", description=__doc__)
     parser.add_argument("--data", type=Path, default=find(DATA), help="banks and styles")
     parser.add_argument("--out", type=Path, required=True, help="folder of the new classifier")
+    parser.add_argument("--average", type=Path, help="a classifier whose networks are added")
     options = parser.parse_args(arguments)
-    save(fit(options.data), options.out)
+    earlier = model.load(options.average) if options.average else None
+    save(fit(options.data, earlier=earlier), options.out)
     print(f"wrote {options.out}: try it with safeguard={options.out}")
 
 

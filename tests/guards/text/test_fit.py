@@ -43,7 +43,9 @@ def data(tmp_path_factory):
 @pytest.mark.slow
 def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
     monkeypatch.setattr(fit, "STEPS", 30)
-    output = fit.fit(data, routes=40, texts=2000)
+    shipped = classifier.load(find(choices.CLASSIFIER))
+    output = fit.fit(data, routes=40, texts=2000, earlier=shipped)
+    assert len(output.arrays["net_none"]) == 1 + len(shipped.arrays["net_none"])
     fit.save(output, tmp_path)
     again = classifier.load(tmp_path)
     text = "Turn left at the sofa. Blorp the snarfle, zib. Stop by the lamp."
@@ -66,7 +68,7 @@ def test_load_adds_the_shipped_network_to_an_older_classifier(tmp_path, extra):
 
 def test_load_averages_one_or_more_networks(tmp_path):
     shipped = classifier.load(find(choices.CLASSIFIER))
-    assert shipped.arrays["net_none"].shape == (fit.NETWORKS, 1)
+    assert len(shipped.arrays["net_none"]) > 1
     one = {name: a[:1] if name.startswith("net_") else a for name, a in shipped.arrays.items()}
     (tmp_path / "classifier.json").write_text(json.dumps(shipped.config))
     save_file(one, tmp_path / "classifier.safetensors")

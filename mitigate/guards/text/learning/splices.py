@@ -19,7 +19,7 @@ from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
 # number of folds into which the texts are divided; all texts of a group are in the same fold
 FOLDS = 4
-SPLICES = 24_000  # number of training texts that are generated for the network
+SPLICES = 60_000  # number of training texts that are generated for the network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum number of characters of a training text
 SHORT = 7  # maximum number of words of an attack that is added to another attack
