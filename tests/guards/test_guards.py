@@ -119,7 +119,7 @@ def test_fingerprint_of_a_guard_covers_its_attributes_and_version():
     assert len({guard.fingerprint() for guard in (one, other, third)}) == 3
     assert Dark().fingerprint() == one.fingerprint() != Shouts().fingerprint()
     one.opaque = iter([1])
-    with pytest.raises(ValueError, match="opaque.* cannot be read. Give the guard an attribute"):
+    with pytest.raises(ValueError, match="opaque.* cannot be read. Give the guard a `version`"):
         one.fingerprint()
     one.version = "3"
     assert one.fingerprint().startswith("Dark-")

@@ -275,7 +275,7 @@ def test_report_command_rejects_invalid_outputs(tmp_path, capsys, rows):
 def test_report_command_accepts_a_path_with_equals_sign(tmp_path, capsys):
     out = str(tmp_path / "out.html")
     assert command.main(["runs/severity=0.3/rows.jsonl", "--out", out]) == 2
-    assert "no file runs/severity=0.3/rows.jsonl" in capsys.readouterr().err
+    assert "no file or folder runs/severity=0.3/rows.jsonl" in capsys.readouterr().err
     assert not (tmp_path / "out.html").exists()
 
 
