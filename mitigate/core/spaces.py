@@ -60,9 +60,7 @@ class Box(ActionSpace):
     def check(self, action: Any) -> np.ndarray:
         values = _array(action, self.low.shape, "real numbers")
         if not np.issubdtype(values.dtype, np.number) or not np.isfinite(values).all():
-            raise ValueError(
-                f"The action must be finite real numbers, got {_text(action)}."
-            )
+            raise ValueError(f"The action must be finite real numbers, got {_text(action)}.")
         values = values.astype(self.low.dtype)
         if (values < self.low).any() or (values > self.high).any():
             raise ValueError(
