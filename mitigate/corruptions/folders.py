@@ -328,8 +328,11 @@ def check_folders(source: Path, out: Path) -> None:
         ValueError: If ``out`` is a file, or one folder contains the other.
     """
     if not source.is_dir():
-        hint = " Put single files into a folder." if source.is_file() else " Check the path."
-        raise FileNotFoundError(f"There is no folder {source}.{hint}")
+        if source.is_file():
+            raise FileNotFoundError(
+                f"{source} must be a folder, got a file. Put the file into a folder of its own."
+            )
+        raise FileNotFoundError(f"There is no folder {source}. Check the path.")
     if out.exists() and not out.is_dir():
         raise ValueError(f"{out} is a file. Name a folder to write to.")
     real_source = source.resolve()

@@ -313,6 +313,12 @@ def corrupt(
     key = as_key(key)
     heading = check_heading(heading)
     frame = np.asarray(frame)
+    if frame.dtype.kind in "OSU":
+        raise ValueError(
+            f"The frame must be an array of numbers, got {frame.ravel()[:1].tolist()!r:.60}. Read "
+            'a file with cv2.imread("photo.jpg")[..., ::-1]; cv2.imread returns None if it cannot '
+            "read the file."
+        )
     record = registry.record(name)
     if record.family == MOTION:
         raise ValueError(

@@ -237,7 +237,8 @@ def _check_earlier(out: Path, settings: dict[str, Any]) -> None:
     for name, value in settings.items():
         if earlier.get(name) != value:
             raise ValueError(
-                f"{out} contains a replay with another {name} ({short(earlier.get(name))}). {fix}"
+                f"{out} contains a replay with {name}={short(earlier.get(name))}, but this "
+                f"command has {name}={short(value)}. {fix}"
             )
 
 

@@ -296,7 +296,7 @@ def test_folders_that_cannot_work_are_explained(run, walk):
     (walk / "file").write_text("x")
     (walk / "empty").mkdir()
     assert "There is no folder" in complaint(run(*SPATTER, source="gone"))
-    assert "Put single files into a folder" in complaint(run(*SPATTER, source="file"))
+    assert "must be a folder, got a file" in complaint(run(*SPATTER, source="file"))
     assert "is a file" in complaint(run(*SPATTER, out="file"))
     assert "Cannot write" in complaint(run(*SPATTER, out="file/under"))
     for source, out in (("in", "in"), ("in", "in/out"), ("in/a", "in"), ("in", "empty/../in/x")):

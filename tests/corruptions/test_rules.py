@@ -121,6 +121,12 @@ def test_odd_and_tiny_frames_work(name, size):
 BAD_SEVERITIES = [1.2, -0.1, float("nan"), float("inf"), "much", None, "0.5", True, False, np.True_]
 
 
+@pytest.mark.parametrize("frame", [None, "photo.jpg"])
+def test_frame_that_was_not_read_is_rejected(frame):
+    with pytest.raises(ValueError, match=r"array of numbers, got \[.*cv2\.imread"):
+        corrupt(frame, "spatter", 0.6, key=7)
+
+
 @pytest.mark.parametrize("severity", BAD_SEVERITIES)
 def test_severity_outside_zero_to_one_is_rejected(severity, panorama):
     with pytest.raises(ValueError, match="from 0 .clean. to 1"):
