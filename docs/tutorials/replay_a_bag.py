@@ -82,12 +82,12 @@ report = mitigate.replay_recordings(
 print(sorted(path.name for path in report.iterdir()))
 
 # %% [markdown]
-# The command `mitigate replay` does the same. It accepts a policy in a file (here `my_policy.py` in
-# the current folder) and folders of weights:
+# The command `mitigate replay` does the same. It accepts a policy in a file and folders of weights.
+# For the first line, save the class above and its imports as `my_policy.py` in the current folder:
 #
 # ```bash
-# mitigate replay runs/drives agents=[my_policy:AvoidObstacles] suite=depth
-# mitigate replay runs/drives agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]
+# mitigate replay runs/drives "agents=[my_policy:AvoidObstacles]" suite=depth out=runs/replay/mine
+# mitigate replay runs/drives "agents=[checkpoints/recurrent/base,checkpoints/recurrent/teacher]"
 # ```
 #
 # ## Decisions one by one
@@ -102,3 +102,8 @@ policy = AvoidObstacles()
 clean = walk(policy, recording, CLEAN, seed=0)
 corrupted = walk(policy, recording, Corruption("missing_data", 0.6), seed=0, clean=clean)
 print("changed steps:", np.flatnonzero(clean.actions != corrupted.actions))
+
+# %% [markdown]
+# The percentages in the table are shares of changed decisions, not of failures. In `missing_data`,
+# most holes are 0 m: the policy reads them as obstacles and turns left where it drove forward on
+# clean frames.
