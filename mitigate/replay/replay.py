@@ -328,11 +328,15 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
 
     if any(record(part.name).modality == "action" for part in corruption.parts):
         return "the recording decides how the robot moves"
-    for drive in drives:
-        for part in corruption.parts:
-            sensors = {"rgb", "depth"} & {*record(part.name).modalities}
+    read = as_agent(agent).sensors
+    for part in corruption.parts:
+        sensors = {"rgb", "depth"} & {*record(part.name).modalities}
+        names = " or ".join(sorted(sensors))
+        if sensors and read is not None and not sensors & {*read}:
+            return f"the agent does not read {names} frames"
+        for drive in drives:
             if sensors and not sensors & {*drive.frames}:
-                return f"{drive.name} has no {' or '.join(sorted(sensors))} frames"
+                return f"{drive.name} has no {names} frames"
     if "white_box" in parts(corruption.name) and not as_agent(agent).system_prompt:
         return "the agent has no system prompt"
     return ""
