@@ -13,7 +13,7 @@ from __future__ import annotations
 import json
 import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass, field
 from functools import partial
 from itertools import product
@@ -329,17 +329,20 @@ def inapplicable(corruption: Any, agent: Any, drives: Sequence[Any]) -> str:
     if any(record(part.name).modality == "action" for part in corruption.parts):
         return "the recording decides how the robot moves"
     read = as_agent(agent).sensors
-    for part in corruption.parts:
-        sensors = {"rgb", "depth"} & {*record(part.name).modalities}
-        names = " or ".join(sorted(sensors))
-        if sensors and read is not None and not sensors & {*read}:
-            return f"the agent does not read {names} frames"
-        for drive in drives:
-            if sensors and not sensors & {*drive.frames}:
-                return f"{drive.name} has no {names} frames"
+    needs = [{"rgb", "depth"} & {*record(part.name).modalities} for part in corruption.parts]
+    if read is not None and needs and all(need and not need & {*read} for need in needs):
+        return f"the agent does not read {_either(set.union(*needs))} frames"
+    for drive in drives:
+        for need in needs:
+            if need and not need & {*drive.frames}:
+                return f"{drive.name} has no {_either(need)} frames"
     if "white_box" in parts(corruption.name) and not as_agent(agent).system_prompt:
         return "the agent has no system prompt"
     return ""
+
+
+def _either(names: Iterable[str]) -> str:
+    return " or ".join(sorted(names))
 
 
 def _worst(corruptions: Sequence[Any], changes: Mapping[str, Any]) -> Any:

@@ -2,8 +2,8 @@
 
 The command needs a checkout of the repository, because it reads the texts in
 ``tools/safeguard/data``. First, two logistic regressions are trained: one predicts whether a
-sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then
-a network is trained to find where an attack begins and ends. It is trained on benign texts, most of
+sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then a
+network is trained to find where an attack begins and ends. It is trained on benign texts, most of
 which contain an inserted attack. The regression scores of a training text come from regressions
 that were trained without the text's fold. Otherwise, the scores would be more accurate than the
 scores of new texts, and the network would rely on them too much.
