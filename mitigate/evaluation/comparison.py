@@ -35,6 +35,8 @@ from mitigate.worlds.seeded import RETURN
 
 CLEAN = "clean"
 RANDOM = "random"  # agent name in the rows of random actions
+# smallest number of equal changes that a sign test finds significant: 2 ** (1 - 6) < 0.05
+ALIKE = 6
 LABELS = {"rgb": "RGB", "depth": "Depth", "instruction": "Instruction"}
 
 
@@ -173,7 +175,8 @@ def compare(rows: Iterable[Row]) -> Comparison:
         f"{counted(len(episodes), 'episode')}, {listed_seeds}, severity "
         f"{', '.join(f'{s:g}' for s in severities)}.{more} Brackets: {100 * LEVEL:.0f} % "
         f"paired bootstrap over episodes, {RESAMPLES:,} resamples; where all or none succeed, "
-        "Wilson's; [–]: no resample differs. Changes in bold exclude zero."
+        "or all episodes change alike, Wilson's; [–]: no resample differs. Changes in bold exclude "
+        "zero."
     )
     return Comparison(tuple(lines), agents, about)
 
@@ -221,7 +224,7 @@ class _Scores:
         """
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
-        changes = {agent: mean(values[agent] - values[first]) for agent in others}
+        changes = {agent: _difference(values[agent] - values[first]) for agent in others}
         return Line(heading, estimates, changes)
 
     def retention(self, names: Sequence[str]) -> list[Line]:
@@ -288,6 +291,20 @@ def _mean(values: np.ndarray, most: float) -> Estimate:
         return mean(values)
     part = share(values / most)
     return Estimate(most * part.value, most * part.low, most * part.high)
+
+
+def _difference(changes: np.ndarray) -> Estimate:
+    """Return the mean of the episodes' changes [N] with its interval.
+
+    If all changes are equal, no resample differs. The interval is then that of Wilson for the
+    fraction of episodes that change.
+    """
+    estimate = mean(changes)
+    if estimate.has_width or not estimate.value or len(changes) < ALIKE:
+        return estimate
+    part = share(np.ones(len(changes)))
+    bounds = sorted((estimate.value * part.low, estimate.value * part.high))
+    return Estimate(estimate.value, *bounds)
 
 
 def _change(estimate: Estimate, form: str) -> str:

@@ -273,9 +273,11 @@ def harden(
             "the given policy, or train with other settings (suite=, severity=, steps=, seed=)."
         )
     elif chosen == "given":
+        other = "longer training (steps=)" + ("" if tune == "adapters" else ' or tune="adapters"')
         say(
-            "harden: no trained weights were better than the given ones in validation, so the "
-            "policy is unchanged. It may be robust already, or need other settings (steps=, lr=)."
+            "harden: no trained weights were clearly better than the given ones in validation, so "
+            f"the policy is unchanged. If it is not robust yet, try {other}, or more validation "
+            "episodes (validation=)."
         )
     return Hardened(_like(policy, after), after, report, rows, folder, chosen)
 

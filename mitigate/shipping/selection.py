@@ -8,8 +8,11 @@ depends on the policy, so they are compared on validation episodes.
 
 from __future__ import annotations
 
+import math
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 
+import numpy as np
 import torch
 from torch import Tensor
 
@@ -21,15 +24,15 @@ from mitigate.worlds.seeded import RETURN
 
 # maps each candidate to the factor of the trained weights in its average (0.75 is heuristic)
 MIXES = {"trained": 1.0, "averaged": 0.75, "given": 0.0}
-TIE = 1e-3  # scores count as equal if their relative difference is at most this (heuristic)
 
 
 def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., list[Row]]) -> str:
     """Load the best weights into ``policy``, and return their name, which is a key of ``MIXES``.
 
-    The score of a set of weights is the mean of two numbers: the clean success rate, and the mean
-    success rate under the corruptions. If the world measures only the return, the score uses
-    returns. If scores are equal, the weights that come first in ``MIXES`` are chosen.
+    The score of an episode is the mean of two numbers: the success on clean frames, and the mean
+    success under the corruptions. If the world measures only the return, the score uses returns.
+    The given weights are kept unless the mean gain per episode exceeds its standard error (the
+    one-standard-error rule: Breiman et al., "Classification and regression trees", 1984).
 
     Args:
         policy: the trained policy, changed in place.
@@ -38,16 +41,18 @@ def choose(policy: Policy, start: Mapping[str, Tensor], measure: Callable[..., l
             and returns the rows. The function is called with the policy, ``name`` and ``version``.
     """
     end = {name: value.clone() for name, value in policy.network.state_dict().items()}
-    scores: dict[str, float] = {}
+    scores: dict[str, np.ndarray] = {}
     for name, mix in MIXES.items():
         candidate = copied(policy)
         candidate.network.load_state_dict(average(start, end, mix))
-        rows = measure(candidate, name=name, version=candidate.version)
-        scores[name] = score(rows)
-    least = max(scores.values()) - TIE * max(map(abs, scores.values()))
-    best = next(name for name, value in scores.items() if value >= least)
-    listed = ", ".join(f"{name} {value:.3g}" for name, value in scores.items())
-    count = len({row["episode_id"] for row in rows})
+        scores[name] = episode_scores(measure(candidate, name=name, version=candidate.version))
+    best = max(MIXES, key=lambda name: scores[name].mean())
+    gain = scores[best] - scores["given"]
+    count = len(gain)
+    error = gain.std(ddof=1) / math.sqrt(count) if count > 1 else 0.0
+    if gain.mean() <= error:
+        best = "given"
+    listed = ", ".join(f"{name} {value.mean():.3g}" for name, value in scores.items())
     say(f"harden: mean score of {count} validation episodes: {listed}. Chosen: {best}.")
     policy.network.load_state_dict(average(start, end, MIXES[best]))
     return best
@@ -68,9 +73,14 @@ def average(
     }
 
 
-def score(rows: Sequence[Row]) -> float:
-    """Return the mean of two numbers: the mean on clean episodes and the mean under corruptions."""
+def episode_scores(rows: Sequence[Row]) -> np.ndarray:
+    """Return the score of each episode, sorted by ``episode_id``."""
     measure = RETURN if rows[0]["rule"] == RETURN else "success"
-    clean = [row[measure] for row in rows if row["corruption"] == CLEAN_NAME]
-    corrupted = [row[measure] for row in rows if row["corruption"] != CLEAN_NAME]
-    return (sum(clean) / len(clean) + sum(corrupted) / len(corrupted)) / 2
+    clean: dict[str, float] = {}
+    corrupted: dict[str, list[float]] = defaultdict(list)
+    for row in rows:
+        if row["corruption"] == CLEAN_NAME:
+            clean[row["episode_id"]] = row[measure]
+        else:
+            corrupted[row["episode_id"]].append(row[measure])
+    return np.array([(clean[name] + np.mean(corrupted[name])) / 2 for name in sorted(clean)])

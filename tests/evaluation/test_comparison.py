@@ -69,6 +69,23 @@ def test_compare_shows_success_in_percent():
     assert comparison.line("SR (%): Clean").values["before"].low == pytest.approx(51.0, abs=0.1)
 
 
+@pytest.mark.parametrize(("count", "significant"), [(5, False), (6, True), (30, True)])
+def test_compare_marks_a_change_that_is_equal_in_all_of_six_or_more_episodes(count, significant):
+    rows = [
+        *rows_of("before", "clean", [1] * count, "success"),
+        *rows_of("before", "flare", [0] * count, "success"),
+        *rows_of("after", "clean", [1] * count, "success"),
+        *rows_of("after", "flare", [1] * count, "success"),
+    ]
+    comparison = compare(rows)
+    change = comparison.line("SR (%): Flare").changes["after"]
+    assert (change.value, change.excludes_zero) == (100.0, significant)
+    if significant:
+        assert 50 < change.low < change.high == 100.0
+    assert ("**+100.0**" in str(comparison)) == significant
+    assert not comparison.line("SR (%): Clean").changes["after"].excludes_zero
+
+
 def test_compare_averages_the_seeds_of_an_episode():
     rows = [
         {**row, "seed": seed}

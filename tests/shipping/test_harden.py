@@ -96,6 +96,7 @@ def continuous_world():
 
 
 SHORT = {"steps": 6, "every": 3, "episodes": 2, "batch": 8, "suite": ["low_light", "spatter"]}
+SHORT |= {"validation": 0}
 FEW = seeded_episodes(range(4))
 
 
@@ -115,7 +116,7 @@ def test_harden_returns_and_writes_a_hardened_copy_and_a_report(tmp_path):
 
 
 PPO = {"method": "ppo", "steps": 6, "rollout": 15, "epochs": 2, "batch": 7}
-PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0}
+PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0, "validation": 0}
 
 
 @pytest.mark.slow
