@@ -222,12 +222,16 @@ def test_harden_stops_before_training_without_skill(tmp_path, continuous):
         ({"method": "a2c"}, "self_distil, ppo"),
         ({"schedule": "per_day"}, "per_episode, per_frame"),
         ({"method": "ppo"}, "'episodes'.*rollout, epochs"),
+        ({"listed": range(5)}, r"listed must .*got 0.*listed=seeded_episodes\(range\(5\)\)"),
+        ({"listed": 5}, "listed must contain only Episode objects, got 5"),
+        ({"listed": []}, "listed must hold at least one episode"),
+        ({"training": range(5)}, r"training must .*got 0.*training=seeded_episodes"),
     ],
 )
 def test_harden_rejects_arguments_before_any_episode(tmp_path, options, message):
-    arguments = {"world": world} | SHORT | options
+    arguments = {"world": world, "listed": FEW} | SHORT | options
     with pytest.raises(ValueError, match=message):
-        mitigate.harden(trained(), listed=FEW, out=tmp_path, **arguments)
+        mitigate.harden(trained(), out=tmp_path, **arguments)
     assert not (tmp_path / "rows.jsonl").exists()
 
 
@@ -290,6 +294,23 @@ def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, ca
 def test_benchmark_takes_a_policy_of_another_library(tmp_path):
     entry = mitigate.benchmark(trained(), world=world, listed=FEW, suite=["spatter"], out=tmp_path)
     assert entry.name == "Net"
+    assert entry.SR["clean"][0] == 1.0
+
+
+def test_benchmark_calls_the_network_with_forward(tmp_path):
+    class Agent(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.actor = trained()
+
+    entry = mitigate.benchmark(
+        Agent(),
+        forward=lambda net, frames: net.actor(frames),
+        world=world,
+        listed=FEW,
+        suite=["spatter"],
+        out=tmp_path,
+    )
     assert entry.SR["clean"][0] == 1.0
 
 
