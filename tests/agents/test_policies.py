@@ -228,7 +228,7 @@ def test_act_describes_what_the_network_receives():
         ("discrete", lambda logits: logits.argmax(-1), r"got int64 \[1\].*no sampled action"),
         ("multi", lambda logits: logits[:, :2], r"logits \[N, 5\] .*, got float32 \[1, 2\]"),
         ("box", lambda logits: {"action": logits}, r"actions \[N, 2\] .*, got a dict \(action: "),
-        ("box", lambda logits: None, "got a NoneType"),
+        ("box", lambda logits: None, "got type NoneType"),
     ],
 )
 def test_act_rejects_outputs_that_are_no_answer(actions, output, message):

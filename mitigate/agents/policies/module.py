@@ -129,7 +129,7 @@ def _described(value: Any) -> str:
         return f"a dict ({', '.join(entries)})"[:300]
     if isinstance(value, (tuple, list)):
         return f"a {type(value).__name__} ({', '.join(map(_described, value))})"[:300]
-    return f"a {type(value).__name__}"
+    return f"type {type(value).__name__}"
 
 
 def _tensors(observation: Any, device: torch.device) -> Any:
