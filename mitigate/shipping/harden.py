@@ -184,7 +184,7 @@ def harden(
     first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
-    names = _corruptions(suite, before)
+    names = _corruptions(suite, before, first)
     suffix = "" if method == "self_distil" else f"-{method}"
     folder = Path(out or OUT / f"{file_name(before.name)}-s{severity:g}-seed{seed}{suffix}")
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
@@ -333,7 +333,7 @@ class _Training:
         return list(episodes.values())
 
 
-def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
+def _corruptions(suite: str | Sequence[str], policy: Policy, world: World) -> list[str]:
     """Return the corruptions of a suite that change a sensor which the policy reads."""
     if isinstance(suite, str):
         listed = list(conf.composed("evaluate", [f"suite={suite}"]).suite.conditions)
@@ -353,7 +353,8 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
             f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. "
             "Name another suite, or a list of corruptions."
         )
-    if left := [name for name in kinds if name not in names]:
+    absent = {RGB, DEPTH} - {*world.sensors}  # no message for sensors that do not exist
+    if left := [name for name, kind in kinds.items() if kind not in {*sensors} | absent]:
         say(f"{policy.name} reads only {' and '.join(sensors)}: left out {', '.join(left)}")
     return names
 

@@ -287,8 +287,24 @@ def test_harden_rejects_another_world_in_the_folder(tmp_path):
 def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, capsys):
     options = SHORT | {"suite": ["low_light", "missing_data"]}
     result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **options)
-    assert "left out missing_data" in capsys.readouterr().out
+    assert "left out" not in capsys.readouterr().out  # the world has no depth
     assert {row["corruption"] for row in result.rows} == {"clean", "low_light"}
+
+
+def test_harden_names_corruptions_of_a_sensor_that_the_policy_does_not_read(tmp_path, capsys):
+    from tensordict.nn import TensorDictModule
+
+    class LightsWithDepth(Lights):
+        def __init__(self):
+            super().__init__()
+            depth = spaces.Box(0, 10, (16, 16, 1), np.float32)
+            self.observation_space = spaces.Dict({"rgb": self.observation_space, "depth": depth})
+
+    actor = TensorDictModule(Net(), ["rgb"], ["logits"])
+    options = SHORT | {"suite": ["low_light", "missing_data"], "w_feat": -1}
+    with pytest.raises(ValueError, match="w_feat"):
+        mitigate.harden(actor, lambda: GymWorld(LightsWithDepth()), out=tmp_path, **options)
+    assert "reads only rgb: left out missing_data" in capsys.readouterr().out
 
 
 def test_benchmark_takes_a_policy_of_another_library(tmp_path):
