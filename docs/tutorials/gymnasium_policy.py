@@ -94,8 +94,8 @@ print(f"training loss {loss.item():.3f}")
 # %% [markdown]
 # ## The benchmark
 #
-# The printed entry shows the success rate per condition and PRS. Missing depth reads as zero, so the policy stops
-# too early. The rows are in `runs/corridor`. If a run was interrupted, the same call continues it.
+# The printed entry shows the success rate under each corruption and PRS. Missing depth reads as zero, so the policy
+# stops too early. The rows are in `runs/corridor`. If a run was interrupted, the same call continues it.
 
 
 # %%

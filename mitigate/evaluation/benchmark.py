@@ -14,6 +14,7 @@ from mitigate.agents.agent import as_agent
 from mitigate.agents.building import agent_option
 from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.observation import check_fits
+from mitigate.agents.policies.module import Forward
 from mitigate.agents.policies.wrapping import as_policy, is_policy
 from mitigate.cluster.launcher import count
 from mitigate.core import conf, seeding
@@ -34,6 +35,7 @@ from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import (
     check_count,
     check_episodes,
+    episode_list,
     spread,
     training_episodes,
 )
@@ -60,6 +62,8 @@ OPTION = re.compile(r"[+~]*(agent|env)[.=]|--config-dir\b")
 def benchmark(
     agent: Any,
     *,
+    forward: Forward | None = None,
+    recurrent: bool = False,
     name: str | None = None,
     version: str | None = None,
     split: str | None = None,
@@ -88,6 +92,9 @@ def benchmark(
     Args:
         agent: an object with the interface in ``mitigate/agents/agent.py``, the path of a file or
             folder with weights, or a policy of a supported library (``mitigate/agents/policies/``).
+        forward: function that calls an ``nn.Module``
+            (:class:`~mitigate.agents.policies.module.ModulePolicy`).
+        recurrent: whether ``agent`` is an ``nn.Module`` that keeps state between steps.
         name: heading of the leaderboard entry; the default is the name of the folder with the
             weights, or of the agent's class.
         version: label for state of the agent that mitigate cannot inspect, such as hooks. Choose a
@@ -141,8 +148,8 @@ def benchmark(
         met = _visible(met, first, suite)
     if losses is not None:
         met = first_conditions(met, first.rule)
-    if is_policy(agent):
-        agent = as_policy(agent, first)
+    if forward is not None or recurrent or is_policy(agent):
+        agent = as_policy(agent, first, forward=forward, recurrent=recurrent)
         name, version = name or agent.name, version or agent.version
     usual = type(agent).__name__
     if isinstance(agent, (str, Path)):
@@ -307,12 +314,8 @@ def _episodes(
         raise ValueError(
             f"listed must be a list of episodes or the path of an episode file, got {listed!r:.80}."
         )
-    entries = list(read_episodes(listed) if isinstance(listed, (str, Path)) else listed)
-    if others := [entry for entry in entries if not isinstance(entry, Episode)]:
-        raise ValueError(
-            f"listed must contain only Episode objects, got {others[0]!r:.80}. For seeds, pass "
-            "listed=seeded_episodes([1, 2, 3]) (mitigate.worlds.seeded)."
-        )
+    source = read_episodes(listed) if isinstance(listed, (str, Path)) else listed
+    entries = episode_list("listed", source)
     check_episodes("listed", entries)
     return split, spread(entries, count)
 

@@ -102,6 +102,23 @@ def check_count(count: Any) -> None:
         )
 
 
+def episode_list(argument: str, listed: Any) -> list[Episode]:
+    """Return the value of ``argument`` as a list of episodes.
+
+    Raises:
+        ValueError: If an element is not an Episode.
+    """
+    from mitigate.worlds.episodes import Episode
+
+    entries = list(listed) if isinstance(listed, Iterable) else [listed]
+    if others := [entry for entry in entries if not isinstance(entry, Episode)]:
+        raise ValueError(
+            f"{argument} must contain only Episode objects, got {others[0]!r:.80}. For seeds, pass "
+            f"{argument}=seeded_episodes(range(5)) (mitigate.worlds.seeded)."
+        )
+    return entries
+
+
 def check_episodes(source: str, listed: Sequence[Episode]) -> None:
     """Raise ValueError for a list that cannot be evaluated.
 

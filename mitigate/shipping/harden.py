@@ -43,6 +43,7 @@ from mitigate.corruptions.suite import check_name
 from mitigate.evaluation import provenance
 from mitigate.evaluation.benchmark import checked_world, seconds_per_episode
 from mitigate.evaluation.comparison import RANDOM, Comparison, RandomPolicy, compare
+from mitigate.evaluation.episode_lists import episode_list
 from mitigate.evaluation.evaluator import evaluate
 from mitigate.evaluation.rows import ROWS, Row
 from mitigate.recipes.ppo import Ppo
@@ -172,6 +173,10 @@ def harden(
     for argument, number, least in (("steps", steps, 1), ("validation", validation, 0)):
         if type(number) is not int or number < least:
             raise ValueError(f"{argument} must be a whole number >= {least}, got {number!r:.80}.")
+    default = seeded_episodes(range(EPISODES))
+    compared = default if listed is None else episode_list("listed", listed)
+    if not compared:
+        raise ValueError("listed must hold at least one episode, or be None.")
     parameters = signature(METHODS[method]).parameters
     known = [name for name in parameters if name not in OWN]
     if others := sorted(set(settings) - set(known)):
@@ -179,10 +184,9 @@ def harden(
     first, made_by = checked_world(world, [])
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
-    names = _corruptions(suite, before)
+    names = _corruptions(suite, before, first)
     suffix = "" if method == "self_distil" else f"-{method}"
     folder = Path(out or OUT / f"{file_name(before.name)}-s{severity:g}-seed{seed}{suffix}")
-    compared = seeded_episodes(range(EPISODES)) if listed is None else list(listed)
     conditions = [CLEAN, *(Corruption(name, severity) for name in names)]
     if workers != 1:
         packed((before, world), "The policy or its world", "give workers=1")
@@ -302,7 +306,7 @@ class _Training:
     """
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
-        self.listed = None if listed is None else list(listed)
+        self.listed = None if listed is None else episode_list("training", listed)
         shared = {e.episode_id for e in self.listed or ()} & {e.episode_id for e in compared}
         if shared:
             raise ValueError(
@@ -331,7 +335,7 @@ class _Training:
         return list(episodes.values())
 
 
-def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
+def _corruptions(suite: str | Sequence[str], policy: Policy, world: World) -> list[str]:
     """Return the corruptions of a suite that change a sensor which the policy reads."""
     if isinstance(suite, str):
         listed = list(conf.composed("evaluate", [f"suite={suite}"]).suite.conditions)
@@ -351,7 +355,9 @@ def _corruptions(suite: str | Sequence[str], policy: Policy) -> list[str]:
             f"No corruption of suite={suite} changes {' or '.join(sensors) or 'what it reads'}. "
             "Name another suite, or a list of corruptions."
         )
-    if left := [name for name in kinds if name not in names]:
+    # a suite may name corruptions of sensors that the world lacks; a list of the user should not
+    absent = {RGB, DEPTH} - {*world.sensors} if isinstance(suite, str) else set()
+    if left := [name for name, kind in kinds.items() if kind not in {*sensors} | absent]:
         say(f"{policy.name} reads only {' and '.join(sensors)}: left out {', '.join(left)}")
     return names
 

@@ -1,8 +1,8 @@
 """Harden a trained policy: ``mitigate harden policy=my_policy:load world=my_policy:make_world``.
 
-The options are the arguments of ``mitigate.harden``. The modules are imported from the working
-directory or from installed packages. If a run was interrupted, the same command continues it. With
-``-m seed=0,1,2``, the command runs several seeds.
+The options are the arguments of ``mitigate.harden``, except test_episodes, conditions and settings.
+The modules are imported from the working directory or from installed packages. If a run was
+interrupted, the same command continues it. With ``-m seed=0,1,2``, the command runs several seeds.
 """
 
 from __future__ import annotations

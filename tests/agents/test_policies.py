@@ -200,6 +200,79 @@ def test_act_rejects_another_number_of_values():
         rollout(world, as_policy(net, world, forward=lambda net, seen: net(seen.float())))
 
 
+def test_act_describes_what_the_network_receives():
+    net = nn.Sequential(nn.Conv2d(3, 4, 6, 6), nn.Flatten(), nn.Linear(144, 3))
+    world = world_of(Noise())
+    with pytest.raises(
+        ValueError,
+        match=r"Sequential raised RuntimeError: .*uint8 \[1, 36, 36, 3\].*channels last.*forward=",
+    ):
+        rollout(world, as_policy(net, world))
+    rollout(world, as_policy(net, world, forward=lambda net, x: net(x.permute(0, 3, 1, 2) / 255.0)))
+    world = world_of(Noise(depth=True))
+    with pytest.raises(
+        ValueError, match=r"a dict \(image: uint8 \[1, 36, 36, 3\], far: uint16 \[1, 36, 36, 1\]\)"
+    ):
+        rollout(world, as_policy(net, world))
+
+
+@pytest.mark.parametrize(
+    ("actions", "output", "message"),
+    [
+        (
+            "discrete",
+            lambda logits: (logits.argmax(-1), logits[:, 0], logits[:, 0], logits[:, :1]),
+            r"logits \[N, 3\] or a torch.distributions object, got a tuple \(int64 \[1\], ",
+        ),
+        ("discrete", lambda logits: (logits, logits), "recurrent=True"),
+        ("discrete", lambda logits: logits.argmax(-1), r"got int64 \[1\].*no sampled action"),
+        ("multi", lambda logits: logits[:, :2], r"logits \[N, 5\] .*, got float32 \[1, 2\]"),
+        ("box", lambda logits: {"action": logits}, r"actions \[N, 2\] .*, got a dict \(action: "),
+        ("box", lambda logits: None, "got type NoneType"),
+    ],
+)
+def test_act_rejects_outputs_that_are_no_answer(actions, output, message):
+    world = world_of(Noise(actions))
+    policy = as_policy(
+        nn.Linear(3, 5), world, forward=lambda net, x: output(net(x.float().mean((1, 2))))
+    )
+    with pytest.raises(ValueError, match=message):
+        rollout(world, policy)
+
+
+def test_act_rejects_a_recurrent_module_that_returns_no_memory():
+    world = world_of(Noise())
+    policy = as_policy(
+        nn.Linear(3, 3),
+        world,
+        forward=lambda net, x, m: net(x.float().mean((1, 2))),
+        recurrent=True,
+    )
+    with pytest.raises(ValueError, match=r"pair \(output, new memory\).*got float32 \[1, 3\]"):
+        rollout(world, policy)
+
+
+def test_as_policy_names_forward_for_a_module_without_it():
+    class Agent(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.actor = nn.Linear(3, 3)
+
+    world = world_of(Noise())
+    with pytest.raises(ValueError, match=r"Agent must have a method forward .*such as forward="):
+        as_policy(Agent(), world)
+    rollout(
+        world, as_policy(Agent(), world, forward=lambda net, x: net.actor(x.float().mean((1, 2))))
+    )
+
+
+def test_as_policy_takes_a_function_that_creates_the_world():
+    policy = as_policy(Memory(), lambda: world_of(Noise()), recurrent=True)
+    assert policy.space.n == 3
+    with pytest.raises(ValueError, match="Noise must have action_space and native"):
+        as_policy(Memory(), Noise())
+
+
 def test_as_policy_rejects_objects_without_weights():
     with pytest.raises(TypeError, match="stable-baselines3"):
         as_policy(object(), world_of(Noise()))

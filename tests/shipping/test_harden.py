@@ -223,12 +223,16 @@ def test_harden_stops_before_training_without_skill(tmp_path, continuous):
         ({"method": "a2c"}, "self_distil, ppo"),
         ({"schedule": "per_day"}, "per_episode, per_frame"),
         ({"method": "ppo"}, "'episodes'.*rollout, epochs"),
+        ({"listed": range(5)}, r"listed must .*got 0.*listed=seeded_episodes\(range\(5\)\)"),
+        ({"listed": 5}, "listed must contain only Episode objects, got 5"),
+        ({"listed": []}, "listed must hold at least one episode"),
+        ({"training": range(5)}, r"training must .*got 0.*training=seeded_episodes"),
     ],
 )
 def test_harden_rejects_arguments_before_any_episode(tmp_path, options, message):
-    arguments = {"world": world} | SHORT | options
+    arguments = {"world": world, "listed": FEW} | SHORT | options
     with pytest.raises(ValueError, match=message):
-        mitigate.harden(trained(), listed=FEW, out=tmp_path, **arguments)
+        mitigate.harden(trained(), out=tmp_path, **arguments)
     assert not (tmp_path / "rows.jsonl").exists()
 
 
@@ -284,13 +288,55 @@ def test_harden_rejects_another_world_in_the_folder(tmp_path):
 def test_harden_leaves_out_corruptions_of_sensors_that_are_not_read(tmp_path, capsys):
     options = SHORT | {"suite": ["low_light", "missing_data"]}
     result = mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **options)
-    assert "left out missing_data" in capsys.readouterr().out
+    assert "reads only rgb: left out missing_data" in capsys.readouterr().out
     assert {row["corruption"] for row in result.rows} == {"clean", "low_light"}
+
+
+def test_harden_names_corruptions_of_a_sensor_that_the_policy_does_not_read(tmp_path, capsys):
+    from tensordict.nn import TensorDictModule
+
+    class LightsWithDepth(Lights):
+        def __init__(self):
+            super().__init__()
+            depth = spaces.Box(0, 10, (16, 16, 1), np.float32)
+            self.observation_space = spaces.Dict({"rgb": self.observation_space, "depth": depth})
+
+    actor = TensorDictModule(Net(), ["rgb"], ["logits"])
+    options = SHORT | {"suite": ["low_light", "missing_data"], "w_feat": -1}
+    with pytest.raises(ValueError, match="w_feat"):
+        mitigate.harden(actor, lambda: GymWorld(LightsWithDepth()), out=tmp_path, **options)
+    assert "reads only rgb: left out missing_data" in capsys.readouterr().out
+
+
+def test_harden_does_not_report_corruptions_of_a_suite_for_sensors_that_the_world_lacks(
+    tmp_path, capsys
+):
+    options = SHORT | {"suite": "quick", "w_feat": -1}
+    with pytest.raises(ValueError, match="w_feat"):
+        mitigate.harden(trained(), world, out=tmp_path, **options)
+    assert "left out" not in capsys.readouterr().out
 
 
 def test_benchmark_takes_a_policy_of_another_library(tmp_path):
     entry = mitigate.benchmark(trained(), world=world, listed=FEW, suite=["spatter"], out=tmp_path)
     assert entry.name == "Net"
+    assert entry.SR["clean"][0] == 1.0
+
+
+def test_benchmark_calls_the_network_with_forward(tmp_path):
+    class Agent(nn.Module):
+        def __init__(self):
+            super().__init__()
+            self.actor = trained()
+
+    entry = mitigate.benchmark(
+        Agent(),
+        forward=lambda net, frames: net.actor(frames),
+        world=world,
+        listed=FEW,
+        suite=["spatter"],
+        out=tmp_path,
+    )
     assert entry.SR["clean"][0] == 1.0
 
 

@@ -33,7 +33,8 @@ def as_policy(
     Args:
         policy: a model or policy of stable-baselines3, a module of torchrl or tensordict, or any
             ``nn.Module``. The policy is not copied.
-        world: the world of an environment (``GymWorld``, ``EnvWorld``).
+        world: the world of an environment (``GymWorld``, ``EnvWorld``), or a function that creates
+            it.
         forward: how to call an ``nn.Module`` (:class:`ModulePolicy`).
         recurrent: whether ``forward`` takes and returns a memory.
 
@@ -44,12 +45,14 @@ def as_policy(
     """
     if isinstance(policy, Policy):
         return policy
-    if isinstance(world.action_space, Composite):
+    if callable(world):
+        world = world()
+    if isinstance(read(world, "action_space"), Composite):
         raise ValueError(
             "A policy with a dictionary of actions must be wrapped in an agent: a class with "
             "reset and act (docs/bring-your-own.md)."
         )
-    if world.action_space is None or world.native is None:
+    if missing_members(world, ("action_space", "native")):
         raise ValueError(
             f"{type(world).__name__} must have action_space and native (the conversion of frames "
             "to the policy's observation), as GymWorld and EnvWorld have."

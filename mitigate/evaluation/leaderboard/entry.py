@@ -153,11 +153,13 @@ class LeaderboardEntry:
         return Path(path)
 
     def __str__(self) -> str:
-        """Return a string with one line per score; success rates are in %."""
+        """Return a string with one line per score and corruption; success rates are in %."""
         size = f"{counted(self.episodes, 'episode')} of {self.split}"
         lines = [f"{self.name}: {size}, severity {self.severity:g} ({self.rule})"]
-        for title, numbers in self.scores.items():
-            scale, digits, unit = (100, 1, " %") if title.endswith(" SR") else (1, 2, "")
+        rates = {f"SR under {name}": rate for name, rate in self.SR.items() if name != "clean"}
+        for title, numbers in {**self.scores, **rates}.items():
+            is_rate = title.endswith(" SR") or title in rates
+            scale, digits, unit = (100, 1, " %") if is_rate else (1, 2, "")
             texts = ["–" if x is None else f"{scale * x:.{digits}f}" for x in numbers or ()]
             text = f"{texts[0]} [{texts[1]}, {texts[2]}]{unit}" if texts else "undefined"
             lines.append(f"  {title}: {text}")

@@ -48,6 +48,7 @@ def test_entry_holds_the_figures_of_the_table(rows, tmp_path):
     assert load(entry.save(tmp_path / "base.json")) == entry
     assert [p.name for p in tmp_path.iterdir()] == ["base.json"]
     assert "PRS-SR (RGB): 0.25 [" in str(entry) and "Clean SR: 80.0 [50.0, 100.0] %" in str(entry)
+    assert "SR under spatter: 20.0 [" in str(entry) and "SR under clean" not in str(entry)
 
 
 def test_rows_sha_ignores_order_and_covers_values(rows):
