@@ -3,17 +3,18 @@
 The fingerprint covers the kind of the agent, ``settings()``, weights, layers, sensors, and the
 user's source files. Result rows hold the fingerprint in addition to a display name. Tables treat
 agents with different fingerprints as different agents, and rows are reused only if the fingerprint
-is equal. Hooks, closures, TorchScript and other state that cannot be read
-(:attr:`Contents.unreadable`) need ``version=``.
+is equal. Hooks, TorchScript and other state that cannot be read (:attr:`Contents.unreadable`) need
+``version=``.
 """
 
 from __future__ import annotations
 
 import hashlib
+import inspect
 import json
 import types
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields, is_dataclass
 from pathlib import PurePath
 from typing import Any
 
@@ -39,6 +40,14 @@ _OWN_HOOKS = "mitigate.agents.adapters"
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
+_SPACES = ("gymnasium.spaces.space.Space", "gym.spaces.space.Space")
+# everything in a function's bytecode that affects its behaviour; the other attributes are names and
+# line numbers
+_BYTECODE = [
+    *("co_code", "co_consts", "co_names", "co_varnames", "co_freevars", "co_cellvars"),
+    *("co_argcount", "co_posonlyargcount", "co_kwonlyargcount", "co_flags"),
+    "co_exceptiontable",  # from Python 3.11
+]
 _SOURCE = (type, types.FunctionType, property, types.MemberDescriptorType)  # in source files
 
 
@@ -276,8 +285,15 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
         return [[repr(k), _described(part, f"{place}.{k}", unreadable)] for k, part in items]
     if isinstance(value, nn.Module):
         return f"{class_name(kind)} {weights_sha(value)}"
-    if isinstance(value, (bytes, torch.dtype, torch.device, PurePath, np.generic)):
+    if isinstance(value, (bytes, torch.dtype, torch.device, PurePath, np.generic, np.dtype)):
         return repr(value)
+    if kind in (complex, types.EllipsisType):  # constants of bytecode
+        return repr(value)
+    if kind is types.CodeType:
+        bytecode = {name: read(value, name) for name in _BYTECODE}
+        return _described(bytecode, place, unreadable)
+    if _is_users_function(value):
+        return _function(value, place, unreadable)
     if isinstance(value, (type, types.FunctionType)) and not is_users(value):
         return class_name(value)
     if isinstance(value, types.BuiltinFunctionType) and value.__module__:  # not a bound method
@@ -286,8 +302,53 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
         return sorted(map(repr, value))
     if sha := array_sha(value):
         return sha
+    attributes = _attributes_of_data(value)
+    if attributes is not None:
+        return [kind.__qualname__, _described(attributes, place, unreadable)]
     unreadable[place] = f"a {class_name(kind)}"
     return None
+
+
+def _attributes_of_data(value: Any) -> dict[str, Any] | None:
+    """Return the attributes of a gymnasium space or of a frozen dataclass of this project.
+
+    The random generator of a space is left out. Return None for any other value.
+    """
+    kind = type(value)
+    if any(f"{each.__module__}.{each.__qualname__}" in _SPACES for each in kind.__mro__):
+        return {name: part for name, part in vars(value).items() if name != "_np_random"}
+    shipped = kind.__module__.partition(".")[0] == "mitigate"
+    if shipped and is_dataclass(kind) and read(kind, "__dataclass_params__").frozen:
+        return {one.name: getattr(value, one.name) for one in fields(kind)}
+    return None
+
+
+def _is_users_function(value: Any) -> bool:
+    """Return whether ``value`` is a user's function, perhaps in a decorator of a library."""
+    return isinstance(value, types.FunctionType) and is_users(inspect.unwrap(value))
+
+
+def _function(function: types.FunctionType, place: str, unreadable: dict[str, str]) -> Any:
+    """Return the bytecode of a user's function and of the user's functions that it calls.
+
+    The result also contains their default values and attributes, and the other values that they
+    use.
+    """
+    if place.count("().") > 1:  # functions that name each other in dicts would never end
+        unreadable[place] = "nested too deeply"
+        return None
+    parts = []
+    waiting = [function]
+    for each in waiting:
+        named = named_values(each).items()
+        called = {name: part for name, part in named if _is_users_function(part)}
+        waiting += [one for one in dict.fromkeys(called.values()) if one not in waiting]
+        skipped = {*called, *(name for name, part in named if isinstance(part, types.ModuleType))}
+        values = {name: part for name, part in named if name not in skipped}
+        content = [each.__code__, each.__defaults__, each.__kwdefaults__, vars(each)]
+        described = [_described(part, f"{place}()", unreadable) for part in (content, values)]
+        parts.append([*described, {name: waiting.index(one) for name, one in called.items()}])
+    return parts
 
 
 def array_sha(array: Any) -> str:

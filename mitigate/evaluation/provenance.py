@@ -68,11 +68,7 @@ class Known:
     """
 
     def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
-        if version is not None and not (isinstance(version, str) and version):
-            raise ValueError(
-                f"version must be a non-empty string, got {version!r:.80}. Choose one such as "
-                '"2026-11 weights", and change it whenever the agent\'s behaviour changes.'
-            )
+        _check_version(version)
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
         self.version = version
@@ -134,6 +130,16 @@ class Known:
             )
         print(text, flush=True)
         return self
+
+
+def _check_version(version: Any) -> None:
+    """Raise ValueError unless ``version`` is None or a string that is not empty."""
+    if version is not None and not (isinstance(version, str) and version):
+        raise ValueError(
+            f"version must be a non-empty string, got {version!r:.80}. Choose one such as "
+            '"2026-11 weights", and change it whenever the behaviour of the agent or the world '
+            "changes."
+        )
 
 
 NOTE = "walked.json"
@@ -211,10 +217,12 @@ def _report_unreadable(
         ValueError: If ``place`` already holds rows of this agent or world.
     """
     if earlier:
+        # A version changes the hash in the rows of an agent. All rows of a folder are of one world.
+        folder = " and another folder (out=...)" if kind == "world" else ""
         raise ValueError(
             f"{place} holds rows of {name}, which may come from another {kind}: in {owner}, "
-            f'{unreadable} cannot be read. Give version="..." to reuse rows of that version, and '
-            f"change it whenever the {kind}'s behaviour changes. Or use another folder (out=...)."
+            f'{unreadable} cannot be read. Give version="..."{folder}: later calls with the same '
+            f"version reuse the rows. Change it whenever the {kind}'s behaviour changes."
         )
     print(
         f"{name}: in {owner}, {unreadable} cannot be read, so no later call can reuse these rows. "
@@ -339,6 +347,7 @@ def first_world(
 
     ``version`` is a string that the user sets if the state of a class cannot be read.
     """
+    _check_version(version)
     before = {name: _text(value) for name, value in _made_by(make)}
     same = {place for place, (_, last) in _read_by.items() if last == _names_read(*place)[0]}
     world = make()

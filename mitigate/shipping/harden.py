@@ -115,6 +115,7 @@ def harden(
     validation: int = 16,
     seed: int = 0,
     workers: int | None = 1,
+    version: str | None = None,
     out: Path | str | None = None,
     **settings: Any,
 ) -> Hardened:
@@ -153,6 +154,8 @@ def harden(
         seed: seed of training and corruptions.
         workers: number of processes for the comparison. With None, one process per core is used if
             there is enough work.
+        version: label for state of the policy, or of the world's classes, that mitigate cannot
+            inspect. Choose a new one, and a new ``out``, whenever this state changes.
         out: folder of the run. The default is a folder in runs/harden.
         **settings: other arguments of the method's class, such as ``episodes=16``. The classes are
             :class:`~mitigate.recipes.self_distil.SelfDistil` and
@@ -181,7 +184,7 @@ def harden(
     known = [name for name in parameters if name not in OWN]
     if others := sorted(set(settings) - set(known)):
         raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], known))
-    first, made_by = checked_world(world, [])
+    first, made_by = checked_world(world, [], version)
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
     names = _corruptions(suite, before, first)
@@ -219,6 +222,10 @@ def harden(
         identity["method"] = method
     if schedule != "per_episode":
         identity["schedule"] = schedule
+    label = ""
+    if version is not None:
+        identity["version"] = version
+        label = f"-{version}"
     trainer = Trainer(
         objective,
         steps=steps,
@@ -245,7 +252,7 @@ def harden(
             evaluate, world=world, episodes=compared, out=folder / ROWS, split=SPLIT, seed=seed
         )
         several = partial(measure, conditions=conditions, workers=workers)
-        rows = several(before, name="before", version=before.version)
+        rows = several(before, name="before", version=before.version + label)
         rows += measure(RandomPolicy(before.space, seed), conditions=[CLEAN], name=RANDOM)
         # raises an error, before any training, if the policy is not better than random actions
         compare(rows)
@@ -266,7 +273,7 @@ def harden(
             save_adapters(after.network, folder / "agent")
         else:
             checkpoint.save_weights(after.network, folder / "agent")
-        rows += several(after, name="after", version=after.version)
+        rows += several(after, name="after", version=after.version + label)
     report = compare(rows)
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
     # change of the mean over all corruptions, or of the single corruption if there is just one

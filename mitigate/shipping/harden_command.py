@@ -41,6 +41,7 @@ class HardenConfig:
     settings: dict[str, Any] = field(default_factory=dict)
     seed: int = 0
     workers: int | None = 1
+    version: str | None = None
     out: str | None = None
 
 

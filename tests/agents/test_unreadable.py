@@ -8,6 +8,7 @@ from __future__ import annotations
 import array
 import collections
 import enum
+import functools
 import io
 import operator
 import re
@@ -19,9 +20,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import torch
+from gymnasium import spaces
 from torch import nn
 
 from mitigate.agents.fingerprint import contents, fingerprint
+from mitigate.core.spaces import Composite, Discrete
+from mitigate.worlds.seeded import NativeFormat
 
 
 class Level(enum.Enum):
@@ -85,6 +89,37 @@ def _connection(level: int) -> sqlite3.Connection:
     connection.execute("create table levels (level)")
     connection.execute("insert into levels values (?)", (level,))
     return connection
+
+
+def _less(x):
+    return x < 1
+
+
+def _more(x):
+    return x > 1
+
+
+def _even(number):
+    return number == 0 or _odd(number - 1)
+
+
+def _odd(number):
+    return number != 0 and _even(number - 1)
+
+
+def _handle(message):
+    return HANDLERS[message]
+
+
+HANDLERS = {str(number): [_handle] for number in range(20)}
+
+
+def _doubled(function):
+    @functools.wraps(function)
+    def doubled(x):
+        return 2 * function(x)
+
+    return doubled
 
 
 def _function(level: int):
@@ -169,6 +204,29 @@ READ = {
     "a type": lambda n: (int, float)[n],
     "a function of torch": lambda n: (torch.relu, torch.sigmoid)[n],
     "a path": lambda n: Path("ab"[n]),
+    "a dtype": lambda n: np.dtype(("uint8", "float32")[n]),
+    "a function": lambda n: [_less, _more][n],
+    "a function that calls itself": lambda n: [_even, _odd][n],
+    "a decorated function": lambda n: _doubled([_less, _more][n]),
+    "functions of one line": lambda n: [lambda x: x[..., 0], lambda x: x[..., 1]][n],
+    "operators of functions": lambda n: [lambda x: x < 1, lambda x: x > 1][n],
+    "a default of a function": lambda n: lambda x, level=n: level,
+    "a closure": lambda n: lambda x: n,
+    "an inner function": lambda n: [lambda x: [x for _ in x], lambda x: [1 for _ in x]][n],
+    "a set in a function": lambda n: [lambda x: x in {"a", "b"}, lambda x: x in {"a", "c"}][n],
+    "an attribute of a function": _function,
+    "our action space": lambda n: Composite({"move": Discrete(n + 1)}),
+    "a format of frames": lambda n: NativeFormat({"rgb": "ab"[n]}, {"rgb": "uint8"}),
+    "bounds of a Box": lambda n: spaces.Box(np.float32([0, -n]), np.float32([1, 1])),
+    "the dtype of a Box": lambda n: spaces.Box(0, 1, dtype=(np.float32, np.float64)[n]),
+    "a Discrete": lambda n: spaces.Discrete(n + 1),
+    "a MultiDiscrete": lambda n: spaces.MultiDiscrete([2, n + 1]),
+    "a MultiBinary": lambda n: spaces.MultiBinary(n + 1),
+    "a Dict": lambda n: spaces.Dict({"a": spaces.Discrete(2), "b": spaces.Discrete(n + 1)}),
+    "a Tuple": lambda n: spaces.Tuple([spaces.Discrete(n + 1)]),
+    "a Text": lambda n: spaces.Text(3, charset="ab"[: n + 1]),
+    "a Sequence": lambda n: spaces.Sequence(spaces.Discrete(n + 1)),
+    "a Graph": lambda n: spaces.Graph(spaces.Discrete(n + 1), None),
 }
 
 
@@ -179,10 +237,24 @@ def test_contents_reads_plain_data_and_arrays(what):
     assert fingerprint(first, {}) == fingerprint(again, {}) != fingerprint(other, {})
 
 
+def test_fingerprint_ignores_the_random_generator_of_a_space():
+    agent = Holder(spaces.Dict({"a": spaces.Discrete(9)}))
+    before = fingerprint(agent, {})
+    agent.value.seed(1)
+    agent.value.sample()
+    assert fingerprint(agent, {}) == before
+
+
 def test_contents_reports_cycles():
     agent = Holder([])
     agent.value.append(agent.value)
     assert "nested too deeply" in contents(agent).explain()
+    assert "nested too deeply" in contents(Holder(_handle)).explain()
+
+
+def test_contents_names_the_unreadable_value_of_a_function():
+    numbers = iter([1])
+    assert "value().numbers" in contents(Holder(lambda x: next(numbers))).explain()
 
 
 CONFIG: dict = {}

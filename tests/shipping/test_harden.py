@@ -115,6 +115,45 @@ def test_harden_returns_and_writes_a_hardened_copy_and_a_report(tmp_path):
     assert checkpoint.weights_sha(loaded) == checkpoint.weights_sha(result.policy)
 
 
+class FixedLights(Lights):
+    """Lights with spaces that are class attributes."""
+
+    observation_space = spaces.Box(0, 255, (16, 16, 3), np.uint8)
+    action_space = spaces.Discrete(2)
+
+    def __init__(self):
+        self.continuous = False
+
+
+def test_harden_repeats_with_spaces_of_the_class(tmp_path, capsys):
+    def make():
+        return GymWorld(FixedLights())
+
+    options = SHORT | {"listed": FEW, "out": tmp_path}
+    first = mitigate.harden(trained(), make, **options)
+    assert "cannot be read" not in capsys.readouterr().out
+    again = mitigate.harden(trained(), make, **options)
+    assert capsys.readouterr().out.count("all already done") == 3  # before, random and after
+    assert again.rows == first.rows
+
+
+def test_harden_repeats_an_unreadable_world_with_a_version(tmp_path, capsys):
+    class Unreadable(FixedLights):
+        numbers = iter([1])
+
+    def make():
+        return GymWorld(Unreadable())
+
+    options = SHORT | {"listed": FEW, "out": tmp_path}
+    for _ in range(2):
+        mitigate.harden(trained(), make, version="1", **options)
+    assert capsys.readouterr().out.count("all already done") == 3
+    with pytest.raises(ValueError, match="version: 1 -> 2"):
+        mitigate.harden(trained(), make, version="2", **options)
+    with pytest.raises(ValueError, match="version must be a non-empty string, got 1"):
+        mitigate.harden(trained(), make, version=1, **options)
+
+
 PPO = {"method": "ppo", "steps": 6, "rollout": 15, "epochs": 2, "batch": 7}
 PPO |= {"suite": ["low_light", "spatter"], "critic_rounds": 0, "validation": 0}
 
@@ -338,6 +377,26 @@ def test_benchmark_calls_the_network_with_forward(tmp_path):
         out=tmp_path,
     )
     assert entry.SR["clean"][0] == 1.0
+
+
+def test_benchmark_reuses_rows_of_a_policy_with_a_forward_function(tmp_path, capsys):
+    sign = 1
+    policies = [
+        as_policy(trained(), world(), forward=lambda net, frames: sign * net(frames)),
+        as_policy(trained(), world(), forward=lambda net, frames: sign * net(frames)),
+        as_policy(trained(), world(), forward=lambda net, frames: -sign * net(frames)),
+    ]
+    entries, printed = [], []
+    for policy in policies:
+        entries.append(
+            mitigate.benchmark(policy, world=world, listed=FEW, suite=["spatter"], out=tmp_path)
+        )
+        printed.append(capsys.readouterr().out)
+    first, again, other = entries
+    assert "cannot be read" not in printed[0]
+    assert "all already done" in printed[1] and first.agents == again.agents
+    assert "another agent" in printed[2] and first.agents != other.agents
+    assert (first.SR["clean"][0], other.SR["clean"][0]) == (1, 0)
 
 
 def test_benchmark_reports_the_return_and_reuses_rows(tmp_path, capsys):
