@@ -282,8 +282,10 @@ class Attempt:
             return (
                 "the command ended, and its Python loaded the hook, but it used neither "
                 "habitat-lab (habitat.core.env) nor habitat-sim (habitat_sim.simulator) and never "
-                "called mitigate_hook.connect. A different package named habitat needs the three "
-                f"calls of a loop without Habitat (docs/bridge.md).{self.cell.output_excerpt()}"
+                "called mitigate_hook.connect. A loop of your own needs three calls: "
+                "mitigate_hook.connect(), episode.corrupt() and episode.finish() (docs/bridge.md). "
+                "This also applies to a loop with a different package named habitat."
+                f"{self.cell.output_excerpt()}"
             )
         if mitigate_hook.ADAPTERS in self.cell.environment and not reports.adapted:
             return (

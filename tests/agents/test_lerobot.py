@@ -1,14 +1,17 @@
 """Tests of the examples in docs/lerobot.md on a class with the methods of a lerobot policy.
 
-lerobot cannot be installed next to this project. The class therefore has the methods and
-``no_grad`` decorators of ``PreTrainedPolicy`` and ``ACTPolicy`` in lerobot 0.6.
+pip cannot install lerobot next to this project, because lerobot requires an older PyTorch. The
+class therefore has the methods and ``no_grad`` decorators of ``PreTrainedPolicy`` and
+``ACTPolicy`` in lerobot 0.6.
 """
 
 from __future__ import annotations
 
 import re
+import sys
 from collections import deque
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import gymnasium
@@ -37,8 +40,8 @@ def example(name: str) -> str:
 
 
 class Network(nn.Module):
-    """Computes a chunk of actions from the brightness of the frame. Like ACT, it returns a tuple
-    whose first element is the chunk."""
+    """Computes a chunk of actions from the brightness of the frame. Like ACT, it always reads the
+    state, does not bound the actions, and returns a tuple whose first element is the chunk."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -46,7 +49,8 @@ class Network(nn.Module):
 
     def forward(self, batch: dict[str, Any]) -> tuple[Tensor, None]:
         (image,) = batch["observation.images"]
-        return self.layers(image).tanh().view(-1, CHUNK, 2), None
+        state = batch["observation.state"]
+        return self.layers(image).view(-1, CHUNK, 2) + 0 * state[:, None], None
 
 
 class ChunkPolicy(nn.Module):
@@ -71,7 +75,7 @@ class ChunkPolicy(nn.Module):
     @torch.no_grad()
     def predict_action_chunk(self, batch: dict[str, Tensor]) -> Tensor:
         self.calls += 1
-        return self.model({"observation.images": [batch["observation.images.front"]]})[0]
+        return self.model({**batch, "observation.images": [batch["observation.image"]]})[0]
 
     def forward(self, batch: dict[str, Tensor]) -> tuple[Tensor, dict[str, float]]:
         raise AssertionError("`forward` of a lerobot policy computes its loss, so it needs actions")
@@ -82,29 +86,57 @@ class Reach(gymnasium.Env):
     be 1 or -1."""
 
     def __init__(self) -> None:
-        self.observation_space = spaces.Box(0, 255, (32, 32, 3), np.uint8)
+        self.observation_space = spaces.Dict(
+            pixels=spaces.Box(0, 255, (32, 32, 3), np.uint8),
+            agent_pos=spaces.Box(-1.0, 1.0, (2,), np.float32),
+        )
         self.action_space = spaces.Box(-1.0, 1.0, (2,), np.float32)
 
     def reset(self, *, seed=None, options=None):
         super().reset(seed=seed)
         self.steps = 0
-        return self._frame(), {}
+        self.total = 0.0
+        return self._observe(), {}
 
     def step(self, action):
+        assert self.action_space.contains(action)
         reward = float(action[0] * self.side)
         self.steps += 1
-        return self._frame(), reward, self.steps == STEPS, False, {}
+        self.total += reward
+        done = self.steps == STEPS
+        return self._observe(), reward, done, False, {"is_success": self.total > STEPS - 1}
 
-    def _frame(self):
+    def _observe(self):
         self.side = 1 if self.np_random.random() < 0.5 else -1
         frame = np.full((32, 32, 3), 40, np.uint8)
         frame[:, :16] += np.uint8(150 * (self.side > 0))
         frame[:, 16:] += np.uint8(150 * (self.side < 0))
-        return frame
+        return {"pixels": frame, "agent_pos": np.zeros(2, np.float32)}
+
+
+class FakeHook(ModuleType):
+    """``mitigate_hook`` with an episode that inverts frames and stores its calls."""
+
+    def __init__(self) -> None:
+        super().__init__("mitigate_hook")
+        self.calls: list[Any] = []
+
+    def connect(self, name, scene):
+        self.calls.append((name, scene))
+        return self
+
+    def corrupt(self, observation, cameras=None):
+        self.calls.append(cameras)
+        frames = {name: 255 - observation[name] for name in cameras or ["rgb"]}
+        return {**observation, **frames}
+
+    def finish(self, success):
+        self.calls.append(bool(success))
 
 
 def world() -> GymWorld:
-    return GymWorld(Reach(), score="return")
+    (call,) = re.findall(r"`(GymWorld\(.*?\))`", PAGE.read_text(encoding="utf-8"))
+    return eval(call, {"GymWorld": GymWorld, "env": Reach()})
 
 
 def trained() -> ChunkPolicy:
@@ -122,9 +154,50 @@ def trained() -> ChunkPolicy:
     return policy
 
 
-def test_examples_have_at_most_twelve_lines():
-    for name in ("agent", "forward"):
-        assert sum(bool(line.strip()) for line in example(name).splitlines()) <= 12
+def test_examples_are_short():
+    for name in ("loop", "eval", "agent", "forward"):
+        assert sum(bool(line.strip()) for line in example(name).splitlines()) <= 15
+
+
+def test_loop_example_corrupts_and_reports(monkeypatch):
+    hook = FakeHook()
+    monkeypatch.setitem(sys.modules, "mitigate_hook", hook)
+    observation, _ = Reach().reset(seed=3)
+    names: dict[str, Any] = {"seed": 3, "info": {"is_success": True}, "observation": observation}
+    exec(example("loop"), names)
+    assert hook.calls == [(3, "pusht"), {"pixels": {"type": "rgb"}}, True]
+    assert (names["observation"]["pixels"] == 255 - observation["pixels"]).all()
+
+
+def test_eval_example_corrupts_each_frame_and_reports_each_episode(monkeypatch):
+    """``lerobot_eval`` is replaced by a module with its functions ``main`` and ``rollout``."""
+    hook = FakeHook()
+    lerobot = ModuleType("lerobot_eval")
+    received = []
+
+    def rollout(seeds, env, return_observations):
+        observation = lerobot.preprocess_observation({"pixels": env[None], "agent_pos": 5})
+        received.append(observation)
+        return {"success": np.array([[False, True]])}
+
+    def main():
+        for seed in (1, 2):
+            lerobot.rollout(seeds=[seed], env=frame, return_observations=False)
+
+    lerobot.rollout = rollout
+    lerobot.main = main
+    lerobot.preprocess_observation = dict
+    scripts = ModuleType("lerobot.scripts")
+    scripts.lerobot_eval = lerobot
+    modules = {"mitigate_hook": hook, "lerobot": ModuleType("lerobot"), "lerobot.scripts": scripts}
+    for name, module in modules.items():
+        monkeypatch.setitem(sys.modules, name, module)
+    frame = np.full((8, 8, 3), 9, np.uint8)
+    exec(example("eval"), {})
+    assert hook.calls == [(1, "pusht"), None, True, (2, "pusht"), None, True]
+    for observation in received:
+        assert (observation["pixels"] == 246).all() and observation["pixels"].shape[0] == 1
+        assert observation["agent_pos"] == 5
 
 
 def test_agent_example_replans_after_each_chunk_and_after_reset():
@@ -151,6 +224,7 @@ def test_agent_example_is_measured_by_benchmark(tmp_path):
 
 def test_forward_example_is_hardened(tmp_path):
     settings = {"listed": EPISODES, "suite": ["low_light"], "steps": 4, "episodes": 2, "batch": 4}
+    settings["validation"] = 0  # keep the trained weights
 
     class Short:  # mitigate.harden with few steps
         @staticmethod

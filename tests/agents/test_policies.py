@@ -186,6 +186,13 @@ def test_as_policy_names_an_entry_that_the_forward_function_misses():
         rollout(world, policy)
 
 
+def test_as_policy_says_that_the_world_passes_only_the_frame():
+    world = world_of(Noise())
+    policy = as_policy(nn.Linear(1, 3), world, forward=lambda net, seen: {}["state"])
+    with pytest.raises(ValueError, match="'state', but the world passes only the frame. Name"):
+        rollout(world, policy)
+
+
 def test_as_policy_rejects_stacked_frames():
     world = world_of(Noise())
     world.sensors["rgb"] = replace(world.sensors["rgb"], shape=(4, 36, 36, 3))

@@ -48,6 +48,23 @@ def test_corrupt_stops_for_an_undescribed_frame(tmp_path, entry, name, shape):
     assert words in process.stdout and words in reports.problems[0]
 
 
+@pytest.mark.parametrize("cameras", [None, {"pixels": {"type": "rgb"}}, {"top": {"type": "rgb"}}])
+def test_corrupt_advises_to_pass_a_dict_of_frames_by_itself(tmp_path, cameras):
+    code = "observation = {'pixels': {'top': rgb}}\nepisode = mitigate_hook.connect('a')\n"
+    advice = "episode.corrupt(observation['pixels'], cameras={'top': {'type': 'rgb'}})"
+    _, reports = run_loop(tmp_path, f"{code}episode.corrupt(observation, cameras={cameras})")
+    assert f"pixels is a dict. Pass it by itself: {advice}" in reports.problems[0]
+    process, _ = run_loop(tmp_path, f"{code}print(({advice}['top'] != rgb).any())")
+    assert process.stdout.strip() == "True"
+
+
+@pytest.mark.parametrize("frame", ["rgb.transpose(2, 0, 1)", "rgb[None]", "rgb.tolist()"])
+def test_corrupt_stops_for_a_frame_of_another_format(tmp_path, frame):
+    code = f"mitigate_hook.connect('a').corrupt({{'rgb': {frame}}})\nprint('went on')"
+    process, _ = run_loop(tmp_path, code)
+    assert process.returncode == 97 and "went on" not in process.stdout
+
+
 def test_corrupt_leaves_other_entries_unchanged(tmp_path):
     code = (
         "seen = mitigate_hook.connect('a').corrupt({'rgb': rgb, 'pose': numpy.eye(4), 'word': 'x',"

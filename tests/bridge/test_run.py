@@ -111,6 +111,10 @@ def test_run_skips_conditions_that_do_not_apply(run, tmp_path):
             "used neither habitat-lab (habitat.core.env)",
         ),
         (
+            f"{sys.executable} -c 'print(5)'",
+            "A loop of your own needs three calls: mitigate_hook.connect(), episode.corrupt()",
+        ),
+        (
             f"{sys.executable} -I {LAB / 'agent.py'} x",
             "status 1, and no Python process",
         ),

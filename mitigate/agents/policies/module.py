@@ -61,9 +61,10 @@ class ModulePolicy(Policy):
         try:
             output = call(*arguments)
         except KeyError as error:
+            names = ", ".join(flat(inputs)) if isinstance(inputs, Mapping) else "the frame"
             raise ValueError(
                 f"{self.name} reads the entry {error}, but the world passes only "
-                f"{', '.join(flat(inputs))}. Name all entries: GymWorld(entries={{...}})."
+                f"{names}. Name all entries: GymWorld(entries={{...}})."
             ) from error
         except (MemoryError, torch.OutOfMemoryError):
             raise

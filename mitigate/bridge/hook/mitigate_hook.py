@@ -1106,6 +1106,11 @@ def _find_cameras(observations, cameras):
         if camera["type"] in (COLOR, DEPTH):
             if not isinstance(name, str):
                 stop(f"the name of a camera must be text, got {name!r}. Write {str(name)!r}.")
+            if callable(_get(value, "items")):
+                stop(
+                    f"the camera {name} must be a numpy array. "
+                    f"{_advise_cameras(name, value, camera['type'])}"
+                )
             described.append(dict(camera, name=name))
         elif name in cameras and camera["type"] != "other":
             stop(
@@ -1117,10 +1122,24 @@ def _find_cameras(observations, cameras):
             if array is not None:
                 stop(
                     f"the entry {array[0]} of an observation may be a frame {array[1]}, and it is "
-                    f"not described. Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} (or "
-                    "'depth', for a separate array [H, W, channels]; 'other' leaves it as it is)."
+                    f"not described. {_advise_cameras(name, value, COLOR)}"
                 )
     return observations, described
+
+
+def _advise_cameras(name, value, kind):
+    """Return how to describe the frames in an entry of an observation, as sentences."""
+    if not callable(_get(value, "items")):
+        return (
+            f"Name it in cameras=, {{{str(name)!r}: {{'type': 'rgb'}}}} (or 'depth', for a "
+            "separate array [H, W, channels]; 'other' leaves it as it is)."
+        )
+    inner = next((key for key, part in value.items() if _find_frame(part, "") is not None), "left")
+    return (
+        f"{name} is a dict. Pass it by itself: episode.corrupt(observation[{name!r}], "
+        f"cameras={{{inner!r}: {{'type': {kind!r}}}}}). If it contains no frames that the agent "
+        f"uses: cameras={{{name!r}: {{'type': 'other'}}}}."
+    )
 
 
 def _find_frame(value, name):
