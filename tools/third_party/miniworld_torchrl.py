@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tensordict.nn import ProbabilisticTensorDictSequential
+from tensordict.nn import TensorDictSequential
 from torchrl.envs import GymWrapper
 
 from tools.third_party.miniworld_room import make, make_world  # noqa: F401 - for results.py
@@ -17,7 +17,7 @@ def make_torchrl_env() -> GymWrapper:
     return GymWrapper(make(), pixels_only=True, categorical_action_encoding=True)
 
 
-def load_policy() -> ProbabilisticTensorDictSequential:
+def load_policy() -> TensorDictSequential:
     return load_actor(PATH, FRAMES, ACTIONS)
 
 

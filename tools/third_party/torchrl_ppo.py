@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import torch
 from safetensors.torch import load_file, save_file
-from tensordict.nn import ProbabilisticTensorDictSequential, TensorDictModule
+from tensordict.nn import TensorDictModule, TensorDictSequential
 from torch import nn
 from torch.distributions import Categorical
 from torchrl.collectors import Collector
@@ -23,16 +23,16 @@ ENVS, FRAMES, BATCH, EPOCHS = 8, 1024, 256, 3
 
 
 class Scale(nn.Module):
-    """Convert frames uint8 [..., H, W, C] to float32 [..., C, H, W] in 0-1."""
+    """Convert frames uint8 [..., H, W, 3] to float32 [..., 3, H, W] in 0-1."""
 
     def forward(self, frames):
         return frames.movedim(-1, -3).float() / 255
 
 
-def make_actor_critic(frames: str, actions: int, channels: int) -> ActorValueOperator:
+def make_actor_critic(frames: str, actions: int) -> ActorValueOperator:
     """Return an actor and a critic that share the features of the entry ``frames``."""
     convolutions = ConvNet(
-        in_features=channels,
+        in_features=3,
         num_cells=[16, 32, 32],
         kernel_sizes=[8, 4, 3],
         strides=[4, 2, 1],
@@ -40,7 +40,7 @@ def make_actor_critic(frames: str, actions: int, channels: int) -> ActorValueOpe
     )
     features = nn.Sequential(Scale(), convolutions, nn.LazyLinear(128), nn.ReLU())
     # this call initialises the lazy layer with the right size
-    features(torch.zeros(1, 48, 64, channels, dtype=torch.uint8))
+    features(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))
     action, value = nn.Linear(128, actions), nn.Linear(128, 1)
     for layer in [*features.modules(), action, value]:
         if isinstance(layer, nn.Conv2d | nn.Linear):
@@ -59,11 +59,9 @@ def make_actor_critic(frames: str, actions: int, channels: int) -> ActorValueOpe
     )
 
 
-def load_actor(
-    path: Path, frames: str, actions: int, channels: int = 3
-) -> ProbabilisticTensorDictSequential:
+def load_actor(path: Path, frames: str, actions: int) -> TensorDictSequential:
     """Return the actor whose weights :func:`train_actor` saved."""
-    actor = make_actor_critic(frames, actions, channels).get_policy_operator()
+    actor = make_actor_critic(frames, actions).get_policy_operator()
     actor.load_state_dict(load_file(path))
     return actor.eval()
 
@@ -75,7 +73,6 @@ def train_actor(
     actions: int,
     steps: int,
     target: float,
-    channels: int = 3,
     reward_scale: float = 1.0,
     entropy: float = 0.0,
     seed: int = 0,
@@ -88,7 +85,7 @@ def train_actor(
     torch.manual_seed(seed)
     env = SerialEnv(ENVS, lambda: TransformedEnv(make(), RewardSum()))
     env.set_seed(100_000)
-    actor_critic = make_actor_critic(frames, actions, channels)
+    actor_critic = make_actor_critic(frames, actions)
     actor, critic = actor_critic.get_policy_operator(), actor_critic.get_value_operator()
     loss_module = ClipPPOLoss(
         actor,
