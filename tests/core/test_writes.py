@@ -75,8 +75,6 @@ ALLOWED = {
     ("mitigate/cli.py", "open"): "a standard stream, by its number",
     ("tools/third_party/ppo.py", "mkdir"): "the folder of the weights in a checkout",
     ("tools/third_party/torchrl_ppo.py", "save_file"): "weights in a checkout",
-    ("tools/third_party/frames.py", "mkdir"): "a folder that the user names",
-    ("tools/third_party/frames.py", "imwrite"): "a folder that the user names",
     ("tools/third_party/mujoco_reacher.py", "save_file"): "weights in a checkout",
     ("tools/faults/evaluation.py", "copytree"): "breaks a run on purpose",
     ("tools/faults/evaluation.py", "write_bytes"): "breaks a run on purpose",

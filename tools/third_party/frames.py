@@ -15,6 +15,7 @@ from pathlib import Path
 import cv2
 
 import mitigate
+from mitigate.core.files import make_folder, write_bytes
 from mitigate.core.observation import RGB
 from mitigate.worlds.seeded import FIRST_TRAINING_SEED, seeded_episodes
 
@@ -29,12 +30,12 @@ def write_frames(name: str, folder: Path, episodes: int) -> int:
     count = 0
     for episode in seeded_episodes(range(FIRST_TRAINING_SEED, FIRST_TRAINING_SEED + episodes)):
         scene = folder / f"episode-{episode.episode_id}"
-        scene.mkdir(parents=True, exist_ok=True)
+        make_folder(scene)
         observation = world.reset(episode)
         policy.reset(episode.instruction.text)
         while not world.done:
-            bgr = cv2.cvtColor(observation[RGB], cv2.COLOR_RGB2BGR)
-            cv2.imwrite(str(scene / f"{count:06d}.png"), bgr)
+            _, encoded = cv2.imencode(".png", observation[RGB][..., ::-1])
+            write_bytes(scene / f"{count:06d}.png", encoded.tobytes())
             count += 1
             observation = world.step(policy.act(observation))
     return count
