@@ -10,7 +10,7 @@ from tools.third_party.ppo import WEIGHTS
 from tools.third_party.torchrl_ppo import load_actor, train_actor
 
 PATH = WEIGHTS / "miniworld_torchrl.safetensors"
-FRAMES, ACTIONS = "pixels", 3
+FRAMES, ACTIONS = {"pixels": 3}, 3
 
 
 def make_torchrl_env() -> GymWrapper:

@@ -22,25 +22,35 @@ from torchrl.objectives.value import GAE
 ENVS, FRAMES, BATCH, EPOCHS = 8, 1024, 256, 3
 
 
+class Features(nn.Sequential):
+    """Layers that read one or several frames uint8 [..., H, W, C], joined along their channels."""
+
+    def forward(self, *frames):
+        return super().forward(torch.cat(frames, -1))
+
+
 class Scale(nn.Module):
-    """Convert frames uint8 [..., H, W, 3] to float32 [..., 3, H, W] in 0-1."""
+    """Convert frames uint8 [..., H, W, C] to float32 [..., C, H, W] in 0-1."""
 
     def forward(self, frames):
         return frames.movedim(-1, -3).float() / 255
 
 
-def make_actor_critic(frames: str, actions: int) -> ActorValueOperator:
-    """Return an actor and a critic that share the features of the entry ``frames``."""
+def make_actor_critic(frames: dict[str, int], actions: int) -> ActorValueOperator:
+    """Return an actor and a critic that share the features of the entries ``frames``.
+
+    ``frames`` contains the number of channels for each entry.
+    """
     convolutions = ConvNet(
-        in_features=3,
+        in_features=sum(frames.values()),
         num_cells=[16, 32, 32],
         kernel_sizes=[8, 4, 3],
         strides=[4, 2, 1],
         activation_class=nn.ReLU,
     )
-    features = nn.Sequential(Scale(), convolutions, nn.LazyLinear(128), nn.ReLU())
+    features = Features(Scale(), convolutions, nn.LazyLinear(128), nn.ReLU())
     # this call initialises the lazy layer with the right size
-    features(torch.zeros(1, 48, 64, 3, dtype=torch.uint8))
+    features(torch.zeros(1, 48, 64, sum(frames.values()), dtype=torch.uint8))
     action, value = nn.Linear(128, actions), nn.Linear(128, 1)
     for layer in [*features.modules(), action, value]:
         if isinstance(layer, nn.Conv2d | nn.Linear):
@@ -53,13 +63,13 @@ def make_actor_critic(frames: str, actions: int) -> ActorValueOperator:
         return_log_prob=True,
     )
     return ActorValueOperator(
-        TensorDictModule(features, in_keys=[frames], out_keys=["features"]),
+        TensorDictModule(features, in_keys=[*frames], out_keys=["features"]),
         actor,
         ValueOperator(value, in_keys=["features"]),
     )
 
 
-def load_actor(path: Path, frames: str, actions: int) -> TensorDictSequential:
+def load_actor(path: Path, frames: dict[str, int], actions: int) -> TensorDictSequential:
     """Return the actor whose weights :func:`train_actor` saved."""
     actor = make_actor_critic(frames, actions).get_policy_operator()
     actor.load_state_dict(load_file(path))
@@ -69,7 +79,7 @@ def load_actor(path: Path, frames: str, actions: int) -> TensorDictSequential:
 def train_actor(
     make: Callable[[], EnvBase],
     path: Path,
-    frames: str,
+    frames: dict[str, int],
     actions: int,
     steps: int,
     target: float,

@@ -10,7 +10,7 @@ from tools.third_party.torchrl_ppo import load_actor, train_actor
 from tools.third_party.vizdoom_basic import make, make_world  # noqa: F401 - for results.py
 
 PATH = WEIGHTS / "vizdoom_torchrl.safetensors"
-FRAMES, ACTIONS = "screen", 4
+FRAMES, ACTIONS = {"screen": 3}, 4
 
 
 def make_torchrl_env() -> GymWrapper:
