@@ -10,11 +10,11 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults mutations train evaluate sweep table report table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
+.PHONY: help install test-faults mutations train evaluate sweep table report results-check table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
-	  | awk -F'|' '{printf "  make %-11s %s\n", $$1, $$2}'
+	  | awk -F'|' '{printf "  make %-13s %s\n", $$1, $$2}'
 
 $(VENV)/.stamp: pyproject.toml
 	@echo "setting up $(VENV) (minutes, once)"
@@ -48,6 +48,9 @@ table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --ou
 
 report: $(VENV)/.stamp ## write rows as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
+
+results-check: $(VENV)/.stamp ## recompute the published figures from their rows: ARGS="docs/results/faults.md"
+	$(BIN)/python -m tools.figures $(ARGS)
 
 table1: $(VENV)/.stamp $(TABLE1) ## evaluate all kinds of agent, the paper's Table I: ARGS="table=objects"
 	$(BIN)/python -m mitigate.table1 $(ARGS)

@@ -35,7 +35,8 @@ BLOCKS = {  # the blocks contain only this project's corruptions, not corruption
     "Instruction": names("instruction"),
     "unseen RGB": unseen_names("rgb"),
     "unseen depth": unseen_names("depth"),
-    **{f"{family} faults": fault_names(family) for family in FAMILIES},
+    # intermittent corrupts nothing by itself; its pairs have the block "Pairs"
+    **{f"{f} faults": tuple(n for n in fault_names(f) if n != GATE) for f in FAMILIES},
 }
 # corruptions of RGB and depth frames in the NavTrust paper
 FRAMES = frozenset((*BLOCKS["RGB"], *BLOCKS["Depth"]))

@@ -34,10 +34,14 @@ NO_PICTURE = (
 FEW = 10  # with fewer episodes than this, no difference is printed in bold (heuristic)
 
 
-def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -> str:
+def markdown(
+    parts: Sequence[Section], pictures: Sequence[Sequence[str]] = (), intervals: bool = False
+) -> str:
     """Return the tables as Markdown.
 
-    ``pictures[i]`` lists the picture files that are shown below section i.
+    ``pictures[i]`` lists the picture files that are shown below section i. With ``intervals``, each
+    corruption also has an interval, and its differences from the clean SR and from the reference
+    column.
     """
     texts = []
     several_rules = len({section.grid.rule for section in parts}) > 1
@@ -45,7 +49,7 @@ def markdown(parts: Sequence[Section], pictures: Sequence[Sequence[str]] = ()) -
         images = "\n".join(f"![{Path(name).stem}]({name})" for name in names)
         if pictures and section.blocks and not names:
             images = NO_PICTURE
-        table = _table(section)
+        table = _table(section, intervals)
         about = f"{NO_WIDTH}\n" * (NO_INTERVAL in table) + _notes(section)
         texts.append(f"{_heading(section, several_rules)}\n\n{table}\n\n{about}\n\n{images}")
     return "\n\n".join(text.strip() for text in texts) + "\n"
@@ -58,6 +62,7 @@ def write(
     least: int = 1,
     against: str | None = None,
     drawn: str = DRAWN[0],
+    intervals: bool = False,
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
 
@@ -72,6 +77,7 @@ def write(
         least: minimum number of severities that a grid needs for its curves to be plotted.
         against: name of the reference column, as in :func:`sections`.
         drawn: unit that the bootstrap resamples, as in :func:`sections`.
+        intervals: whether each corruption has intervals, as in :func:`markdown`.
     """
     from mitigate.evaluation import plots  # matplotlib is slow to import
 
@@ -91,7 +97,7 @@ def write(
             plots.severity_curves(section.grid, folder / names[-1])
             grids.append(section.grid)
     with atomic_text(folder / "table.md") as file:
-        file.write(markdown(parts, pictures))
+        file.write(markdown(parts, pictures, intervals))
     return [folder / "table.md", *(folder / name for names in pictures for name in names)]
 
 
@@ -135,7 +141,7 @@ def _drawn(grid: Grid) -> str:
     return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
 
 
-def _table(section: Section) -> str:
+def _table(section: Section, intervals: bool) -> str:
     columns = section.columns
     lines: list[list[str]] = []
     changes = _changes(section) if len(columns) > 1 else []
@@ -149,10 +155,15 @@ def _table(section: Section) -> str:
         lines.append([f"Clean SR {against}", *cells])
     if section.corrupted:
         count = sum(map(section.whole, section.blocks))
-        cells = [_mean_sr(section, section.corrupted.get(column)) for column in columns]
+        cells = [
+            _mean_sr(section, section.corrupted.get(column), *section.blocks) for column in columns
+        ]
         lines.append([f"Mean SR of {count} corruptions", *cells])
         if changes:
-            cells = [_mean_sr(section, change.corrupted, moved=True) for change in changes]
+            cells = [
+                _mean_sr(section, change.corrupted, *section.blocks, moved=True)
+                for change in changes
+            ]
             lines.append([f"Mean SR {against}", *cells])
     for block, names in section.blocks.items():
         for metric in METRICS:
@@ -164,7 +175,8 @@ def _table(section: Section) -> str:
             lines.append([f"PRS-{metric} {against}", *cells])
         for half in section.halves.get(block, {}):
             lines.append([f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in columns)])
-        lines += [[label(name), *(_rate(section, c, name) for c in columns)] for name in names]
+        for name in names:
+            lines += _with_intervals(section, name) if intervals else [_rates(section, name)]
         if _prompt_not_applicable(section, block):
             lines.append([label(PROMPT_ONLY), *["n/a"] * len(columns)])
     return markdown_table(["Corruption", *map(markdown_of, columns)], lines)
@@ -175,12 +187,14 @@ def _changes(section: Section) -> list[Difference]:
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
-def _mean_sr(section: Section, value: Retained | None, moved: bool = False) -> str:
-    """Format a mean SR over all corruptions, or a difference of two such means if ``moved``."""
+def _mean_sr(section: Section, value: Retained | None, *parts: str, moved: bool = False) -> str:
+    """Format a mean SR over the corruptions of ``parts``, or a difference of two such means if
+    ``moved``. Without ``parts``, it is the SR under one corruption.
+    """
     if value is None:
         return "–"
     text = _moved(section, value.estimate) if moved else _interval(value.estimate, "SR")
-    return text + _escaped(section.marks(value, *section.blocks))
+    return text + _escaped(section.marks(value, *parts))
 
 
 def _by_seed(
@@ -248,6 +262,31 @@ def _notes(section: Section) -> str:
 
 def _prompt_not_applicable(section: Section, block: str) -> bool:
     return block == "Instruction" and PROMPT_ONLY not in section.blocks[block]
+
+
+def _rates(section: Section, corruption: str) -> list[str]:
+    """Return the table line of a corruption, without intervals."""
+    return [label(corruption), *(_rate(section, c, corruption) for c in section.columns)]
+
+
+def _with_intervals(section: Section, corruption: str) -> list[list[str]]:
+    """Return the table lines of a corruption: its SR, and the differences from the clean SR and
+    from the reference column.
+    """
+    title = label(corruption)
+    cells = []
+    for column in section.columns:
+        rate = section.mean_sr(column, (corruption,))
+        # without enough episodes for an interval, the cell shows their mean
+        cells.append(_mean_sr(section, rate) if rate else _rate(section, column, corruption))
+    lines = [[title, *cells]]
+    changes = [section.changes(column, corruption) for column in section.columns]
+    kinds = {"clean": "clean", section.reference: markdown_of(section.reference)}
+    for kind, against in kinds.items():
+        if any(kind in change for change in changes):
+            cells = [_mean_sr(section, change.get(kind), moved=True) for change in changes]
+            lines.append([f"{title} against {against}", *cells])
+    return lines
 
 
 def _rate(section: Section, column: str, corruption: str) -> str:

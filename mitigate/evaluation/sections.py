@@ -213,6 +213,27 @@ class Section:
         }
         return Difference(clean, _mean_sr(retention) if retention else None, retained)
 
+    def changes(self, column: str, corruption: str) -> dict[str, Retained]:
+        """Return the paired differences of a column's SR under one corruption: from its clean SR
+        ("clean"), and from the reference's SR under the same corruption (the reference's name).
+
+        Differences that were not measured are left out.
+        """
+        pair, severity = (column, self.reference), self.severity
+        found = {}
+        retention = self.grid.retention([column], (corruption,), severity, METRICS["SR"])
+        if retention:
+            (part,) = retention
+            change = bootstrap.mean(part.corrupted[0] - part.clean, units=part.units)
+            found["clean"] = Retained(change, part.corruptions, len(part.clean), False)
+        common = self.grid.common(pair, severity) if column != self.reference else []
+        if common:
+            both = self.grid.over(pair, common, severity)
+            parts = both.retention(pair, (corruption,), severity, METRICS["SR"])
+            if parts:
+                found[self.reference] = _mean_sr(parts)
+        return found
+
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
         """Return the mean of a cell over its episodes, or NaN if the cell is empty."""
         return _mean(self.grid.cell(column, corruption, self.severity, METRICS[metric]))

@@ -29,6 +29,7 @@ def run(
     against: str | None = None,
     drawn: str = "episode",
     critical: Sequence[float] | None = None,
+    intervals: bool = False,
 ) -> list[Path]:
     """Read the rows in ``paths``, write a report to ``out``, and return the report's files.
 
@@ -43,6 +44,8 @@ def run(
         drawn: unit that the bootstrap resamples, "episode" or "scene".
         critical: fractions of the clean success. If they are given, the report consists of critical
             severities and areas under the retention curve (``critical.py``).
+        intervals: whether the table shows, for each corruption, an interval and the differences
+            from the clean SR and from the reference column.
 
     Raises:
         FileNotFoundError: If a path contains no rows.
@@ -62,7 +65,7 @@ def run(
     selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
     if critical is not None:
         return critical_report.write(scores(selected, critical, against, drawn), out)
-    return report.write(selected, out, against=against, drawn=drawn)
+    return report.write(selected, out, against=against, drawn=drawn, intervals=intervals)
 
 
 def _losses(text: str) -> list[float]:
@@ -105,8 +108,16 @@ def main(argv: Sequence[str] | None = None) -> int:
         help="compare the severities at which these fractions of the clean success are lost, such "
         "as 0.1,0.5",
     )
+    parser.add_argument(
+        "--intervals",
+        action="store_true",
+        help="for each corruption, also show an interval and the differences from the clean SR and "
+        "from the reference column",
+    )
     parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
     options = parser.parse_intermixed_args(argv)
+    if options.critical and options.intervals:
+        parser.error("--intervals cannot be combined with --critical, whose table has intervals")
     check_paths(options.paths, "--out DIR")
     paths = run(**vars(options))
     print(plain_text(paths[0].read_text(encoding="utf-8")))

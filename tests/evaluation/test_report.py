@@ -12,7 +12,7 @@ import pytest
 
 from mitigate.core.markdown import markdown_of
 from mitigate.corruptions import DEPTH, INSTRUCTION, NAMES, RGB
-from mitigate.corruptions.registry import unseen_names
+from mitigate.corruptions.registry import fault_names, unseen_names
 from mitigate.evaluation import report, rows, table
 from mitigate.evaluation.report import markdown, sections, write
 from mitigate.evaluation.sections import Difference
@@ -408,6 +408,34 @@ def test_pairs_have_a_table_of_their_own():
     assert section.kind == "pairs of corruptions"
     assert section.blocks == {"Pairs": ("low_light+mask", "spatter+missing_data")}
     assert "| Spatter + Missing data | 40.0 |" in markdown([section])
+
+
+def test_temporal_table_does_not_miss_the_fault_that_needs_a_partner():
+    """``intermittent`` exists only in pairs."""
+    temporal = dict.fromkeys([n for n in fault_names("temporal") if n != "intermittent"], 4)
+    (section,) = sections(column(8, temporal | {"intermittent+spatter": 4}))
+    assert "†" not in markdown([section]) and "Not measured" not in markdown([section])
+
+
+def test_each_corruption_can_have_intervals_and_differences():
+    records = column(8, {"spatter": 4}) + column(6, {"spatter": 6}, **HARD)
+    (section,) = sections(records)
+    detailed = markdown([section], intervals=True)
+    assert re.search(r"\| Spatter \| 40.0 \[\d+.0, \d+.0\] \| 60.0 \[\d+.0, \d+.0\] \|", detailed)
+    clean = r"\| Spatter against clean \| \*\*-40.0\*\* \[-70.0, -10.0\] \| \+0.0 \[–\] \|"
+    assert re.search(clean, detailed)
+    assert re.search(r"\| Spatter against base \| – \| \+20.0 \[\+0.0, \+50.0\] \|", detailed)
+    assert "Spatter against" not in markdown([section])
+
+
+def test_intervals_leave_out_what_was_not_measured():
+    """The second column lacks spatter, and one episode of flare."""
+    records = column(8, {"spatter": 4, "flare": 4}) + column(6, {"flare": 6}, **HARD)[:-1]
+    detailed = markdown(sections(records), intervals=True)
+    assert re.search(r"\| Spatter \| 40.0 \[.*\] \| – \|", detailed)
+    assert re.search(r"\| Spatter against base \| – \| – \|", detailed) is None
+    assert re.search(r"\| Flare \| 40.0 \[.*\] \| 66.7 \[.*\]\\\* \|", detailed)
+    assert re.search(r"\| Flare against base \| – \| \+22.2 \[.*\]\\\* \|", detailed)
 
 
 HOSTILE = "a|b`c`<script>x</script>[y](http://z)![p](q)$\\frac$*#"

@@ -1,0 +1,178 @@
+"""Check the published figures: recompute the tables of the documentation from their result rows.
+
+    python -m tools.figures              # or: make results-check
+    python -m tools.figures docs/lab/random-compositions.md --list
+
+A page shows figures with intervals, such as ``85.0 [82.3, 87.5]``, and the commands that print
+them, as indented lines (``mitigate table FILES ...``). The check runs these commands. If a section
+contains such a command, each figure in this section must be among the figures that the commands of
+the page print, rounded as on the page. Figures of other sections are only counted, because some
+figures have no rows; ``--list`` lists those that no command prints.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import subprocess
+import sys
+import tempfile
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = ("docs/results/*.md", "docs/lab/agents.md", "docs/lab/random-compositions.md")
+# an indented command that prints a table of stored rows
+TOOLS = r"mitigate table |python -m mitigate\.table |python -m tools\.third_party\.results --table "
+COMMAND = re.compile(rf"^    ((?:{TOOLS}).*docs/results/.*)$")
+VALUE = r"(?:[<>≤≥] ?)?[-+−]?\d+(?:\.\d+)?"
+FIGURE = re.compile(rf"({VALUE})(?:\*\*)?(?: ?%| points)?(?:\*\*)?,? \[({VALUE})(?:, ({VALUE}))?\]")
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A value with its interval, as text: "85.0", "82.3", "87.5"."""
+
+    value: str
+    low: str
+    high: str
+
+    def __str__(self) -> str:
+        return f"{self.value} [{self.low}, {self.high}]"
+
+    def is_printed(self, printed: set[Figure]) -> bool:
+        """Return whether this figure is among ``printed``.
+
+        It may have fewer decimal places, and a difference may be stated the other way round:
+        "2.7 [0.5, 4.9] above" where -2.7 [-4.9, -0.5] was printed.
+        """
+        return any(
+            all(map(_rounds, self._parts, figure))
+            for known in printed
+            for figure in (known._parts, known._mirrored)
+        )
+
+    @property
+    def _parts(self) -> tuple[str, str, str]:
+        return self.value, self.low, self.high
+
+    @property
+    def _mirrored(self) -> tuple[str, str, str]:
+        return _negative(self.value), _negative(self.high), _negative(self.low)
+
+
+def _negative(value: str) -> str:
+    return value[1:] if value.startswith("-") else f"-{value}" if value[0].isdigit() else value
+
+
+def _rounds(shown: str, full: str) -> bool:
+    """Return whether ``shown`` is ``full``, perhaps with fewer decimal places."""
+    if shown[0] in "<>" or full[0] in "<>":
+        return shown == full  # a bound, such as "> 1"
+    shown, full = shown.lstrip("≤≥ "), full.lstrip("≤≥ ")
+    places = len(shown.partition(".")[2])
+    return abs(float(shown) - float(full)) <= 0.5 * 10.0**-places + 1e-9
+
+
+def figures(text: str) -> list[Figure]:
+    """Return the figures with intervals in a text."""
+    plain = text.replace("−", "-").replace("+", "")
+    return [Figure(value, low, high or low) for value, low, high in FIGURE.findall(plain)]
+
+
+def commands(text: str) -> list[str]:
+    """Return the commands in a text that print tables of stored rows."""
+    found = (COMMAND.match(line) for line in text.splitlines())
+    return [match[1].partition("   #")[0].strip() for match in found if match]
+
+
+def run(command: str) -> list[Figure]:
+    """Run a command of a page; return the figures that it prints.
+
+    Raises:
+        RuntimeError: If the command fails.
+    """
+    command = re.sub(r"^mitigate table ", "python -m mitigate.table ", command)
+    with tempfile.TemporaryDirectory() as out:
+        if "mitigate.table" in command:
+            command += f" --out {out}"
+        # the shell expands braces: {base,harden}-val_unseen.jsonl.gz
+        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+        done = subprocess.run(
+            ["bash", "-c", command],
+            cwd=ROOT,
+            env={**os.environ, "PATH": path},
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+    if done.returncode:
+        raise RuntimeError(f"{command} failed:\n{done.stderr.strip()}")
+    return figures(done.stdout)
+
+
+@dataclass(frozen=True)
+class Checked:
+    """The result for one page.
+
+    Attributes:
+        confirmed: number of figures that a command of the page prints.
+        wrong: figures that no command prints, in sections with a command.
+        without: figures that no command prints, in sections without a command.
+    """
+
+    confirmed: int
+    wrong: list[Figure]
+    without: list[Figure]
+
+
+def check(text: str, printed: list[Figure]) -> Checked:
+    """Compare the figures of a page with the figures that its commands printed."""
+    confirmed, wrong, without = 0, [], []
+    known = set(printed)
+    for section in re.split(r"^(?=###? )", text, flags=re.MULTILINE):
+        unknown = wrong if commands(section) else without
+        for figure in figures(section):
+            if figure.is_printed(known):
+                confirmed += 1
+            else:
+                unknown.append(figure)
+    return Checked(confirmed, wrong, without)
+
+
+def main() -> int:
+    """Check the pages; return 1 if a figure is wrong."""
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("pages", nargs="*", type=Path, help="Markdown files (default: all results)")
+    parser.add_argument("--list", action="store_true", help="also list figures without a command")
+    options = parser.parse_args()
+    pages = options.pages or [page for glob in PAGES for page in sorted(ROOT.glob(glob))]
+    texts = {page: page.read_text("utf-8") for page in pages}
+    unique = dict.fromkeys(command for text in texts.values() for command in commands(text))
+    with ThreadPoolExecutor(os.cpu_count()) as pool:
+        try:
+            printed = dict(zip(unique, pool.map(run, unique), strict=True))
+        except RuntimeError as error:
+            sys.exit(str(error))
+    failed = False
+    for page, text in texts.items():
+        result = check(text, [figure for c in commands(text) for figure in printed[c]])
+        wrong, without = len(result.wrong), len(result.without)
+        if result.confirmed + wrong + without:
+            print(
+                f"{page}: {result.confirmed} confirmed, {wrong} wrong, {without} without a command"
+            )
+        for figure in result.wrong:
+            print(f"  wrong: {figure}")
+        for figure in result.without if options.list else ():
+            print(f"  without a command: {figure}")
+        failed |= bool(wrong)
+    return int(failed)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
