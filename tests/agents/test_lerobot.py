@@ -10,7 +10,6 @@ from __future__ import annotations
 import re
 import sys
 from collections import deque
-from pathlib import Path
 from types import ModuleType
 from typing import Any
 
@@ -24,19 +23,11 @@ from torch import Tensor, nn
 import mitigate
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
+from tests.documented import DOCS, example
 from tests.lerobot_files import write_dataset
 
-PAGE = Path(__file__).parents[2] / "docs/lerobot.md"
 CHUNK, STEPS = 3, 7
 EPISODES = seeded_episodes(range(2))
-
-
-def example(name: str) -> str:
-    """Return the Python example that follows a comment ``<!-- test: name -->``."""
-    text = PAGE.read_text(encoding="utf-8")
-    match = re.search(rf"<!-- test: {name} -->\n```python\n(.*?)```", text, re.S)
-    assert match is not None
-    return match[1]
 
 
 class Network(nn.Module):
@@ -135,7 +126,7 @@ class FakeHook(ModuleType):
 
 
 def world() -> GymWorld:
-    (call,) = re.findall(r"`(GymWorld\(.*?\))`", PAGE.read_text(encoding="utf-8"))
+    (call,) = re.findall(r"`(GymWorld\(.*?\))`", (DOCS / "lerobot.md").read_text(encoding="utf-8"))
     return eval(call, {"GymWorld": GymWorld, "env": Reach()})
 
 
@@ -156,7 +147,7 @@ def trained() -> ChunkPolicy:
 
 def test_examples_are_short():
     for name in ("loop", "eval", "agent", "forward"):
-        assert sum(bool(line.strip()) for line in example(name).splitlines()) <= 15
+        assert sum(bool(line.strip()) for line in example("lerobot.md", name).splitlines()) <= 15
 
 
 def test_loop_example_corrupts_and_reports(monkeypatch):
@@ -164,7 +155,7 @@ def test_loop_example_corrupts_and_reports(monkeypatch):
     monkeypatch.setitem(sys.modules, "mitigate_hook", hook)
     observation, _ = Reach().reset(seed=3)
     names: dict[str, Any] = {"seed": 3, "info": {"is_success": True}, "observation": observation}
-    exec(example("loop"), names)
+    exec(example("lerobot.md", "loop"), names)
     assert hook.calls == [(3, "pusht"), {"pixels": {"type": "rgb"}}, True]
     assert (names["observation"]["pixels"] == 255 - observation["pixels"]).all()
 
@@ -193,7 +184,7 @@ def test_eval_example_corrupts_each_frame_and_reports_each_episode(monkeypatch):
     for name, module in modules.items():
         monkeypatch.setitem(sys.modules, name, module)
     frame = np.full((8, 8, 3), 9, np.uint8)
-    exec(example("eval"), {})
+    exec(example("lerobot.md", "eval"), {})
     assert hook.calls == [(1, "pusht"), None, True, (2, "pusht"), None, True]
     for observation in received:
         assert (observation["pixels"] == 246).all() and observation["pixels"].shape[0] == 1
@@ -202,7 +193,7 @@ def test_eval_example_corrupts_each_frame_and_reports_each_episode(monkeypatch):
 
 def test_agent_example_replans_after_each_chunk_and_after_reset():
     names: dict[str, Any] = {"torch": torch}
-    exec(example("agent"), names)
+    exec(example("lerobot.md", "agent"), names)
     agent = names["LerobotAgent"](trained())
     one = world()
     for episode in EPISODES:
@@ -215,7 +206,7 @@ def test_agent_example_replans_after_each_chunk_and_after_reset():
 
 def test_agent_example_is_measured_by_benchmark(tmp_path):
     names: dict[str, Any] = {"torch": torch}
-    exec(example("agent"), names)
+    exec(example("lerobot.md", "agent"), names)
     agent = names["LerobotAgent"](trained())
     options = {"world": world, "listed": EPISODES, "out": tmp_path}
     mitigate.benchmark(agent, suite=["low_light"], **options)
@@ -234,7 +225,7 @@ def test_forward_example_is_hardened(tmp_path):
 
     policy = trained()
     names: dict[str, Any] = {"mitigate": Short, "policy": policy, "world": world}
-    exec(example("forward"), names)
+    exec(example("lerobot.md", "forward"), names)
     result = names["result"]
     assert type(result.policy) is ChunkPolicy
     before, after = (list(p.parameters()) for p in (policy, result.policy))
@@ -247,5 +238,5 @@ def test_episode_example_reads_a_dataset(tmp_path, monkeypatch):
     write_dataset(tmp_path / "my-dataset")
     monkeypatch.chdir(tmp_path)
     names: dict[str, Any] = {}
-    exec(example("episode"), names)
+    exec(example("lerobot.md", "episode"), names)
     assert {*names["observation"]} == {"rgb", "observation.state"}

@@ -1,0 +1,260 @@
+"""Tests of policies behind a model server; a fake server answers slowly, wrongly or not at all."""
+
+from __future__ import annotations
+
+import itertools
+import pickle
+import threading
+import time
+
+import gymnasium
+import msgpack
+import numpy as np
+import pytest
+from gymnasium import spaces
+from websockets.sync.server import serve
+
+from mitigate.agents.fingerprint import fingerprint
+from mitigate.agents.policies.served import ServedPolicy
+from mitigate.core.observation import FORWARD, LEFT, STOP
+from mitigate.corruptions import CLEAN, Corruption
+from mitigate.evaluation import rows as result_rows
+from mitigate.evaluation.evaluator import evaluate
+from mitigate.worlds.gym import GymWorld
+from tests.agents.vlm.corridor import CELLS, Corridor, episode
+from tests.documented import example
+
+FRAME = np.zeros((28, 28, 3), np.uint8)
+
+
+def array(values, dtype: str = "<f4") -> dict:
+    data = np.asarray(values, dtype)
+    return {"__ndarray__": True, "data": data.tobytes(), "dtype": dtype, "shape": list(data.shape)}
+
+
+def expert(payload: dict) -> dict:
+    """Return the correct action for a frame, which shows the agent's cell and the goal."""
+    sent = payload["images"]["front"]
+    frame = np.frombuffer(sent["data"], sent["dtype"]).reshape(sent["shape"])
+    cell = int((frame[10] == (40, 220, 40)).all(-1).argmax()) // 3
+    goal = int((frame[0] == (220, 40, 40)).all(-1).argmax()) // 3
+    return {"actions": array([STOP if cell == goal else FORWARD if goal > cell else LEFT])}
+
+
+@pytest.fixture
+def server():
+    """A server whose ``reply(number, payload)`` returns the payload of an action; None closes the
+    connection, and bytes are sent as they are."""
+
+    def talk(connection):
+        for data in connection:
+            message = msgpack.unpackb(data)
+            kind, payload, seq = message["type"], message["payload"], message["seq"]
+            stand_in.received.append((kind, payload))
+            if kind == "hello":
+                answer = {"type": "hello", "payload": {"protocol_version": stand_in.protocol}}
+            elif kind == "observation":
+                made = stand_in.reply(next(stand_in.counter), payload)
+                if made is None:
+                    return
+                if isinstance(made, bytes):
+                    connection.send(made)
+                    continue
+                answer = {"type": "error" if "error" in made else "action", "payload": made}
+            else:
+                continue
+            connection.send(msgpack.packb({**answer, "seq": seq, "timestamp": 0.0}))
+
+    stand_in = serve(talk, "127.0.0.1", 0, compression=None)
+    stand_in.counter, stand_in.received, stand_in.protocol = itertools.count(), [], 1
+    stand_in.reply = lambda number, payload: expert(payload)
+    thread = threading.Thread(target=stand_in.serve_forever, daemon=True)
+    thread.start()
+    stand_in.url = f"ws://127.0.0.1:{stand_in.socket.getsockname()[1]}"
+    yield stand_in
+    stand_in.shutdown()
+    thread.join(5)
+
+
+def first(action: np.ndarray) -> int:
+    return int(action[0])
+
+
+def policy(server, **others) -> ServedPolicy:
+    options = {
+        "cameras": {"rgb": "front"},
+        "version": "1",
+        "convert": first,
+        "timeout": 2.0,
+        "pause": 0.01,
+    }
+    return ServedPolicy(server.url, **{**options, **others})
+
+
+def rows(agent: ServedPolicy, folder, count: int = 16) -> list[dict]:
+    out = folder / "rows.jsonl"
+    episodes = [episode(k % CELLS, (3 * k + 5) % CELLS) for k in range(count)]
+    unique = {one.episode_id: one for one in episodes}
+    evaluate(
+        agent,
+        Corridor,
+        list(unique.values()),
+        [CLEAN, Corruption("foreign_object", 0.6)],
+        name="served",
+        out=out,
+        split="test",
+    )
+    return result_rows.read(out)
+
+
+def test_server_gets_the_frames_the_state_and_the_task(server):
+    server.reply = lambda number, payload: {"actions": array([0.25, -1.0])}
+    agent = policy(server, state="pose", task="look around", convert=None)
+    agent.reset("")
+    action = agent.act({"rgb": FRAME, "pose": np.array([1.0, 2.0])})
+    assert action.dtype == np.float32 and action.tolist() == [0.25, -1.0]
+    (hello, _), (start, task), (_, sent) = server.received
+    assert (hello, start, task) == ("hello", "episode_start", {"task": {"name": "look around"}})
+    assert sent["task_description"] == "look around"
+    assert sent["images"] == {"front": array(FRAME, "|u1")} and sent["state"] == array([1, 2])
+
+
+def test_episodes_run_at_once_and_see_corrupted_frames(server, tmp_path):
+    together = threading.Barrier(4)
+
+    def reply(number, payload):
+        if number < 4:  # the requests of the first four episodes run at the same time
+            together.wait(5)
+        time.sleep(0.002 * (number % 3))
+        return expert(payload)
+
+    server.reply = reply
+    found = rows(policy(server, together=4), tmp_path / "several")
+    assert not together.broken
+    clean = [row for row in found if row["corruption"] == "clean"]
+    assert len(clean) == 9 and all(row["success"] for row in clean)
+    assert not all(row["success"] for row in found)
+    assert found == rows(policy(server), tmp_path / "one")
+
+
+def test_rows_are_kept_when_the_server_dies_and_are_completed_later(server, tmp_path):
+    server.reply = lambda number, payload: expert(payload) if number < 30 else None
+    with pytest.raises(ConnectionError, match="no usable answer.*same command"):
+        rows(policy(server), tmp_path)
+    assert 0 < len(result_rows.read(tmp_path / "rows.jsonl")) < 18
+    server.reply = lambda number, payload: expert(payload)
+    assert len(rows(policy(server), tmp_path)) == 18
+
+
+@pytest.mark.parametrize(
+    ("reply", "words"),
+    [
+        ({"error": "observation_failed: KeyError"}, "the server reports .*observation_failed"),
+        ({"actions": array([[1.0], [2.0]])}, "one action .* needs chunk_size="),
+        ({"actions": array([np.nan])}, "finite numbers"),
+        ({"terminate_episode": True}, "must return one action"),
+        ({"actions": {"__ndarray__": True, "data": b"", "dtype": "O", "shape": [0]}}, "no usable"),
+        ({"actions": {"__ndarray__": True, "data": b"123", "dtype": "<f4"}}, "no usable answer"),
+        (b"\xc1", "no usable answer"),
+        (msgpack.packb([1]), "a list instead of a map"),
+        (msgpack.packb({"type": "action", "seq": 99, "payload": {}}), "instead of action 3"),
+        (msgpack.packb({"type": "action", "seq": 3, "payload": 5}), "the payload is not a map"),
+    ],
+)
+def test_wrong_answer_is_an_error(server, reply, words):
+    server.reply = lambda number, payload: reply
+    agent = policy(server)
+    agent.reset("go")
+    with pytest.raises((ConnectionError, ValueError), match=words):
+        agent.act({"rgb": FRAME})
+
+
+def test_slow_server_is_an_error(server):
+    server.reply = lambda number, payload: time.sleep(1) or expert(payload)
+    agent = policy(server, timeout=0.2)
+    agent.reset("go")
+    with pytest.raises(ConnectionError, match="no answer within 0.2 s"):
+        agent.act({"rgb": FRAME})
+
+
+def test_other_protocol_and_absent_server_are_errors(server):
+    server.protocol = 2
+    with pytest.raises(ConnectionError, match="protocol version 1 .* got 2"):
+        policy(server).reset("go")
+    with pytest.raises(ConnectionError, match="after 2 attempts.*Start the model server"):
+        ServedPolicy("ws://127.0.0.1:1", {"rgb": "front"}, "1", retries=1, pause=0.01).reset("go")
+
+
+def test_settings_are_checked(server):
+    for url in ("http://host:1", "ws://user:secret@host", "ws://", "ws://host?key=1"):
+        with pytest.raises(ValueError, match="without a user, a password or a key") as error:
+            ServedPolicy(url, {"rgb": "front"}, "1")
+        assert "secret" not in str(error.value)
+    with pytest.raises(ValueError, match="cameras must name"):
+        ServedPolicy("ws://host", {}, "1")
+    with pytest.raises(ValueError, match="together must be >= 1"):
+        ServedPolicy("ws://host", {"rgb": "front"}, "1", together=0)
+    with pytest.raises(ValueError, match="version must name the weights"):
+        ServedPolicy("ws://host", {"rgb": "front"}, "")
+    agent = policy(server)
+    agent.reset("go")
+    with pytest.raises(KeyError, match="The observation must have rgb; it has depth"):
+        agent.act({"depth": FRAME})
+
+
+class Reach(gymnasium.Env):
+    """An episode of three steps, which succeeds if the actions are 0.5."""
+
+    observation_space = spaces.Dict(
+        {
+            "rgb": spaces.Box(0, 255, (16, 16, 3), np.uint8),
+            "state": spaces.Box(-1, 1, (2,), np.float32),
+        }
+    )
+    action_space = spaces.Box(-1, 1, (1,), np.float32)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.steps, self.correct = 0, True
+        return self.observe(), {}
+
+    def step(self, action):
+        self.steps += 1
+        self.correct = self.correct and float(action[0]) == 0.5
+        return self.observe(), 0.0, self.steps == 3, False, {"is_success": self.correct}
+
+    def observe(self):
+        return {"rgb": np.full((16, 16, 3), 90, np.uint8), "state": np.zeros(2, np.float32)}
+
+
+def test_example_of_the_documentation(server, tmp_path, monkeypatch):
+    """The server answers correctly if it sees the clean frame."""
+
+    def reply(number, payload):
+        clean = set(payload["images"]["agentview"]["data"]) == {90}
+        return {"actions": array([0.5 if clean and payload["state"] else 0.0])}
+
+    server.reply = reply
+    monkeypatch.chdir(tmp_path)
+    code = example("vlm.md", "served").replace("ws://gpu-machine:8000", server.url)
+    entries = {"rgb": "rgb", "state": "state"}
+    exec(code, {"world": lambda: GymWorld(Reach(), entries=entries, success="is_success")})
+    (file,) = tmp_path.glob("runs/benchmark/*/rows.jsonl")
+    rates = {(row["corruption"], row["success"]) for row in result_rows.read(file)}
+    assert ("clean", 1) in rates and ("clean", 0) not in rates and ("spatter", 0) in rates
+
+
+def test_other_weights_on_the_server_are_another_agent(server):
+    prints = {fingerprint(policy(server, version=name), Corridor.sensors) for name in ("a", "b")}
+    assert len(prints) == 2
+    assert fingerprint(policy(server, version="a", timeout=9.0), Corridor.sensors) in prints
+
+
+def test_copy_for_another_process_opens_its_own_connection(server):
+    agent = policy(server)
+    agent.reset("go")
+    copied = pickle.loads(pickle.dumps(agent))
+    with pytest.raises(RuntimeError, match="Start the episode first"):
+        copied.act({"rgb": FRAME})
+    copied.reset("go")
+    assert copied.act({"rgb": FRAME}) == STOP
