@@ -4,7 +4,7 @@
     python -m tools.figures docs/lab/random-compositions.md --list
 
 A page shows figures with intervals, such as ``85.0 [82.3, 87.5]``, and the commands that print
-them, as indented lines (``mitigate table FILES ...``). The check runs these commands. If a section
+them, as lines of code (``mitigate table FILES ...``). The check runs these commands. If a section
 contains such a command, each figure in this section must be among the figures that the commands of
 the page print, rounded as on the page. Figures of other sections are only counted, because some
 figures have no rows; ``--list`` lists those that no command prints.
@@ -23,10 +23,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
-PAGES = ("docs/results/*.md", "docs/lab/agents.md", "docs/lab/random-compositions.md")
-# an indented command that prints a table of stored rows
+PAGES = ("docs/results/*.md", "docs/lab/*.md")
+# a command that prints a table of stored rows
 TOOLS = r"mitigate table |python -m mitigate\.table |python -m tools\.third_party\.results --table "
-COMMAND = re.compile(rf"^    ((?:{TOOLS}).*docs/results/.*)$")
+COMMAND = re.compile(rf"^(?:    )?((?:{TOOLS}).*docs/results/.*)$")
 VALUE = r"(?:[<>≤≥] ?)?[-+−]?\d+(?:\.\d+)?"
 FIGURE = re.compile(rf"({VALUE})(?:\*\*)?(?: ?%| points)?(?:\*\*)?,? \[({VALUE})(?:, ({VALUE}))?\]")
 
@@ -85,7 +85,7 @@ def figures(text: str) -> list[Figure]:
 def commands(text: str) -> list[str]:
     """Return the commands in a text that print tables of stored rows."""
     found = (COMMAND.match(line) for line in text.splitlines())
-    return [match[1].partition("   #")[0].strip() for match in found if match]
+    return [match[1].partition("  #")[0].strip() for match in found if match]
 
 
 def run(command: str) -> list[Figure]:
