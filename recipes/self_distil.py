@@ -18,7 +18,7 @@ that the student behaves as before on clean frames (STRONG-VLA, 2026, uses the s
 
 Rollouts are slower than training steps, so the student runs episodes only every ``every`` steps.
 The clean frames of these episodes are stored, and each step corrupts a random sample of all stored
-frames with new random numbers.
+frames with new random numbers. If episodes are short, a round has more of them.
 """
 
 from __future__ import annotations
@@ -50,6 +50,9 @@ from mitigate.worlds.world import Corrupted, TrainingEpisodes, World, depth_sens
 RISE = 0.6  # fraction of training during which the severity rises (heuristic)
 SETTLE = 0.85  # after this fraction of training, most frames are clean (heuristic)
 SETTLED_CLEAN = 0.75  # fraction of clean frames in the last part of training (heuristic)
+# A round of short episodes continues until it has this many frames, or this many times the usual
+# number of episodes (heuristic). A few hundred different frames in total are too few.
+ROUND_FRAMES, ROUND_TIMES = 1000, 16
 
 
 class SelfDistil(Objective):
@@ -64,7 +67,7 @@ class SelfDistil(Objective):
         folder: folder of the stored frames, one file per round of rollouts.
         steps: number of training steps.
         every: number of steps between two rounds of rollouts.
-        episodes: number of episodes per round.
+        episodes: number of episodes per round; more if they are short (``ROUND_FRAMES``).
         frames: maximum number of frames that are stored per episode, at even intervals.
         batch: number of frames per step.
         window: number of consecutive frames for a recurrent policy; 1 for other policies.
@@ -224,13 +227,20 @@ class SelfDistil(Objective):
                 f"{file} is missing. Training cannot resume without its stored frames. Restore "
                 "the file if you have a copy, or choose another folder (out=...)."
             )
-        windows = [self._rollout(step, number) for number in range(self.episodes)]
+        windows: list[dict[str, np.ndarray]] = []
+        steps = 0
+        for number in range(ROUND_TIMES * self.episodes):
+            if number >= self.episodes and steps >= ROUND_FRAMES:
+                break
+            frames, length = self._rollout(step, number)
+            windows.append(frames)
+            steps += length
         stored = {name: np.concatenate([w[name] for w in windows]) for name in windows[0]}
         write_bytes(file, save(stored))
         return stored
 
-    def _rollout(self, step: int, number: int) -> dict[str, np.ndarray]:
-        """Run an episode, and return its clean frames in windows."""
+    def _rollout(self, step: int, number: int) -> tuple[dict[str, np.ndarray], int]:
+        """Run an episode; return its clean frames in windows, and its length in steps."""
         rng = generator(self.seed, "self-distil rollout", step, number)
         episode = self.training_episodes.draw(rng, (0, 1))
         schedule = self.schedule_at(step)
@@ -241,16 +251,18 @@ class SelfDistil(Objective):
         while not world.done:
             met.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
             observation = world.step(self.agent.act(observation))
+        length = len(met)
         # the last window is filled with copies of its last frame
         met += [met[-1]] * (-len(met) % self.window)
         starts = np.arange(0, len(met), self.window)
         most = max(1, self.frames // self.window)
         if len(starts) > most:
             starts = starts[np.sort(rng.choice(len(starts), most, replace=False))]
-        return {
+        windows = {
             name: np.stack([[m[name] for m in met[s : s + self.window]] for s in starts])
             for name in met[0]
         }
+        return windows, length
 
     def _made_world(self) -> World:
         self._world = self._world or self.world()

@@ -5,9 +5,12 @@
 
 A page shows figures with intervals, such as ``85.0 [82.3, 87.5]``, and the commands that print
 them, as lines of code (``mitigate table FILES ...``). The check runs these commands. If a section
-contains such a command, each figure in this section must be among the figures that the commands of
-the page print, rounded as on the page. Figures of other sections are only counted, because some
-figures have no rows; ``--list`` lists those that no command prints.
+or subsection contains such a command, each of its figures must be among the figures that the
+commands of the page print, rounded as on the page. Figures of other sections are only counted,
+because some figures have no rows; ``--list`` lists those that no command prints.
+
+The check does not compare in which row of a table a figure stands, and it ignores figures without
+an interval.
 """
 
 from __future__ import annotations
@@ -28,7 +31,9 @@ PAGES = ("docs/results/*.md", "docs/lab/*.md")
 TOOLS = r"mitigate table |python -m mitigate\.table |python -m tools\.third_party\.results --table "
 COMMAND = re.compile(rf"^(?:    )?((?:{TOOLS}).*docs/results/.*)$")
 VALUE = r"(?:[<>≤≥] ?)?[-+−]?\d+(?:\.\d+)?"
-FIGURE = re.compile(rf"({VALUE})(?:\*\*)?(?: ?%| points)?(?:\*\*)?,? \[({VALUE})(?:, ({VALUE}))?\]")
+FIGURE = re.compile(
+    rf"({VALUE})(?:\*\*)?(?: ?%|\spoints)?(?:\*\*)?,?\s+\[({VALUE})(?:,\s+({VALUE}))?\]"
+)
 
 
 @dataclass(frozen=True)
@@ -45,13 +50,14 @@ class Figure:
     def is_printed(self, printed: set[Figure]) -> bool:
         """Return whether this figure is among ``printed``.
 
-        It may have fewer decimal places, and a difference may be stated the other way round:
-        "2.7 [0.5, 4.9] above" where -2.7 [-4.9, -0.5] was printed.
+        It may have fewer decimal places. Without signs, a difference may be stated the other way
+        round: "2.7 points [0.5, 4.9] more" where -2.7 [-4.9, -0.5] was printed.
         """
+        unsigned = not any(part.startswith(("-", "+")) for part in self._parts)
         return any(
             all(map(_rounds, self._parts, figure))
             for known in printed
-            for figure in (known._parts, known._mirrored)
+            for figure in ([known._parts, known._mirrored] if unsigned else [known._parts])
         )
 
     @property
@@ -64,21 +70,23 @@ class Figure:
 
 
 def _negative(value: str) -> str:
-    return value[1:] if value.startswith("-") else f"-{value}" if value[0].isdigit() else value
+    number = value.lstrip("+")
+    return number[1:] if number.startswith("-") else f"-{number}" if number[0].isdigit() else number
 
 
 def _rounds(shown: str, full: str) -> bool:
     """Return whether ``shown`` is ``full``, perhaps with fewer decimal places."""
-    if shown[0] in "<>" or full[0] in "<>":
-        return shown == full  # a bound, such as "> 1"
-    shown, full = shown.lstrip("≤≥ "), full.lstrip("≤≥ ")
+    bounds = "<>≤≥"
+    if (shown[0] in bounds or full[0] in bounds) and shown[0] != full[0]:
+        return False
+    shown, full = shown.lstrip(f"{bounds} "), full.lstrip(f"{bounds} ")
     places = len(shown.partition(".")[2])
     return abs(float(shown) - float(full)) <= 0.5 * 10.0**-places + 1e-9
 
 
 def figures(text: str) -> list[Figure]:
     """Return the figures with intervals in a text."""
-    plain = text.replace("−", "-").replace("+", "")
+    plain = text.replace("−", "-")
     return [Figure(value, low, high or low) for value, low, high in FIGURE.findall(plain)]
 
 

@@ -15,12 +15,12 @@ from gymnasium import spaces
 from websockets.sync.server import serve
 
 from mitigate.agents.fingerprint import fingerprint
+from mitigate.agents.policies import served
 from mitigate.agents.policies.served import ServedPolicy
 from mitigate.core.observation import FORWARD, LEFT, STOP
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.evaluator import evaluate
-from mitigate.worlds.gym import GymWorld
 from tests.agents.vlm.corridor import CELLS, Corridor, episode
 from tests.documented import example
 
@@ -86,14 +86,14 @@ def policy(server, **others) -> ServedPolicy:
         "version": "1",
         "convert": first,
         "timeout": 2.0,
-        "pause": 0.01,
+        "wait": 0.0,
     }
     return ServedPolicy(server.url, **{**options, **others})
 
 
-def rows(agent: ServedPolicy, folder, count: int = 16) -> list[dict]:
+def rows(agent: ServedPolicy, folder, workers: int = 1) -> list[dict]:
     out = folder / "rows.jsonl"
-    episodes = [episode(k % CELLS, (3 * k + 5) % CELLS) for k in range(count)]
+    episodes = [episode(k % CELLS, (3 * k + 5) % CELLS) for k in range(16)]
     unique = {one.episode_id: one for one in episodes}
     evaluate(
         agent,
@@ -103,14 +103,15 @@ def rows(agent: ServedPolicy, folder, count: int = 16) -> list[dict]:
         name="served",
         out=out,
         split="test",
+        workers=workers,
     )
     return result_rows.read(out)
 
 
 def test_server_gets_the_frames_the_state_and_the_task(server):
     server.reply = lambda number, payload: {"actions": array([0.25, -1.0])}
-    agent = policy(server, state="pose", task="look around", convert=None)
-    agent.reset("")
+    agent = policy(server, state="pose", convert=None)
+    agent.reset("look around")
     action = agent.act({"rgb": FRAME, "pose": np.array([1.0, 2.0])})
     assert action.dtype == np.float32 and action.tolist() == [0.25, -1.0]
     (hello, _), (start, task), (_, sent) = server.received
@@ -119,22 +120,16 @@ def test_server_gets_the_frames_the_state_and_the_task(server):
     assert sent["images"] == {"front": array(FRAME, "|u1")} and sent["state"] == array([1, 2])
 
 
-def test_episodes_run_at_once_and_see_corrupted_frames(server, tmp_path):
-    together = threading.Barrier(4)
-
-    def reply(number, payload):
-        if number < 4:  # the requests of the first four episodes run at the same time
-            together.wait(5)
-        time.sleep(0.002 * (number % 3))
-        return expert(payload)
-
-    server.reply = reply
-    found = rows(policy(server, together=4), tmp_path / "several")
-    assert not together.broken
+def test_policy_sees_corrupted_frames(server, tmp_path):
+    found = rows(policy(server), tmp_path)
     clean = [row for row in found if row["corruption"] == "clean"]
     assert len(clean) == 9 and all(row["success"] for row in clean)
     assert not all(row["success"] for row in found)
-    assert found == rows(policy(server), tmp_path / "one")
+
+
+@pytest.mark.slow
+def test_processes_have_their_own_connections(server, tmp_path):
+    assert rows(policy(server), tmp_path / "a") == rows(policy(server), tmp_path / "b", workers=2)
 
 
 def test_rows_are_kept_when_the_server_dies_and_are_completed_later(server, tmp_path):
@@ -150,8 +145,11 @@ def test_rows_are_kept_when_the_server_dies_and_are_completed_later(server, tmp_
     ("reply", "words"),
     [
         ({"error": "observation_failed: KeyError"}, "the server reports .*observation_failed"),
-        ({"actions": array([[1.0], [2.0]])}, "one action .* needs chunk_size="),
+        ({"actions": array([[1.0], [2.0]])}, "one action .* with chunk_size="),
         ({"actions": array([np.nan])}, "finite numbers"),
+        ({"actions": array([1e300], "<f8")}, "finite numbers"),
+        ({"actions": array([])}, "finite numbers"),
+        ({"actions": [[1], [1, 2]]}, "finite numbers"),
         ({"terminate_episode": True}, "must return one action"),
         ({"actions": {"__ndarray__": True, "data": b"", "dtype": "O", "shape": [0]}}, "no usable"),
         ({"actions": {"__ndarray__": True, "data": b"123", "dtype": "<f4"}}, "no usable answer"),
@@ -173,7 +171,7 @@ def test_slow_server_is_an_error(server):
     server.reply = lambda number, payload: time.sleep(1) or expert(payload)
     agent = policy(server, timeout=0.2)
     agent.reset("go")
-    with pytest.raises(ConnectionError, match="no answer within 0.2 s"):
+    with pytest.raises(ConnectionError, match=r"no answer within 0.2 s \(timeout=\)"):
         agent.act({"rgb": FRAME})
 
 
@@ -181,8 +179,22 @@ def test_other_protocol_and_absent_server_are_errors(server):
     server.protocol = 2
     with pytest.raises(ConnectionError, match="protocol version 1 .* got 2"):
         policy(server).reset("go")
-    with pytest.raises(ConnectionError, match="after 2 attempts.*Start the model server"):
-        ServedPolicy("ws://127.0.0.1:1", {"rgb": "front"}, "1", retries=1, pause=0.01).reset("go")
+    with pytest.raises(ConnectionError, match="within 0 s .*Start the model server"):
+        ServedPolicy("ws://127.0.0.1:1", {"rgb": "front"}, "1", wait=0).reset("go")
+
+
+def test_policy_waits_for_a_server_that_starts_late(server, monkeypatch, capsys):
+    monkeypatch.setattr(served, "PAUSE", 0.05)
+    agent = policy(server, wait=30.0)
+    agent.url = "ws://127.0.0.1:1"  # nobody listens here
+
+    def start():
+        time.sleep(0.3)
+        agent.url = server.url
+
+    threading.Thread(target=start).start()
+    agent.reset("go")
+    assert "waiting for the model server" in capsys.readouterr().out
 
 
 def test_settings_are_checked(server):
@@ -190,10 +202,14 @@ def test_settings_are_checked(server):
         with pytest.raises(ValueError, match="without a user, a password or a key") as error:
             ServedPolicy(url, {"rgb": "front"}, "1")
         assert "secret" not in str(error.value)
-    with pytest.raises(ValueError, match="cameras must name"):
+    with pytest.raises(ValueError, match="cameras must map"):
         ServedPolicy("ws://host", {}, "1")
-    with pytest.raises(ValueError, match="together must be >= 1"):
-        ServedPolicy("ws://host", {"rgb": "front"}, "1", together=0)
+    with pytest.raises(ValueError, match="different names"):
+        ServedPolicy("ws://host", {"rgb": "front", "depth": "front"}, "1")
+    with pytest.raises(ValueError, match="timeout must be > 0"):
+        ServedPolicy("ws://host", {"rgb": "front"}, "1", timeout=0)
+    with pytest.warns(UserWarning, match="frames of wrist stay clean"):
+        ServedPolicy("ws://host", {"rgb": "front", "wrist": "wrist"}, "1")
     with pytest.raises(ValueError, match="version must name the weights"):
         ServedPolicy("ws://host", {"rgb": "front"}, "")
     agent = policy(server)
@@ -237,8 +253,7 @@ def test_example_of_the_documentation(server, tmp_path, monkeypatch):
     server.reply = reply
     monkeypatch.chdir(tmp_path)
     code = example("vlm.md", "served").replace("ws://gpu-machine:8000", server.url)
-    entries = {"rgb": "rgb", "state": "state"}
-    exec(code, {"world": lambda: GymWorld(Reach(), entries=entries, success="is_success")})
+    exec(code, {"make_env": Reach})
     (file,) = tmp_path.glob("runs/benchmark/*/rows.jsonl")
     rates = {(row["corruption"], row["success"]) for row in result_rows.read(file)}
     assert ("clean", 1) in rates and ("clean", 0) not in rates and ("spatter", 0) in rates
@@ -247,7 +262,15 @@ def test_example_of_the_documentation(server, tmp_path, monkeypatch):
 def test_other_weights_on_the_server_are_another_agent(server):
     prints = {fingerprint(policy(server, version=name), Corridor.sensors) for name in ("a", "b")}
     assert len(prints) == 2
-    assert fingerprint(policy(server, version="a", timeout=9.0), Corridor.sensors) in prints
+    moved = policy(server, version="a", timeout=9.0)
+    moved.url = "ws://another-machine:8000"
+    assert fingerprint(moved, Corridor.sensors) in prints
+
+
+def test_order_of_cameras_is_part_of_the_agent(server):
+    orders = [{"rgb": "a", "depth": "b"}, {"depth": "b", "rgb": "a"}]
+    one, other = (policy(server, cameras=cameras) for cameras in orders)
+    assert fingerprint(one, Corridor.sensors) != fingerprint(other, Corridor.sensors)
 
 
 def test_copy_for_another_process_opens_its_own_connection(server):

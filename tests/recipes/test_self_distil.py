@@ -9,6 +9,7 @@ from torch import nn
 from mitigate.agents.policies.policy import last_convolution
 from mitigate.agents.policies.wrapping import as_policy
 from mitigate.corruptions import Schedule
+from mitigate.recipes import self_distil
 from mitigate.recipes.self_distil import SelfDistil
 from mitigate.shipping.harden import _Training
 from mitigate.worlds.gym import GymWorld
@@ -85,7 +86,28 @@ def test_self_distil_gives_a_recurrent_policy_windows(tmp_path):
 def test_memory_keeps_at_most_the_given_number_of_frames(tmp_path):
     task = objective(tmp_path, frames=3)
     task.batch(0)
-    assert task._stored[0]["rgb"].shape == (6, 1, 16, 16, 3)
+    # 32 short episodes instead of 2
+    assert task._stored[0]["rgb"].shape == (96, 1, 16, 16, 3)
+
+
+def test_round_of_short_episodes_has_more_of_them(tmp_path, monkeypatch):
+    monkeypatch.setattr(self_distil, "ROUND_FRAMES", 20)
+    lengths = []
+    task = objective(tmp_path)
+    rollout = task._rollout
+
+    def counted(step, number):
+        frames, length = rollout(step, number)
+        lengths.append(length)
+        return frames, length
+
+    monkeypatch.setattr(task, "_rollout", counted)
+    task.batch(0)
+    assert len(lengths) > 2 and sum(lengths[:-1]) < 20 <= sum(lengths)
+    monkeypatch.setattr(self_distil, "ROUND_FRAMES", 1)
+    lengths.clear()
+    task.batch(50)
+    assert len(lengths) == 2
 
 
 def test_last_convolution_falls_back_to_the_first_layer():

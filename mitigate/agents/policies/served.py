@@ -8,8 +8,8 @@ keys type, payload, seq and timestamp; arrays are maps with the key ``__ndarray_
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import warnings
+from collections.abc import Callable, Mapping
 from typing import Any
 from urllib.parse import urlsplit
 
@@ -17,42 +17,43 @@ import numpy as np
 
 from mitigate.agents.agent import Agent, check_started
 from mitigate.core.names import short
+from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 
 PROTOCOL = 1
 LARGEST = 1 << 24  # bytes of one answer
 ARRAY = "__ndarray__"
 INSTALL = "pip install -e '.[train,served]'"
+PAUSE = 2.0  # seconds between two attempts to connect
 
 
 class ServedPolicy(Agent):
     """Agent whose actions come from a model server.
 
-    Each episode has its own connection, so the server can compute the actions of several episodes
-    as one batch. If a connection breaks during an episode, the evaluation stops with an error,
-    because the server may remember earlier frames. Finished rows stay in their file, and the same
-    call measures the missing episodes.
+    Each episode has its own connection. During an episode, nothing is sent twice, because the
+    server may remember earlier frames: if the connection breaks, the evaluation stops with an
+    error. Finished rows stay in their file, and the same call measures the missing episodes. The
+    connections of several processes (``workers=``) let the server compute several actions at once.
 
     Args:
         url: address of the server, such as ``ws://localhost:8000``.
-        cameras: maps entries of observations to the server's names of cameras. The frames are sent
-            as they are: RGB uint8 [H, W, 3], depth float32 [H, W, 1] in metres.
-        version: name of the weights on the server. Choose a new name whenever they, or ``convert``,
-            change, because rows are reused as long as the name is the same.
-        state: entry of observations with the state of the robot, or None.
-        task: text that the server gets if an episode has no instruction.
+        cameras: maps entries of observations to the names of the cameras on the server, in the
+            order in which they are sent. Frames are sent unchanged: RGB uint8 [H, W, 3], depth
+            float32 [H, W, 1] in metres.
+        version: name of the weights and options of the server, and of ``convert``. Rows are reused
+            as long as this name is the same.
+        state: entry of observations with the state of the robot, sent as float32, or None.
         convert: function that returns the world's action for the server's action, a float32 array
             [n]. None means no conversion.
-        together: number of episodes that run at once.
-        timeout: seconds for one action.
-        retries: number of further attempts to connect.
-        pause: seconds before the second attempt; the pause doubles before each later attempt.
+        timeout: seconds for one answer.
+        wait: seconds until the server must accept a connection.
 
     Raises:
         ValueError: If a setting is invalid.
         ModuleNotFoundError: If websockets or msgpack is not installed.
     """
 
+    views = 1
     run_state = ("_episode",)
 
     def __init__(
@@ -61,92 +62,92 @@ class ServedPolicy(Agent):
         cameras: Mapping[str, str],
         version: str,
         state: str | None = None,
-        task: str = "",
         convert: Callable[[np.ndarray], Any] | None = None,
-        together: int = 1,
-        timeout: float = 60.0,
-        retries: int = 5,
-        pause: float = 1.0,
+        timeout: float = 120.0,
+        wait: float = 300.0,
     ) -> None:
         _check_installed()
         _check_url(url)
-        if not cameras:
-            raise ValueError("cameras must name at least one entry, such as {'rgb': 'front'}.")
+        if not cameras or len({*cameras.values()}) < len(cameras):
+            raise ValueError(
+                "cameras must map entries to different names, such as {'rgb': 'front'}, got "
+                f"{dict(cameras)}."
+            )
         if not version:
             raise ValueError("version must name the weights on the server, such as 'openvla-7b'.")
-        if together < 1:
-            raise ValueError(f"together must be >= 1, got {together}.")
-        self.url, self.cameras, self.state, self.task = url, dict(cameras), state, task
+        if timeout <= 0 or wait < 0:
+            raise ValueError(f"timeout must be > 0 and wait >= 0, got {timeout} and {wait}.")
+        if clean := [name for name in cameras if name not in (RGB, DEPTH)]:
+            warnings.warn(
+                f"The frames of {', '.join(clean)} stay clean: only the entries rgb and depth are "
+                "corrupted.",
+                stacklevel=2,
+            )
+        self.url, self.cameras, self.state = url, dict(cameras), state
         self.version, self.convert = version, convert
-        self.together = together
-        self.timeout, self.retries, self.pause = timeout, retries, pause
-        self.sensors = [*self.cameras]
+        self.timeout, self.wait = timeout, wait
+        self.sensors = [*self.cameras, *([state] if state else [])]
         self._episode: _Episode | None = None
 
     def settings(self) -> dict[str, Any]:
-        """Return the arguments that determine the actions; deadlines and retries are left out."""
-        names = ("url", "cameras", "state", "task", "version")
-        return {name: getattr(self, name) for name in names}
+        """Return what determines the actions; the address and the deadlines are left out."""
+        cameras = [*self.cameras.items()]  # a list, because servers read cameras in their order
+        return {"version": self.version, "cameras": cameras, "state": self.state}
 
     def reset(self, instruction: str) -> None:
-        self._episode = self.begin(instruction)
+        """Start an episode; raise ConnectionError if the server cannot be reached."""
+        if self._episode is not None:
+            self._episode.connection.close()
+        self._episode = _Episode(self._connect(), instruction, self.timeout)
 
     def act(self, observation: Mapping[str, Any]) -> Any:
+        """Return the next action.
+
+        Raises:
+            KeyError: If the observation lacks an entry.
+            ValueError: If the server returns no valid action.
+            ConnectionError: If the server returns no usable answer in time.
+        """
         check_started(self._episode is not None)
         assert self._episode is not None
-        return self._answer(observation, self._episode)
-
-    def begin(self, instruction: str) -> _Episode:
-        """Open a connection for an episode and return it; raise ConnectionError if that fails."""
-        return _Episode(self._connect(), instruction or self.task, self.timeout)
-
-    def act_all(
-        self, observations: Sequence[Mapping[str, Any]], memories: Sequence[_Episode]
-    ) -> list[Any]:
-        """Return one action for each episode; the requests run at the same time."""
-        with ThreadPoolExecutor(len(memories)) as pool:
-            return list(pool.map(self._answer, observations, memories))
-
-    def _answer(self, observation: Mapping[str, Any], episode: _Episode) -> Any:
-        entries = [*self.cameras, *([self.state] if self.state else [])]
-        missing = [name for name in entries if name not in observation]
+        missing = [name for name in self.sensors if name not in observation]
         if missing:
             raise KeyError(
                 f"The observation must have {', '.join(missing)}; it has {', '.join(observation)}. "
-                "Change cameras= or state=."
+                "Change cameras= or state=, or the entries of the world (GymWorld(entries=...))."
             )
         images = {name: np.asarray(observation[entry]) for entry, name in self.cameras.items()}
-        sent: dict[str, Any] = {"images": images, "task_description": episode.task}
+        sent: dict[str, Any] = {"images": images, "task_description": self._episode.task}
         if self.state:
             sent["state"] = np.asarray(observation[self.state], np.float32)
-        action = episode.act(sent)
+        action = self._episode.act(sent)
         return action if self.convert is None else self.convert(action)
 
     def _connect(self) -> Any:
         from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
 
-        for attempt in range(self.retries + 1):
+        ends = time.monotonic() + self.wait
+        while True:
             try:
                 # a server that loads its model or compiles does not answer pings
                 return connect(
                     self.url,
                     compression=None,
                     max_size=LARGEST,
-                    open_timeout=self.timeout,
+                    open_timeout=max(PAUSE, ends - time.monotonic()),
                     close_timeout=1.0,
                     ping_interval=None,
                 )
             except (OSError, WebSocketException) as error:
-                if attempt == self.retries:
+                if time.monotonic() + PAUSE > ends:
                     raise ConnectionError(
-                        f"No connection to {self.url} after {attempt + 1} attempts: "
+                        f"No connection to {self.url} within {self.wait:g} s (wait=): "
                         f"{type(error).__name__}: {short(str(error))}. Start the model server, and "
                         "run the same command again: rows are kept."
                     ) from error
                 say(f"{self.url}: {type(error).__name__}, waiting for the model server")
-                time.sleep(self.pause * 2**attempt)
-        raise AssertionError
+                time.sleep(PAUSE)
 
     def __getstate__(self) -> dict[str, Any]:
         return {**self.__dict__, "_episode": None}  # each process opens its own connection
@@ -170,13 +171,19 @@ class _Episode:
     def act(self, observation: Mapping[str, Any]) -> np.ndarray:
         """Return the server's action, float32 [n]."""
         answer = self._receive(self._send("observation", observation), "action")
-        action = np.asarray(answer.get("actions"))
-        if action.ndim != 1 or action.dtype.kind not in "iuf" or not np.isfinite(action).all():
+        values = answer.get("actions")
+        try:
+            with np.errstate(over="ignore"):
+                action = np.asarray(values, np.float32)
+        except (TypeError, ValueError):
+            action = np.empty(0, np.float32)
+        if action.ndim != 1 or not action.size or not np.isfinite(action).all():
             raise ValueError(
                 "The model server must return one action of finite numbers, shape [n], got "
-                f"{short(str(answer))}. A server that returns several actions needs chunk_size=."
+                f"{short(str(answer))}. If the model predicts several actions at once, start the "
+                "server with chunk_size=."
             )
-        return action.astype(np.float32)
+        return action
 
     def _send(self, kind: str, payload: Mapping[str, Any]) -> int:
         import msgpack
@@ -197,7 +204,7 @@ class _Episode:
         try:
             message = _decoded(self.connection.recv(timeout=self.timeout))
         except TimeoutError as error:
-            raise _broken(f"no answer within {self.timeout:g} s") from error
+            raise _broken(f"no answer within {self.timeout:g} s (timeout=)") from error
         except ConnectionClosed as error:
             raise _broken(str(error)) from error
         payload = message.get("payload")
@@ -208,11 +215,6 @@ class _Episode:
         if not isinstance(payload, dict):
             raise _broken(f"the payload is not a map: {short(str(payload))}")
         return payload
-
-    def __del__(self) -> None:
-        connection = getattr(self, "connection", None)
-        if connection is not None:
-            connection.close()
 
 
 def _check_installed() -> None:
