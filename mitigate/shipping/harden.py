@@ -59,9 +59,15 @@ from mitigate.worlds.world import World
 OUT = Path("runs/harden")
 # default number of episodes of the comparison (heuristic); SR is then accurate to about 10 points
 EPISODES = 50
-# These are the default learning rates (docs/results/third-party.md).
+TUNE = ("all", "adapters")
+# These are the default learning rates, by method and ``tune`` (docs/results/third-party.md).
 # Adapters start at zero and need a higher learning rate.
-TUNE = {"all": 3e-4, "adapters": 2e-3}
+RATES = {
+    ("self_distil", "all"): 1e-3,
+    ("self_distil", "adapters"): 2e-3,
+    ("ppo", "all"): 3e-4,
+    ("ppo", "adapters"): 2e-3,
+}
 SPLIT, VALIDATION = "compared", "validation"
 METHODS: dict[str, type[Objective]] = {"self_distil": SelfDistil, "ppo": Ppo}
 SCHEDULES = ("per_episode", "per_frame")
@@ -143,7 +149,8 @@ def harden(
         targets: regular expressions for the names of modules after which adapters are inserted. The
             default is every convolution, or the first layer if there is no convolution.
         steps: number of training steps.
-        lr: learning rate. The default is 3e-4 for all weights and 2e-3 for adapters.
+        lr: learning rate. The default is 1e-3 for all weights (with "ppo", 3e-4) and 2e-3 for
+            adapters.
         broad_share: fraction of corrupted frames that have random compositions instead of
             corruptions of the suite. Random compositions prepare the policy for corruptions that
             the suite does not contain.
@@ -168,7 +175,7 @@ def harden(
     seeding.check(seed)
     for argument, value, allowed in (
         ("method", method, tuple(METHODS)),
-        ("tune", tune, tuple(TUNE)),
+        ("tune", tune, TUNE),
         ("schedule", schedule, SCHEDULES),
     ):
         if value not in allowed:
@@ -217,8 +224,9 @@ def harden(
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
     }
-    # not recorded for the default method, so that runs of older versions can be continued
-    if method != "self_distil":
+    if method == "self_distil":
+        identity["rounds"] = 2  # version of the rollouts; version 1 had fewer short episodes
+    else:
         identity["method"] = method
     if schedule != "per_episode":
         identity["schedule"] = schedule
@@ -230,7 +238,7 @@ def harden(
         objective,
         steps=steps,
         folder=folder / "training",
-        lr=TUNE[tune] if lr is None else lr,
+        lr=RATES[method, tune] if lr is None else lr,
         warmup=min(50, steps // 10),
         seed=seed,
         precision="fp32",

@@ -197,8 +197,11 @@ def test_harden_with_adapters_leaves_the_policy_frozen(tmp_path):
     assert torch.equal(loaded(frames), result.policy(frames))
 
 
-@pytest.mark.parametrize(("tune", "rate"), [("all", 3e-4), ("adapters", 2e-3)])
-def test_adapters_have_a_higher_learning_rate(tmp_path, monkeypatch, tune, rate):
+@pytest.mark.parametrize(
+    ("method", "tune", "rate"),
+    [("self_distil", "all", 1e-3), ("self_distil", "adapters", 2e-3), ("ppo", "all", 3e-4)],
+)
+def test_adapters_have_a_higher_learning_rate(tmp_path, monkeypatch, method, tune, rate):
     given = {}
 
     class Stop(Exception):
@@ -210,7 +213,8 @@ def test_adapters_have_a_higher_learning_rate(tmp_path, monkeypatch, tune, rate)
 
     monkeypatch.setattr("mitigate.shipping.harden.Trainer", trainer)
     with pytest.raises(Stop):
-        mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT | {"tune": tune})
+        options = (SHORT if method == "self_distil" else PPO) | {"tune": tune}
+        mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **options)
     assert given["lr"] == rate
 
 
