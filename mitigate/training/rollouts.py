@@ -137,7 +137,7 @@ class OnEpisodes(OnSource):
     """Base class of objectives that learn from rollouts."""
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"rollouts": Rollouts}
-    needs = TRAINABLE
+    needs: ClassVar[tuple[str, ...]] = TRAINABLE
     otherwise = f"This recipe trains on episodes that the agent runs. {OWN}"
     rollouts: Rollouts
 

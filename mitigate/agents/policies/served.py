@@ -110,7 +110,8 @@ class ServedPolicy(Agent):
         """
         check_started(self._episode is not None)
         assert self._episode is not None
-        missing = [name for name in self.sensors if name not in observation]
+        entries = [*self.cameras, *([self.state] if self.state else [])]
+        missing = [name for name in entries if name not in observation]
         if missing:
             raise KeyError(
                 f"The observation must have {', '.join(missing)}; it has {', '.join(observation)}. "

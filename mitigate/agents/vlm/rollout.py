@@ -139,7 +139,7 @@ def join_pieces(pieces: Sequence[Piece], answers: int) -> AnswerDecisions:
             views += [[first + index for index in seen] for seen in episode]
             texts += [text] * len(episode)
             names += [name] * len(episode)
-            first += len(episode)
+            first += 1 + max(map(max, episode), default=-1)
     targets = torch.tensor([index for piece in pieces for index in piece["targets"]])
     has_clean = all(len(piece["clean"]) for piece in pieces)
     return AnswerDecisions(
