@@ -8,8 +8,9 @@ their images by the schedule, and trains on the answers with the loss of ``recip
 
 from __future__ import annotations
 
+import gzip
 import json
-import re
+import os
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -20,10 +21,10 @@ import torch
 
 from mitigate.agents.agent import Decisions
 from mitigate.agents.vlm.answers import read_answer
-from mitigate.agents.vlm.conversation import question
+from mitigate.agents.vlm.conversation import MOST_FRAMES, question
 from mitigate.agents.vlm.dataset import CONVERSATIONS
 from mitigate.agents.vlm.rollout import Piece
-from mitigate.core.files import open_text, sha256
+from mitigate.core.files import lfs_problem, open_text, sha256
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 from mitigate.core.observation import RGB
@@ -38,6 +39,7 @@ from mitigate.training.rollouts import PIECES
 
 MOST_LINE = 1 << 20  # maximum number of characters in a line
 MOST_LINES = 10_000_000
+MOST_TEXT = 100_000  # maximum number of characters of an instruction, as in episode files
 IMAGE = "<image>"
 
 
@@ -64,7 +66,7 @@ class Conversations:
         seed: seed of entries and corruptions.
 
     Raises:
-        FileNotFoundError: If a file is missing.
+        FileNotFoundError: If the file or an image is missing.
         ValueError: If an entry is invalid, a question does not fit ``agent.task``, an answer is not
             one of the allowed answers, or the schedule samples corruptions by success rate.
     """
@@ -87,6 +89,10 @@ class Conversations:
         self.entries = list(read_entries(self.file, self.agent))
         if not self.entries:
             raise ValueError(f"{self.file} must hold at least one conversation.")
+        for image in {image for entry in self.entries for image in entry.images}:
+            if not image.is_file():
+                raise FileNotFoundError(f"There is no image file {image}, which {self.file} names.")
+        self.size: tuple[int, ...] | None = None  # of the images in earlier batches
         self.picture: np.ndarray | None = None
 
     @property
@@ -115,12 +121,8 @@ class Conversations:
                 corruption, key = self.schedule.draw(self.seed, f"{step}-{index}-{number}", time)
                 observation = {RGB: _read(file)}
                 frames.append(corrupt_observation(observation, corruption, key)[RGB])
-        sizes = sorted({frame.shape[:2] for frame in frames})
-        if len(sizes) > 1:
-            raise ValueError(
-                f"All images in {self.folder} must have the same size, got {sizes[0]} and "
-                f"{sizes[-1]} (height, width). Resize them."
-            )
+        for frame in frames:
+            self._check_size(frame.shape[:2])
         piece = {
             "texts": [entry.instruction for entry in chosen],
             "ids": [entry.name for entry in chosen],
@@ -134,8 +136,19 @@ class Conversations:
 
     def collate(self, pieces: list[tuple[Piece, np.ndarray]]) -> Decisions:
         """Join the decisions of all jobs."""
+        for piece, _ in pieces:
+            self._check_size(tuple(piece["frames"].shape[1:3]))
         self.picture = pieces[0][1]
         return self.agent.join([piece for piece, _ in pieces])
+
+    def _check_size(self, size: tuple[int, ...]) -> None:
+        """Raise ValueError if an image has another size than the images before it."""
+        self.size = self.size or size
+        if size != self.size:
+            raise ValueError(
+                f"All images in {self.folder} must have the same size, got {self.size} and {size} "
+                "(height, width). Resize them."
+            )
 
     def figures(self) -> dict[str, np.ndarray]:
         """Return a picture of an image from the last batch."""
@@ -162,23 +175,27 @@ def read_entries(file: Path, agent: Any) -> Iterator[Entry]:
         FileNotFoundError: If the file is missing.
         ValueError: If a line is invalid; the message contains its number.
     """
-    before, _, after = agent.task.partition("{instruction}")
-    fixed = [re.escape(question(text, agent.answers, "").strip()) for text in (before, after)]
-    pattern = re.compile(rf"{fixed[0]}\s*(.*?)\s*{fixed[1]}", re.DOTALL)
+    if agent.task.count("{instruction}") != 1:
+        raise ValueError("agent.task must contain {instruction} exactly once.")
+    parts = agent.task.replace(IMAGE, "").split("{instruction}")
+    around = [question(text, agent.answers, "").strip() for text in parts]
+    if file.is_file() and (pointer := lfs_problem(file)):
+        raise ValueError(f"{file}: {pointer}")
     with open_text(file) as lines:
         for number in range(1, MOST_LINES + 1):
-            line = lines.readline(MOST_LINE)
-            if not line:
-                return
-            if line.strip():
-                try:
-                    yield _entry(line, file.parent, agent, pattern)
-                except (ValueError, RecursionError) as error:
-                    raise ValueError(f"{file}, line {number}: {error}") from error
+            try:
+                line = lines.readline(MOST_LINE)
+                if not line:
+                    return
+                entry = _entry(line, file.parent, agent, around) if line.strip() else None
+            except (ValueError, RecursionError, EOFError, gzip.BadGzipFile) as error:
+                raise ValueError(f"{file}, line {number}: {error}") from error
+            if entry is not None:
+                yield entry
     raise ValueError(f"{file} must have at most {MOST_LINES:,} lines.")
 
 
-def _entry(line: str, folder: Path, agent: Any, pattern: re.Pattern) -> Entry:
+def _entry(line: str, folder: Path, agent: Any, around: list[str]) -> Entry:
     """Return the entry in a line; raise ValueError if it is invalid."""
     if len(line) >= MOST_LINE:
         raise ValueError(f"a line must have less than {MOST_LINE:,} characters.")
@@ -189,6 +206,8 @@ def _entry(line: str, folder: Path, agent: Any, pattern: re.Pattern) -> Entry:
     images = [images] if isinstance(images, str) else images
     if not isinstance(images, list) or not images or not all(isinstance(i, str) for i in images):
         raise ValueError("'images' must list at least one path of an image below the folder.")
+    if len(images) > MOST_FRAMES + 1:
+        raise ValueError(f"'images' must list at most {MOST_FRAMES + 1} paths, got {len(images)}.")
     turns = stored.get("conversations")
     if not isinstance(turns, list) or [_part(turn, "from") for turn in turns] != ["human", "gpt"]:
         raise ValueError("'conversations' must hold one question (human) and one answer (gpt).")
@@ -197,19 +216,25 @@ def _entry(line: str, folder: Path, agent: Any, pattern: re.Pattern) -> Entry:
         raise ValueError(
             f"the question has {asked.count(IMAGE)} times {IMAGE} for {len(images)} images."
         )
-    found = pattern.fullmatch(asked.replace(IMAGE, "").strip())
-    if not found:
+    before, after = around
+    text = asked.replace(IMAGE, "").strip()
+    fits = len(text) >= len(before) + len(after)
+    if not (fits and text.startswith(before) and text.endswith(after)):
         raise ValueError(
             f"the question does not fit agent.task. Set agent.task to the text of the questions, "
             f"with {{instruction}}. The question is {json.dumps(asked)[:300]}"
         )
+    instruction = text[len(before) : len(text) - len(after)].strip()
+    if len(instruction) > MOST_TEXT:
+        raise ValueError(f"the instruction must have at most {MOST_TEXT:,} characters.")
+    instruction.encode()  # UnicodeEncodeError is a ValueError
     answer = read_answer(answered, agent.answers)
     if answer is None:
         allowed = ", ".join(one.text for one in agent.answers)
         raise ValueError(f"the answer {short(answered)} must be one of {allowed} (agent.answers).")
     files = tuple(_inside(folder, image) for image in images)
     name = str(stored.get("episode_id", stored.get("id", "")))[:200]
-    return Entry(name, found[1], files, agent.answers.index(answer))
+    return Entry(name, instruction, files, agent.answers.index(answer))
 
 
 def _part(turn: Any, name: str) -> str:
@@ -220,15 +245,14 @@ def _part(turn: Any, name: str) -> str:
 def _inside(folder: Path, image: str) -> Path:
     """Return the path of an image; raise ValueError if it is not below ``folder``."""
     path = Path(image)
-    if path.is_absolute() or ".." in path.parts or "\0" in image:
+    too_long = any(len(os.fsencode(part)) > 255 for part in path.parts)
+    if path.is_absolute() or ".." in path.parts or "\0" in image or too_long:
         raise ValueError(f"the image {short(image)} must be a path below the folder.")
     return folder / path
 
 
 def _read(file: Path) -> np.ndarray:
     """Return an image, uint8 [H, W, 3]."""
-    if not file.is_file():
-        raise FileNotFoundError(f"There is no image {file}, which the conversations name.")
     try:
         frame = frame_files.read(file, 1.0)
     except frame_files.LeftOutError as error:

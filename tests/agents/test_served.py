@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import gc
 import itertools
 import pickle
+import socket
 import threading
 import time
 
@@ -32,6 +34,13 @@ def array(values, dtype: str = "<f4") -> dict:
     return {"__ndarray__": True, "data": data.tobytes(), "dtype": dtype, "shape": list(data.shape)}
 
 
+def nested(depth: int) -> list:
+    made: list = []
+    for _ in range(depth):
+        made = [made]
+    return made
+
+
 def expert(payload: dict) -> dict:
     """Return the correct action for a frame, which shows the agent's cell and the goal."""
     sent = payload["images"]["front"]
@@ -47,6 +56,13 @@ def server():
     connection, and bytes are sent as they are."""
 
     def talk(connection):
+        stand_in.open += 1
+        try:
+            answer_all(connection)
+        finally:
+            stand_in.open -= 1
+
+    def answer_all(connection):
         for data in connection:
             message = msgpack.unpackb(data)
             kind, payload, seq = message["type"], message["payload"], message["seq"]
@@ -65,7 +81,8 @@ def server():
                 continue
             connection.send(msgpack.packb({**answer, "seq": seq, "timestamp": 0.0}))
 
-    stand_in = serve(talk, "127.0.0.1", 0, compression=None)
+    stand_in = serve(talk, "127.0.0.1", 0, compression=None, max_size=None)
+    stand_in.talk, stand_in.open = talk, 0
     stand_in.counter, stand_in.received, stand_in.protocol = itertools.count(), [], 1
     stand_in.reply = lambda number, payload: expert(payload)
     thread = threading.Thread(target=stand_in.serve_forever, daemon=True)
@@ -150,7 +167,14 @@ def test_rows_are_kept_when_the_server_dies_and_are_completed_later(server, tmp_
         ({"actions": array([1e300], "<f8")}, "finite numbers"),
         ({"actions": array([])}, "finite numbers"),
         ({"actions": [[1], [1, 2]]}, "finite numbers"),
+        ({"actions": ["1", "2.5"]}, "must return one action"),
+        ({"actions": [True]}, "must return one action"),
         ({"terminate_episode": True}, "must return one action"),
+        ({"actions": {"__ndarray__": True, "data": b"", "dtype": "(1,2", "shape": [0]}}, "allowed"),
+        (msgpack.packb([[]] * 20_000), "no usable answer"),
+        (msgpack.packb({"type": "action", "seq": [3], "payload": {}}), "instead of action 3"),
+        (msgpack.packb({"type": "action", "seq": 3.0, "payload": {}}), "instead of action 3"),
+        (msgpack.packb({"type": "error", "seq": 3, "payload": nested(400)}), "server reports"),
         ({"actions": {"__ndarray__": True, "data": b"", "dtype": "O", "shape": [0]}}, "no usable"),
         ({"actions": {"__ndarray__": True, "data": b"123", "dtype": "<f4"}}, "no usable answer"),
         (b"\xc1", "no usable answer"),
@@ -167,6 +191,86 @@ def test_wrong_answer_is_an_error(server, reply, words):
         agent.act({"rgb": FRAME})
 
 
+def test_action_can_be_changed_by_the_conversion(server):
+    def flip(action):
+        action[-1] *= -1
+        return action
+
+    server.reply = lambda number, payload: {"actions": array([1.0, 2.0])}
+    agent = policy(server, convert=flip)
+    agent.reset("go")
+    assert agent.act({"rgb": FRAME}).tolist() == [1.0, -2.0]
+
+
+def test_server_that_stops_reading_is_an_error(server):
+    """The frame is larger than the buffers of the sockets."""
+    server.reply = lambda number, payload: time.sleep(30)
+    agent = policy(server, timeout=0.5)
+    agent.reset("go")
+    large = np.zeros((2000, 2000, 3), np.uint8)
+    began = time.monotonic()
+    for _ in range(2):
+        with pytest.raises(ConnectionError, match="timeout="):
+            agent.act({"rgb": large})
+    assert time.monotonic() - began < 10
+
+
+def test_redirect_is_an_error(monkeypatch):
+    """Frames go only to the address that the user named."""
+    listening = socket.create_server(("127.0.0.1", 0))
+
+    def answer():
+        connection, _ = listening.accept()
+        connection.recv(4096)
+        connection.sendall(b"HTTP/1.1 302 Found\r\nLocation: ws://127.0.0.1:9/\r\n\r\n")
+        connection.close()
+
+    threading.Thread(target=answer, daemon=True).start()
+    agent = ServedPolicy(f"ws://127.0.0.1:{listening.getsockname()[1]}", {"rgb": "front"}, "1")
+    agent.wait = 0
+    with pytest.raises(ConnectionError, match="No connection"):
+        agent.reset("go")
+
+
+@pytest.mark.parametrize("entry", [np.array([None, "x"], object), np.array(["x"]), None])
+def test_only_numbers_are_sent(server, entry):
+    agent = policy(server, state="pose")
+    agent.reset("go")
+    with pytest.raises(ValueError, match="must be an array of numbers"):
+        agent.act({"rgb": entry, "pose": np.zeros(2)})
+    with pytest.raises(ValueError, match="must be"):
+        agent.act({"rgb": FRAME, "pose": entry})
+    with pytest.raises(ValueError, match="must be finite numbers"):
+        agent.act({"rgb": FRAME, "pose": np.array([np.inf])})
+    assert "observation" not in [kind for kind, _ in server.received]
+
+
+def test_instruction_must_be_text(server):
+    for wrong in (None, 5, b"go"):
+        with pytest.raises(TypeError, match="instruction must be a string"):
+            policy(server).reset(wrong)
+    with pytest.raises(ValueError, match="not valid text"):
+        policy(server).reset("go \ud83d on")
+
+
+def test_connections_are_closed(server):
+    server.protocol = 2
+    for _ in range(3):
+        with pytest.raises(ConnectionError):
+            policy(server).reset("go")
+    server.protocol = 1
+    agent = policy(server)
+    agent.reset("go")
+    agent.reset("go on")
+    assert server.open == 1
+    del agent
+    gc.collect()
+    ends = time.monotonic() + 5
+    while server.open and time.monotonic() < ends:
+        time.sleep(0.01)
+    assert server.open == 0
+
+
 def test_slow_server_is_an_error(server):
     server.reply = lambda number, payload: time.sleep(1) or expert(payload)
     agent = policy(server, timeout=0.2)
@@ -177,7 +281,7 @@ def test_slow_server_is_an_error(server):
 
 def test_other_protocol_and_absent_server_are_errors(server):
     server.protocol = 2
-    with pytest.raises(ConnectionError, match="protocol version 1 .* got 2"):
+    with pytest.raises(ConnectionError, match="protocol version 1 .* got .?2"):
         policy(server).reset("go")
     with pytest.raises(ConnectionError, match="within 0 s .*Start the model server"):
         ServedPolicy("ws://127.0.0.1:1", {"rgb": "front"}, "1", wait=0).reset("go")
@@ -185,14 +289,18 @@ def test_other_protocol_and_absent_server_are_errors(server):
 
 def test_policy_waits_for_a_server_that_starts_late(server, monkeypatch, capsys):
     monkeypatch.setattr(served, "PAUSE", 0.05)
+    taken = socket.socket()
+    taken.bind(("127.0.0.1", 0))
     agent = policy(server, wait=30.0)
-    agent.url = "ws://127.0.0.1:1"  # nobody listens here
+    agent.url = f"ws://127.0.0.1:{taken.getsockname()[1]}"
 
     def start():
         time.sleep(0.3)
-        agent.url = server.url
+        taken.listen()
+        with serve(server.talk, sock=taken, compression=None) as late:
+            late.serve_forever()
 
-    threading.Thread(target=start).start()
+    threading.Thread(target=start, daemon=True).start()
     agent.reset("go")
     assert "waiting for the model server" in capsys.readouterr().out
 

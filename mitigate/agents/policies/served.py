@@ -7,8 +7,11 @@ keys type, payload, seq and timestamp; arrays are maps with the key ``__ndarray_
 
 from __future__ import annotations
 
+import re
+import socket
 import time
 import warnings
+import weakref
 from collections.abc import Callable, Mapping
 from typing import Any
 from urllib.parse import urlsplit
@@ -21,10 +24,13 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.progress import say
 
 PROTOCOL = 1
-LARGEST = 1 << 24  # bytes of one answer
+LARGEST = 1 << 20  # bytes of one answer; an action has less than a kilobyte
+MOST_ITEMS = 10_000  # items of a list or map in an answer
 ARRAY = "__ndarray__"
+LONGEST = 1_000_000  # seconds that one may wait
 INSTALL = "pip install -e '.[train,served]'"
 PAUSE = 2.0  # seconds between two attempts to connect
+NUMBERS = re.compile(r"[<>|=]?[biuf]\d{1,2}")  # allowed dtypes of arrays
 
 
 class ServedPolicy(Agent):
@@ -75,8 +81,11 @@ class ServedPolicy(Agent):
             )
         if not version:
             raise ValueError("version must name the weights on the server, such as 'openvla-7b'.")
-        if timeout <= 0 or wait < 0:
-            raise ValueError(f"timeout must be > 0 and wait >= 0, got {timeout} and {wait}.")
+        if not 0 < timeout < LONGEST or not 0 <= wait < LONGEST:
+            raise ValueError(
+                f"timeout must be > 0 and wait >= 0, both below {LONGEST:,} seconds, got {timeout} "
+                f"and {wait}."
+            )
         if clean := [name for name in cameras if name not in (RGB, DEPTH)]:
             warnings.warn(
                 f"The frames of {', '.join(clean)} stay clean: only the entries rgb and depth are "
@@ -95,9 +104,17 @@ class ServedPolicy(Agent):
         return {"version": self.version, "cameras": cameras, "state": self.state}
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; raise ConnectionError if the server cannot be reached."""
+        """Start an episode.
+
+        Raises:
+            TypeError: If the instruction is not text.
+            ConnectionError: If the server cannot be reached.
+        """
+        if not isinstance(instruction, str):
+            raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         if self._episode is not None:
-            self._episode.connection.close()
+            self._episode.close()
+            self._episode = None
         self._episode = _Episode(self._connect(), instruction, self.timeout)
 
     def act(self, observation: Mapping[str, Any]) -> Any:
@@ -105,7 +122,8 @@ class ServedPolicy(Agent):
 
         Raises:
             KeyError: If the observation lacks an entry.
-            ValueError: If the server returns no valid action.
+            ValueError: If an entry is not an array of numbers, or the server returns no valid
+                action.
             ConnectionError: If the server returns no usable answer in time.
         """
         check_started(self._episode is not None)
@@ -117,10 +135,13 @@ class ServedPolicy(Agent):
                 f"The observation must have {', '.join(missing)}; it has {', '.join(observation)}. "
                 "Change cameras= or state=, or the entries of the world (GymWorld(entries=...))."
             )
-        images = {name: np.asarray(observation[entry]) for entry, name in self.cameras.items()}
+        images = {name: _numbers(observation, entry) for entry, name in self.cameras.items()}
         sent: dict[str, Any] = {"images": images, "task_description": self._episode.task}
         if self.state:
-            sent["state"] = np.asarray(observation[self.state], np.float32)
+            state = _numbers(observation, self.state)
+            if not np.isfinite(state).all():
+                raise ValueError(f"The state {self.state!r} must be finite numbers.")
+            sent["state"] = state.astype(np.float32)
         action = self._episode.act(sent)
         return action if self.convert is None else self.convert(action)
 
@@ -128,20 +149,28 @@ class ServedPolicy(Agent):
         from websockets.exceptions import WebSocketException
         from websockets.sync.client import connect
 
+        parts = urlsplit(self.url)
+        address = (parts.hostname, parts.port or (443 if parts.scheme == "wss" else 80))
         ends = time.monotonic() + self.wait
         while True:
+            left = max(PAUSE, ends - time.monotonic())
             try:
-                # a server that loads its model or compiles does not answer pings
-                return connect(
+                # with an open socket, neither redirects nor proxies are used
+                connection = connect(
                     self.url,
+                    sock=socket.create_connection(address, timeout=left),
                     compression=None,
                     max_size=LARGEST,
-                    open_timeout=max(PAUSE, ends - time.monotonic()),
+                    max_queue=1,
+                    open_timeout=left,
                     close_timeout=1.0,
-                    ping_interval=None,
-                )
-            except (OSError, WebSocketException) as error:
-                if time.monotonic() + PAUSE > ends:
+                    ping_interval=None,  # a server that loads its model does not answer pings
+                ).__enter__()
+                connection.socket.settimeout(self.timeout)  # for sending
+                return connection
+            except (OSError, WebSocketException, ValueError) as error:
+                # a ValueError is an invalid name of the host
+                if isinstance(error, ValueError) or time.monotonic() + PAUSE > ends:
                     raise ConnectionError(
                         f"No connection to {self.url} within {self.wait:g} s (wait=): "
                         f"{type(error).__name__}: {short(str(error))}. Start the model server, and "
@@ -159,29 +188,36 @@ class _Episode:
 
     def __init__(self, connection: Any, task: str, timeout: float) -> None:
         self.connection, self.task, self.timeout = connection, task, timeout
+        # closes the connection, at the latest when the episode is no longer used
+        self.close = weakref.finalize(self, connection.close)
         self.number = 0
-        hello = {"harness_version": "mitigate", "protocol_version": PROTOCOL}
-        answer = self._receive(self._send("hello", hello), "hello")
-        if answer.get("protocol_version") != PROTOCOL:
-            raise ConnectionError(
-                f"The model server must speak protocol version {PROTOCOL} of vla-evaluation-harness"
-                f", got {answer.get('protocol_version')!r:.40}."
-            )
-        self._send("episode_start", {"task": {"name": task}})
+        try:
+            hello = {"harness_version": "mitigate", "protocol_version": PROTOCOL}
+            answer = self._receive(self._send("hello", hello), "hello")
+            version = answer.get("protocol_version")
+            if type(version) is not int or version != PROTOCOL:
+                raise ConnectionError(
+                    f"The model server must speak protocol version {PROTOCOL} of "
+                    f"vla-evaluation-harness, got {_text(version)}."
+                )
+            self._send("episode_start", {"task": {"name": task}})
+        except BaseException:
+            self.close()
+            raise
 
     def act(self, observation: Mapping[str, Any]) -> np.ndarray:
         """Return the server's action, float32 [n]."""
         answer = self._receive(self._send("observation", observation), "action")
         values = answer.get("actions")
-        try:
+        listed = isinstance(values, list) and all(type(one) in (int, float) for one in values)
+        action = np.empty(0, np.float32)
+        if listed or isinstance(values, np.ndarray):
             with np.errstate(over="ignore"):
-                action = np.asarray(values, np.float32)
-        except (TypeError, ValueError):
-            action = np.empty(0, np.float32)
+                action = np.array(values, np.float32)  # a copy, which convert= may change
         if action.ndim != 1 or not action.size or not np.isfinite(action).all():
             raise ValueError(
                 "The model server must return one action of finite numbers, shape [n], got "
-                f"{short(str(answer))}. If the model predicts several actions at once, start the "
+                f"{_text(answer)}. If the model predicts several actions at once, start the "
                 "server with chunk_size=."
             )
         return action
@@ -194,8 +230,13 @@ class _Episode:
         message = {"type": kind, "payload": payload, "seq": self.number, "timestamp": time.time()}
         try:
             self.connection.send(msgpack.packb(message, default=_encoded))
-        except ConnectionClosed as error:
-            raise _broken(str(error)) from error
+        except UnicodeEncodeError as error:
+            raise ValueError(f"The instruction is not valid text: {error}.") from error
+        except (ConnectionClosed, OSError) as error:
+            raise _broken(
+                f"it closed the connection, or read nothing for {self.timeout:g} s (timeout=): "
+                f"{short(str(error), 200)}"
+            ) from error
         return self.number
 
     def _receive(self, number: int, kind: str) -> dict[str, Any]:
@@ -207,15 +248,35 @@ class _Episode:
         except TimeoutError as error:
             raise _broken(f"no answer within {self.timeout:g} s (timeout=)") from error
         except ConnectionClosed as error:
-            raise _broken(str(error)) from error
-        payload = message.get("payload")
-        if message.get("type") == "error":
-            raise _broken(f"the server reports {short(str(payload))}")
-        if message.get("type") != kind or message.get("seq") != number:
-            raise _broken(f"the server sent {short(str(message))} instead of {kind} {number}")
+            raise _broken(short(str(error), 200)) from error
+        stated, order, payload = (message.get(name) for name in ("type", "seq", "payload"))
+        if isinstance(stated, str) and stated == "error":
+            raise _broken(f"the server reports {_text(payload)}")
+        fits = isinstance(stated, str) and type(order) is int and (stated, order) == (kind, number)
+        if not fits:
+            raise _broken(f"the server sent {_text(message)} instead of {kind} {number}")
         if not isinstance(payload, dict):
-            raise _broken(f"the payload is not a map: {short(str(payload))}")
+            raise _broken(f"the payload is not a map: {_text(payload)}")
         return payload
+
+
+def _text(answer: Any) -> str:
+    """Return a part of an answer as short text."""
+    try:
+        return short(str(answer))
+    except RecursionError:
+        return "nested lists"
+
+
+def _numbers(observation: Mapping[str, Any], entry: str) -> np.ndarray:
+    """Return an entry of an observation; raise ValueError if it is not an array of numbers."""
+    values = np.asarray(observation[entry])
+    if values.dtype.kind not in "biuf" or not values.size:
+        raise ValueError(
+            f"The entry {entry!r} must be an array of numbers, got {values.dtype} "
+            f"{list(values.shape)}."
+        )
+    return values
 
 
 def _check_installed() -> None:
@@ -264,7 +325,9 @@ def _decoded(data: Any) -> dict[str, Any]:
     import msgpack
 
     try:
-        message = msgpack.unpackb(data, object_hook=_array, raw=False)
+        message = msgpack.unpackb(
+            data, object_hook=_array, raw=False, max_array_len=MOST_ITEMS, max_map_len=MOST_ITEMS
+        )
         if not isinstance(message, dict):
             raise ValueError(f"a {type(message).__name__} instead of a map")
     except (ValueError, TypeError, KeyError, RecursionError, msgpack.UnpackException) as error:
@@ -276,7 +339,7 @@ def _array(value: dict[str, Any]) -> Any:
     """Return the array that a map describes, or the map."""
     if ARRAY not in value:
         return value
-    dtype = np.dtype(str(value["dtype"]))
-    if dtype.kind not in "biuf":
-        raise ValueError(f"arrays of {dtype} are not allowed")
+    dtype = value["dtype"]
+    if not isinstance(dtype, str) or not NUMBERS.fullmatch(dtype):
+        raise ValueError(f"arrays of {_text(dtype)} are not allowed")
     return np.frombuffer(value["data"], dtype).reshape(value["shape"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
+import time
 from types import SimpleNamespace
 
 import cv2
@@ -105,6 +106,8 @@ def test_questions_of_another_project_need_its_task(folder):
         (lambda e: e.update(images=[]), "'images' must list at least one"),
         (lambda e: e.update(images=["../secret.png"]), "must be a path below the folder"),
         (lambda e: e.update(images=["/etc/passwd"]), "must be a path below the folder"),
+        (lambda e: e.update(images=["a/" + "b" * 300]), "must be a path below the folder"),
+        (lambda e: e.update(images=["a.png"] * 66), "at most 65 paths, got 66"),
         (lambda e: e.update(images=["frames/a.png", "b.png"]), "1 times <image> for 2 images"),
         (lambda e: e["conversations"].append({"from": "human"}), "one question .* one answer"),
         (lambda e: e.update(conversations=5), "one question .* one answer"),
@@ -131,9 +134,50 @@ def test_missing_files_and_bad_images_are_errors(folder, tmp_path):
         batch(source(folder, decisions=40))
     image.unlink()
     with pytest.raises(FileNotFoundError, match="There is no image"):
-        batch(source(folder, decisions=40))
+        source(folder)
     (folder / CONVERSATIONS).write_text("\n", "utf-8")
     with pytest.raises(ValueError, match="at least one conversation"):
+        source(folder)
+
+
+def test_images_of_all_steps_have_one_size(folder):
+    """One image differs, so most steps do not contain it."""
+    image = source(folder).entries[0].images[0]
+    cv2.imwrite(str(image), np.zeros((9, 9, 3), np.uint8))
+    made = source(folder, decisions=1)
+    with pytest.raises(ValueError, match="must have the same size"):
+        for step in range(30):
+            batch(made, step)
+
+
+def test_question_is_compared_quickly_and_exactly(folder):
+    def set_question(text):
+        rewrite(folder, lambda e: e["conversations"][0].update(value=text))
+
+    start, end = TASK.split("{instruction}")
+    set_question(start + " " * 200_000 + "!")
+    began = time.monotonic()
+    with pytest.raises(ValueError, match="does not fit"):
+        source(folder)
+    assert time.monotonic() - began < 2
+    with pytest.raises(ValueError, match="exactly once"):
+        source(folder, task="A {instruction} B {instruction} C")
+    filled = end.replace("{answers}", ", ".join(f'"{a.text}"' for a in ANSWERS["navid"]))
+    set_question(start + "go \ud83d on" + filled)
+    with pytest.raises(ValueError, match="line 1: .*surrogates not allowed"):
+        source(folder)
+    set_question(start + "x" * 100_001 + filled)
+    with pytest.raises(ValueError, match="at most 100,000 characters"):
+        source(folder)
+
+
+def test_unreadable_file_is_named(folder):
+    file = folder / CONVERSATIONS
+    file.write_bytes(b"\xff\xfe{}\n")
+    with pytest.raises(ValueError, match="conversations.jsonl, line 1: .*can't decode"):
+        source(folder)
+    file.write_text("version https://git-lfs.github.com/spec/v1\noid sha256:1\nsize 9\n", "utf-8")
+    with pytest.raises(ValueError, match="lfs"):
         source(folder)
 
 
