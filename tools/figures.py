@@ -9,8 +9,7 @@ or subsection contains such a command, each of its figures must be among the fig
 commands of the page print, rounded as on the page. Figures of other sections are only counted,
 because some figures have no rows; ``--list`` lists those that no command prints.
 
-The check does not compare in which row of a table a figure stands, and it ignores figures without
-an interval.
+The check does not compare the rows of tables, and it ignores figures without an interval.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ PAGES = ("docs/results/*.md", "docs/lab/*.md")
 # a command that prints a table of stored rows
 TOOLS = r"mitigate table |python -m mitigate\.table |python -m tools\.third_party\.results --table "
 COMMAND = re.compile(rf"^(?:    )?((?:{TOOLS}).*docs/results/.*)$")
-VALUE = r"(?:[<>≤≥] ?)?[-+−]?\d+(?:\.\d+)?"
+VALUE = r"(?:[<>≤≥] ?)?[-+]?\d+(?:\.\d+)?"
 FIGURE = re.compile(
     rf"({VALUE})(?:\*\*)?(?: ?%|\spoints)?(?:\*\*)?,?\s+\[({VALUE})(?:,\s+({VALUE}))?\]"
 )
@@ -50,8 +49,8 @@ class Figure:
     def is_printed(self, printed: set[Figure]) -> bool:
         """Return whether this figure is among ``printed``.
 
-        It may have fewer decimal places. Without signs, a difference may be stated the other way
-        round: "2.7 points [0.5, 4.9] more" where -2.7 [-4.9, -0.5] was printed.
+        It may have fewer decimal places. Without signs, a difference may have the opposite
+        sign: "2.7 points [0.5, 4.9] more" where -2.7 [-4.9, -0.5] was printed.
         """
         unsigned = not any(part.startswith(("-", "+")) for part in self._parts)
         return any(

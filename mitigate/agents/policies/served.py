@@ -60,6 +60,7 @@ class ServedPolicy(Agent):
     """
 
     views = 1
+    sensors: tuple[str, ...] = ()
     run_state = ("_episode",)
 
     def __init__(
@@ -95,7 +96,7 @@ class ServedPolicy(Agent):
         self.url, self.cameras, self.state = url, dict(cameras), state
         self.version, self.convert = version, convert
         self.timeout, self.wait = timeout, wait
-        self.sensors = [*self.cameras, *([state] if state else [])]
+        self.sensors = (*self.cameras, *([state] if state else []))
         self._episode: _Episode | None = None
 
     def settings(self) -> dict[str, Any]:
@@ -128,8 +129,7 @@ class ServedPolicy(Agent):
         """
         check_started(self._episode is not None)
         assert self._episode is not None
-        entries = [*self.cameras, *([self.state] if self.state else [])]
-        missing = [name for name in entries if name not in observation]
+        missing = [name for name in self.sensors if name not in observation]
         if missing:
             raise KeyError(
                 f"The observation must have {', '.join(missing)}; it has {', '.join(observation)}. "
