@@ -19,7 +19,6 @@ import os
 import re
 import subprocess
 import sys
-import tempfile
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -102,19 +101,18 @@ def run(command: str) -> list[Figure]:
         RuntimeError: If the command fails.
     """
     command = re.sub(r"^mitigate table ", "python -m mitigate.table ", command)
-    with tempfile.TemporaryDirectory() as out:
-        if "mitigate.table" in command:
-            command += f" --out {out}"
-        # the shell expands braces: {base,harden}-val_unseen.jsonl.gz
-        path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-        done = subprocess.run(
-            ["bash", "-c", command],
-            cwd=ROOT,
-            env={**os.environ, "PATH": path},
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+    if "mitigate.table" in command:
+        command += " --print-only"
+    # the shell expands braces: {base,harden}-val_unseen.jsonl.gz
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    done = subprocess.run(
+        ["bash", "-c", command],
+        cwd=ROOT,
+        env={**os.environ, "PATH": path},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if done.returncode:
         raise RuntimeError(f"{command} failed:\n{done.stderr.strip()}")
     return figures(done.stdout)

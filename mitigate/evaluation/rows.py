@@ -224,9 +224,11 @@ def unique(rows: Iterable[Row]) -> list[Row]:
     by_identity: dict[tuple, Row] = {}
     different: list[Row] = []
     for row in rows:
-        before = by_identity.get(identity(row), row)
-        different += [row] if any(before.get(key) != row.get(key) for key in SCORES) else []
-        by_identity[identity(row)] = row
+        key = identity(row)
+        before = by_identity.get(key)
+        if before and any(before.get(score) != row.get(score) for score in SCORES):
+            different.append(row)
+        by_identity[key] = row
     if different:
         first = different[0]
         warnings.warn(

@@ -6,7 +6,8 @@ episodes of the same scenes. With ``--critical 0.1,0.5``, the table compares the
 
 The command accepts row files, and folders of runs or sweeps, which may be incomplete. The command
 prints the table and writes ``table.md``, ``heatmap.png`` and ``severity.png``. With ``--critical``,
-it writes ``critical.md``, ``critical.json`` and ``critical.png`` instead.
+it writes ``critical.md``, ``critical.json`` and ``critical.png`` instead. With ``--print-only``, it
+writes no files.
 """
 
 from __future__ import annotations
@@ -14,10 +15,14 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mitigate.core.errors import command
 from mitigate.core.markdown import plain_text
 from mitigate.core.options import check_paths
+
+if TYPE_CHECKING:
+    from mitigate.evaluation.rows import Row
 
 OUT = Path("runs/table")
 
@@ -52,8 +57,40 @@ def run(
         ValueError: If rows are damaged, or if a seed or the column does not exist. It is also
             raised if ``critical`` is invalid or needs rows that are missing.
     """
-    from mitigate.evaluation import critical_report, report, rows
+    from mitigate.evaluation import critical_report, report
     from mitigate.evaluation.critical import scores
+
+    rows = select(paths, seeds)
+    if critical is not None:
+        return critical_report.write(scores(rows, critical, against, drawn), out)
+    return report.write(rows, out, against=against, drawn=drawn, intervals=intervals)
+
+
+def text(
+    paths: Iterable[Path | str],
+    seeds: Sequence[int] | None = None,
+    against: str | None = None,
+    drawn: str = "episode",
+    critical: Sequence[float] | None = None,
+    intervals: bool = False,
+) -> str:
+    """Return the table as Markdown. Arguments and errors are those of :func:`run`."""
+    from mitigate.evaluation import critical_report, report
+    from mitigate.evaluation.critical import scores
+    from mitigate.evaluation.sections import sections
+
+    rows = select(paths, seeds)
+    if critical is not None:
+        return "\n\n".join(map(critical_report.markdown, scores(rows, critical, against, drawn)))
+    return report.markdown(sections(rows, against, drawn), intervals=intervals)
+
+
+def select(paths: Iterable[Path | str], seeds: Sequence[int] | None) -> list[Row]:
+    """Return the rows in ``paths``, only of ``seeds`` if they are given.
+
+    Raises the errors of :func:`run`.
+    """
+    from mitigate.evaluation import rows
 
     all_rows = rows.gather(paths)
     available = {row["seed"] for row in all_rows}
@@ -62,10 +99,7 @@ def run(
             f"seeds must be among {', '.join(map(str, sorted(available)))}, got {absent[0]}, which "
             "has no rows."
         )
-    selected = [row for row in all_rows if seeds is None or row["seed"] in seeds]
-    if critical is not None:
-        return critical_report.write(scores(selected, critical, against, drawn), out)
-    return report.write(selected, out, against=against, drawn=drawn, intervals=intervals)
+    return [row for row in all_rows if seeds is None or row["seed"] in seeds]
 
 
 def _losses(text: str) -> list[float]:
@@ -114,12 +148,19 @@ def main(argv: Sequence[str] | None = None) -> int:
         help="for each corruption, also show an interval and the differences from the clean SR and "
         "from the reference column",
     )
-    parser.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
+    files = parser.add_mutually_exclusive_group()
+    files.add_argument("--out", type=Path, default=OUT, help=f"output folder (default {OUT})")
+    files.add_argument("--print-only", action="store_true", help="print the table; write no files")
     options = parser.parse_intermixed_args(argv)
     if options.critical and options.intervals:
         parser.error("--intervals cannot be combined with --critical, whose table has intervals")
     check_paths(options.paths, "--out DIR")
-    paths = run(**vars(options))
+    chosen = vars(options)
+    if chosen.pop("print_only"):
+        del chosen["out"]
+        print(plain_text(text(**chosen)))
+        return 0
+    paths = run(**chosen)
     print(plain_text(paths[0].read_text(encoding="utf-8")))
     print("\n".join(f"wrote {path}" for path in paths))
     return 0

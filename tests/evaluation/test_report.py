@@ -329,6 +329,15 @@ def test_pictures_show_what_was_measured(tmp_path):
         assert f"({path.name})" in paths[0].read_text("utf-8")
 
 
+def test_table_command_prints_without_writing_files(tmp_path, capsys, monkeypatch):
+    rows.write(tmp_path / "base.jsonl", column(8, ALL))
+    monkeypatch.chdir(tmp_path)
+    assert table.main(["base.jsonl", "--print-only"]) == 0
+    printed = capsys.readouterr().out
+    assert "| Clean SR | 80.0 " in printed and "wrote" not in printed and "![" not in printed
+    assert [path.name for path in tmp_path.iterdir()] == ["base.jsonl"]
+
+
 @pytest.mark.slow
 def test_table_command_joins_files_and_folders(tmp_path, capsys):
     rows.append(tmp_path / "runs/base/rows.jsonl", column(8, ALL))
