@@ -10,7 +10,7 @@ RANKS = $(if $(filter-out 1,$(NPROC)),-m torch.distributed.run --standalone --ma
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 .DEFAULT_GOAL := help
-.PHONY: help install test-faults mutations train evaluate sweep table report results-check table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
+.PHONY: help install test-faults mutations train evaluate sweep table report results results-check table1 table2 export test test-all wheels lint docs docs-serve bench doctor clean
 
 help: ## list the targets
 	@grep -E '^[a-z0-9-]+:.*## ' $(MAKEFILE_LIST) | sed -E 's/^([a-z0-9-]+):.*## /\1|/' \
@@ -48,6 +48,9 @@ table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --ou
 
 report: $(VENV)/.stamp ## write rows as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
+
+results: $(VENV)/.stamp-encoders $(VENV)/.stamp-third-party ## compute all published tables again: ARGS="quick=true"
+	$(BIN)/python -m tools.results $(ARGS)
 
 results-check: $(VENV)/.stamp ## recompute the published figures from their rows: ARGS="docs/results/faults.md"
 	$(BIN)/python -m tools.figures $(ARGS)
