@@ -80,6 +80,35 @@ def test_as_policy_acts_as_stable_baselines(algorithm, depth):
         assert env.observation_space.contains(native)
 
 
+GREY = torch.tensor([0.2125, 0.7154, 0.0721], dtype=torch.float64)
+
+
+def grey_and_stacked(policy, frames, stack):
+    """Convert and stack frames as the wrappers of gymnasium do (docs/harden.md)."""
+    grey = (frames.double() * GREY).sum(-1).to(torch.uint8)[:, None]
+    stack = grey.repeat(1, 4, 1, 1) if stack is None else torch.cat([stack[:, 1:], grey], 1)
+    return policy.get_distribution(stack).distribution, stack
+
+
+def test_as_policy_stacks_grey_frames_in_forward():
+    """A policy that was trained behind wrappers acts as in the wrapped environment."""
+    sb3 = pytest.importorskip("stable_baselines3")
+    from gymnasium.wrappers import FrameStackObservation, GrayscaleObservation
+
+    wrapped = FrameStackObservation(GrayscaleObservation(Noise()), 4)
+    model = sb3.PPO("CnnPolicy", wrapped, seed=0)
+    world = world_of(Noise())
+    policy = as_policy(model.policy, world, forward=grey_and_stacked, recurrent=True)
+    frames, actions = rollout(world, policy)
+    observation, _ = wrapped.reset(seed=seeded_episodes([0])[0].info["seed"])
+    for action in actions:
+        expected, _ = model.predict(observation, deterministic=True)
+        assert action == expected
+        observation, *_ = wrapped.step(expected)
+    policy.answers({"rgb": frames[0]["rgb"][None]})[0][0].entropy()
+    copied(policy)  # although the network stores its last distribution
+
+
 def test_as_policy_remembers_as_recurrent_ppo():
     contrib = pytest.importorskip("sb3_contrib")
     env = Noise()
@@ -196,7 +225,7 @@ def test_as_policy_says_that_the_world_passes_only_the_frame():
 def test_as_policy_rejects_stacked_frames():
     world = world_of(Noise())
     world.sensors["rgb"] = replace(world.sensors["rgb"], shape=(4, 36, 36, 3))
-    with pytest.raises(ValueError, match="Stacked frames"):
+    with pytest.raises(ValueError, match="stack them in forward="):
         as_policy(Memory(), world)
 
 

@@ -16,11 +16,13 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor, nn
+from torch.distributions import Distribution
 
 from mitigate.agents.agent import Agent, check_logits
 from mitigate.agents.policies.answers import Answer, mode
 from mitigate.agents.sites import first
 from mitigate.core import checkpoint
+from mitigate.core.contracts import read
 from mitigate.core.spaces import ActionSpace, Box, Discrete, MultiDiscrete
 
 
@@ -172,9 +174,6 @@ class Policy(Agent, nn.Module):
             answers.append(answer)
         return answers
 
-    def forget(self) -> None:
-        """Remove data that the network stores from its last call, so that it can be copied."""
-
     @contextmanager
     def recording(self, module: str) -> Iterator[list[Tensor]]:
         """Record the outputs of a module of the network in the list that is yielded."""
@@ -184,13 +183,25 @@ class Policy(Agent, nn.Module):
             yield outputs
 
 
+def _forget(network: nn.Module) -> None:
+    """Detach what a network stores from its last call, because graphs cannot be copied."""
+    for module in network.modules():
+        for name, value in vars(module).items():
+            if isinstance(value, Tensor) and value.grad_fn is not None:
+                setattr(module, name, value.detach())
+        last_call = read(module, "action_dist")  # of stable-baselines3
+        for name, value in vars(last_call).items() if last_call else ():
+            if isinstance(value, (Tensor, Distribution, list)):
+                setattr(last_call, name, None)
+
+
 def copied(policy: Policy) -> Policy:
     """Return a copy of a policy that shares no weights with the original.
 
     Raises:
         ValueError: If the network cannot be copied.
     """
-    policy.forget()
+    _forget(policy.network)
     try:
         twin = copy.copy(policy)
         twin._modules = {"network": copy.deepcopy(policy.network)}

@@ -6,11 +6,10 @@ from typing import Any
 
 import torch
 from torch import Tensor
-from torch.distributions import Distribution, TransformedDistribution
+from torch.distributions import TransformedDistribution
 
 from mitigate.agents.policies.answers import Answer, parts
 from mitigate.agents.policies.policy import Policy
-from mitigate.core.contracts import read
 from mitigate.core.spaces import ActionSpace, Box
 
 
@@ -50,14 +49,6 @@ class StableBaselinesPolicy(Policy):
             memory = (torch.zeros(layers, count, size, device=policy.device),) * 2
         distribution, memory = policy.get_distribution(inputs, memory, starts)
         return parts(distribution.distribution), memory
-
-    def forget(self) -> None:
-        for module in self.network.modules():
-            last_call = read(module, "action_dist")
-            for name, value in vars(last_call).items() if last_call else ():
-                if isinstance(value, (Tensor, Distribution, list)):
-                    # distributions and actions, with their autograd graph
-                    setattr(last_call, name, None)
 
     def executable(self, chosen: Tensor) -> Any:
         policy: Any = self.network

@@ -61,8 +61,8 @@ def as_policy(
         if len(world.sensors[name].shape) == 4:
             raise ValueError(
                 f"The {name} frames must have the shape [H, W, channels], got "
-                f"{list(world.sensors[name].shape)}. Stacked frames are not supported: use a "
-                "policy with memory, or stack frames inside it."
+                f"{list(world.sensors[name].shape)}. Pass the environment without the "
+                "wrapper that stacks frames, and stack them in forward= (docs/harden.md)."
             )
     network = policy if isinstance(policy, nn.Module) else read(policy, "policy")
     if not isinstance(network, nn.Module):
