@@ -170,7 +170,7 @@ def benchmark(
     with known:
         _print_estimate(agent, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
-            lock.expect(file, *provenance.keep(file.parent, first, made_by, split, chosen))
+            lock.expect(file, provenance.keep(file.parent, first, made_by, split, chosen))
             under = partial(measure, agent, name=name, known=known, workers=workers, guards=guards)
             rows = under(conditions=met) if losses is None else search(under, met, losses)
             if first.rule == RETURN:
