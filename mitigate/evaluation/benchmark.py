@@ -113,8 +113,8 @@ def benchmark(
             and writes them to ``critical.md`` in ``out``. The search needs more episodes than the
             printed estimate says.
         seed: corruption seed.
-        safeguard: input guard for instructions, such as "rules" or "module:callable".
-        restore: input guard for frames, such as "checkpoints/restorer".
+        safeguard: input guard for instructions, such as "classifier" or "http://host/v1@model".
+        restore: input guard for frames, such as "checkpoints/restorer" or "module:callable".
         adapt: test-time adaptation: "norm", "tent" or "recentre", or a guard
             (``mitigate/guards/adaptation``). With the suffix ":never", the adaptation is never
             reset between episodes.
