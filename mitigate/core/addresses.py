@@ -16,7 +16,7 @@ _EXAMPLE = (
     "http://localhost:8000/v1 (as a safeguard: http://localhost:8000/v1@name-of-the-model)."
 )
 _MODEL = re.compile(r"[\w.:/+-]+")
-_PLAIN = re.compile(r"(?!(?:https?|ftp)/)[\w./~+ -]*", re.IGNORECASE)
+_PLAIN = re.compile(r"(?!(?:\w+\+)*(?:https?|ftp)/)[\w./~+ -]*", re.IGNORECASE)
 # a part of a reference to a variable or an option, such as ${oc.env:URL}
 _REFERENCE = re.compile(r"\$|oc\.env:\w+")
 # characters that can surround a value in a Hydra list, mapping, sweep or quotation
@@ -29,7 +29,6 @@ _NEXT = re.compile(r"[\s,\"'\[]+[\w.@+~-]+=")
 # the values of other options may contain "@" or "//", but not a URL with "@"
 _SECRET = re.compile(r"(?:https?|ftp)[:/]\S*[@?]", re.IGNORECASE)
 _SUSPECT = re.compile(r"//|[@?#]|^(?:https?|ftp)[:/]", re.IGNORECASE)
-_EARLIER = re.compile(r"^(?:rules|tagger|reader)\+")  # prefixes that earlier versions accepted
 
 
 def check_url(url: str) -> None:
@@ -57,7 +56,6 @@ def check_choice(choice: object) -> None:
     """
     if not isinstance(choice, str):
         raise ValueError(f"safeguard must be text, got a {type(choice).__name__}. {_EXAMPLE}")
-    choice = _EARLIER.sub("", choice)
     if is_plain(choice) or _is_folder(choice):
         return
     url, at, model = choice.rpartition("@")

@@ -1,10 +1,9 @@
-"""Read and write weights: ``model.safetensors`` in a folder, or a single
-safetensors file.
+"""Read and write weights: ``model.safetensors`` in a folder. Single safetensors files can be read.
 
-A folder has a manifest (``folders.py``); a single file has a sidecar with its sha256
-(``checksums.py``). Manifests and sidecars are checked before the weights are read. Weights without
-a checksum, from an older version or another project, are also accepted. ``training/states.py``
-handles the states from which training resumes.
+A folder has a manifest (``folders.py``); the weights of earlier versions have a sidecar with their
+sha256 (``checksums.py``). Manifests and sidecars are checked before the weights are read. Weights
+without a checksum, from an older version or another project, are also accepted.
+``training/states.py`` handles the states from which training resumes.
 """
 
 from __future__ import annotations
@@ -57,29 +56,21 @@ def weights_file(path: str | Path) -> Path:
     return file
 
 
-def save_weights(module: nn.Module, path: str | Path, *, half: bool = False) -> Path:
-    """Write the tensors of ``module.state_dict()`` to a safetensors file.
-
-    Args:
-        module: the module.
-        path: a folder, into which ``model.safetensors`` and a manifest are written; or a
-            ``.safetensors`` file, which gets a sidecar file with its sha256.
-        half: whether to round floats to float16, as in the shipped weights.
+def save_weights(module: nn.Module, folder: str | Path) -> Path:
+    """Write the tensors of ``module.state_dict()`` and a manifest into ``folder``.
 
     Returns:
         The safetensors file.
     """
-    path = Path(path)
-    if path.suffix == ".safetensors":
-        return checksums.write(path, lambda draft: write_tensors(module, draft, half=half))
-    with folders.write_folder(path, "weights") as draft:
-        write_tensors(module, draft / WEIGHTS, half=half)
-    return path / WEIGHTS
+    with folders.write_folder(folder, "weights") as draft:
+        write_tensors(module, draft / WEIGHTS)
+    return Path(folder) / WEIGHTS
 
 
 def write_tensors(module: nn.Module, file: Path, *, half: bool = False) -> None:
-    """Write the tensors of ``module`` to ``file``, a temporary file that :func:`save_weights`
-    created.
+    """Write the tensors of ``module`` to ``file``, which is in the draft of a folder.
+
+    If ``half`` is true, floats are rounded to float16, as in the shipped weights.
     """
     tensors = {
         name: (value.half() if half and value.is_floating_point() else value).cpu().clone()

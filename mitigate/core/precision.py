@@ -104,15 +104,9 @@ def current(device: torch.device) -> str:
     return "bf16" if torch.is_autocast_enabled(device.type) else "fp32"
 
 
-def native(capabilities: dict | None = None, cap: str | None = None) -> bool:
-    """Return whether the CPU has bf16 instructions and oneDNN is allowed to use them.
-
-    Args:
-        capabilities: result of ``torch.cpu.get_capabilities``, or None to read it on this machine.
-        cap: value to use instead of the environment variable ``ONEDNN_MAX_CPU_ISA``.
-    """
-    has = torch.cpu.get_capabilities() if capabilities is None else capabilities
-    cap = os.environ.get(CAP, "") if cap is None else cap
+def native() -> bool:
+    """Return whether the CPU has bf16 instructions and oneDNN is allowed to use them."""
+    has, cap = torch.cpu.get_capabilities(), os.environ.get(CAP, "")
     allowed = not cap or _NATIVE.search(cap.upper()) is not None
     return allowed and any(has.get(name) for name in ("avx512_bf16", "amx_bf16", "bf16"))
 

@@ -45,7 +45,7 @@ import sys
 from collections.abc import Sequence
 from dataclasses import MISSING, fields
 
-from mitigate.core.errors import error_message
+from mitigate.core.errors import command
 from mitigate.core.names import escaped, printable
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.corruptions import folders, lerobot, registry
@@ -93,6 +93,7 @@ def _value(name: str, text: str) -> str | int | float:
         raise ValueError(f"{name} must be {kind}{units}, got {text}.") from None
 
 
+@command("corrupt")
 def main(argv: Sequence[str] | None = None) -> int:
     """Run from the command line; return the exit status."""
     arguments = list(sys.argv[1:] if argv is None else argv)
@@ -112,9 +113,6 @@ def main(argv: Sequence[str] | None = None) -> int:
                 "has no meta/info.json. Remove the option."
             )
         summary = folders.run(source, out, settings)
-    except (OSError, ValueError) as error:
-        print(f"corrupt: {error_message(error)}", file=sys.stderr)
-        return 2
     except KeyboardInterrupt:
         print("\ninterrupted: run the same command to resume", file=sys.stderr)
         return 130

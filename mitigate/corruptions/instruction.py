@@ -113,23 +113,24 @@ def is_rewritten(manner: str, severity: float, key: Key) -> bool:
 
 
 def inject_system_prompt(
-    prompt: str | None, severity: float, key: Key | int | str, split: str = "test"
+    prompt: str | None, severity: float, key: Key | int | str
 ) -> str | NotApplicable:
     """Insert misleading sentences into a system prompt, before the placeholder for the task or at
     the end.
 
-    The placeholder is the first ``{instruction}``, ``{task}`` or similar. ``severity`` has the same
-    meaning as for "black_box". If ``prompt`` is None or empty, the result is NotApplicable.
+    The placeholder is the first ``{instruction}``, ``{task}`` or similar. The sentences and
+    ``severity`` are those of "black_box". If ``prompt`` is None or empty, the result is
+    NotApplicable.
 
     Raises:
-        ValueError: If the severity, key or split is invalid.
+        ValueError: If the severity or key is invalid.
     """
     severity, key = check_severity(severity), as_key(key)
     if not prompt:
         return NotApplicable("white_box", "the agent has no system prompt")
     if severity == 0.0:
         return prompt
-    added = " ".join(stacked(severity, key, split))
+    added = " ".join(stacked(severity, key, "test"))
     slot = _SLOT.search(prompt)
     if slot is None:
         return f"{prompt.rstrip()}\n{added}"

@@ -34,10 +34,7 @@ class DatasetFrames:
         sensor: "rgb" or "depth".
         size: side in pixels to which frames are resized. If None, frames are not resized.
         held_out: fraction of the scenes that are held out.
-        block: maximum frames per block if there is only one episode. For short episodes, blocks are
-            smaller, so that at least five blocks are held out.
         episodes: numbers of the episodes to read. If None, all episodes are read.
-        tolerance: maximum seconds between a row and its video frame.
 
     Raises:
         FileNotFoundError: If there is no such dataset, or a file is missing.
@@ -54,14 +51,12 @@ class DatasetFrames:
         sensor: str = "rgb",
         size: int | None = None,
         held_out: float = 0.2,
-        block: int = 50,
         episodes: Sequence[int] | None = None,
-        tolerance: float = TOLERANCE,
     ) -> None:
         if path is None:
             raise FileNotFoundError("env.path is not set. Name the folder of the dataset.")
-        check_options(size, held_out, block)
-        self.size, self.held_out, self.tolerance = size, held_out, tolerance
+        check_options(size, held_out)
+        self.size, self.held_out = size, held_out
         self.dataset = open_dataset(Path(path))
         cameras = self.dataset.choose_cameras(sensor, camera and [camera])
         if len(cameras) != 1:
@@ -76,7 +71,7 @@ class DatasetFrames:
         for episode, rows, _ in rows_of(self.dataset, self.dataset.choose_episodes(episodes)):
             frames[f"episode-{episode.index:06d}"] = [(episode, n) for n in range(episode.length)]
             self._times[episode.index] = rows.times
-        self._frames = split_single(frames, block, held_out)
+        self._frames = split_single(frames, held_out)
 
     def scenes(self, split: str) -> Sequence[str]:
         unseen = last_scenes(list(self._frames), self.held_out)
@@ -94,7 +89,7 @@ class DatasetFrames:
         episode = frames[0][0]
         chosen = [frames[place][1] for place in places]
         times = self._times[episode.index][chosen].tolist()
-        read = read_frames(self.dataset, episode, [self.camera], chosen, times, self.tolerance)
+        read = read_frames(self.dataset, episode, [self.camera], chosen, times, TOLERANCE)
         for images in read:
             frame = images[self.camera.name]
             yield Shot(resized(frame.reshape(*frame.shape[:2], -1), self.size))

@@ -6,7 +6,6 @@ Each measure has a 95 % interval over scenes.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -17,7 +16,7 @@ from mitigate.core.progress import Progress
 from mitigate.corruptions import Corruption, Key
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import Frames, corrupted
-from mitigate.evaluation.bootstrap import LEVEL, Estimate
+from mitigate.evaluation.bootstrap import Estimate, with_interval
 
 BATCH = 32  # number of frames that are encoded at once
 RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
@@ -38,18 +37,11 @@ class Score:
 
     @property
     def estimate(self) -> Estimate:
-        return _estimate(self.value, self.samples)
+        return with_interval(self.value, self.samples)
 
     def minus(self, other: Score) -> Estimate:
         """Return the paired difference of two scores."""
-        return _estimate(self.value - other.value, self.samples - other.samples)
-
-
-def _estimate(value: float, samples: np.ndarray) -> Estimate:
-    if not len(samples):
-        return Estimate(float(value), math.nan, math.nan)
-    low, high = np.quantile(samples, [(1 - LEVEL) / 2, (1 + LEVEL) / 2])
-    return Estimate(float(value), float(low), float(high))
+        return with_interval(self.value - other.value, self.samples - other.samples)
 
 
 @torch.no_grad()

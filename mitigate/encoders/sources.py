@@ -7,7 +7,6 @@ frames from each scene.
 from __future__ import annotations
 
 import hashlib
-import sys
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -30,6 +29,8 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
+# maximum number of frames per block if all frames are in one folder or episode (heuristic)
+BLOCK = 50
 # This is the minimum number of held-out blocks if all frames are in one folder (heuristic).
 # The bootstrap for confidence intervals resamples these blocks instead of scenes.
 FEWEST_UNSEEN = 5
@@ -150,8 +151,6 @@ class FolderFrames:
             all frames must have the same size.
         held_out: fraction of the scenes that are unseen. It has no effect if the paths of some
             scenes begin with "val" or "test": then exactly these scenes are unseen.
-        block: maximum frames per block if all frames are in one folder. Blocks are made smaller
-            where necessary, so that five of them can be held out.
         unit: metres per count of a 16-bit PNG.
 
     Raises:
@@ -168,14 +167,13 @@ class FolderFrames:
         sensor: str = "rgb",
         size: int | None = None,
         held_out: float = 0.2,
-        block: int = 50,
         unit: float = 0.001,
     ) -> None:
         if path is None:
             raise FileNotFoundError("env.path is not set. Name the folder of the frames.")
-        check_options(size, held_out, block, unit)
+        check_options(size, held_out, unit)
         self.path, self.sensor, self.size, self.unit = Path(path), sensor, size, unit
-        self.held_out, self.block = held_out, block
+        self.held_out = held_out
         self._first: tuple[Path, tuple[int, ...]] | None = None  # path and shape of the first frame
         if not self.path.is_dir():
             raise FileNotFoundError(
@@ -227,7 +225,7 @@ class FolderFrames:
             )
         if plan.left_out:
             say(f"{self.path}: {self.left_out}")
-        return split_single(scenes, self.block, self.held_out)
+        return split_single(scenes, self.held_out)
 
     def _read(self, path: Path) -> np.ndarray:
         try:
@@ -258,22 +256,21 @@ def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
     return list(names)[-count:] if len(names) > 1 else []
 
 
-def split_single(
-    scenes: Mapping[str, list[Item]], block: int, held_out: float
-) -> dict[str, list[Item]]:
+def split_single(scenes: Mapping[str, list[Item]], held_out: float) -> dict[str, list[Item]]:
     """If there is only one scene, split it into blocks of consecutive frames; return several scenes
     unchanged.
 
+    A block has at most ``BLOCK`` frames, or fewer if otherwise fewer than ``FEWEST_UNSEEN`` blocks
+    would be held out.
+
     Args:
         scenes: frames of each scene.
-        block: maximum frames per block; it is reduced if fewer than ``FEWEST_UNSEEN`` blocks would
-            be held out.
         held_out: fraction of the blocks that are held out.
     """
     if len(scenes) > 1:
         return dict(scenes)
     ((name, frames),) = scenes.items()
-    size = max(1, min(block, int(len(frames) * held_out / FEWEST_UNSEEN)))
+    size = max(1, min(BLOCK, int(len(frames) * held_out / FEWEST_UNSEEN)))
     starts = range(0, len(frames), size)
     return {f"{name}#{at // size:04d}": frames[at : at + size] for at in starts}
 
@@ -288,20 +285,19 @@ def resized(frame: np.ndarray, size: int | None) -> np.ndarray:
     return frame.reshape(*frame.shape[:2], -1)
 
 
-def check_options(size: int | None, held_out: float, block: int, unit: float = 1.0) -> None:
+def check_options(size: int | None, held_out: float, unit: float = 1.0) -> None:
     """Raise ValueError for the first invalid option."""
     for name, value, valid, words in (
-        ("size", size, size is None or _is_count(size, LARGEST), f"1 to {LARGEST} pixels or null"),
+        ("size", size, size is None or _is_side(size), f"1 to {LARGEST} pixels or null"),
         ("unit", unit, _is_between(unit, np.inf), "metres per count, such as 0.001 (mm)"),
         ("world.held_out", held_out, _is_between(held_out, 1), "a share above 0 and below 1"),
-        ("world.block", block, _is_count(block, sys.maxsize), "a number of frames >= 1"),
     ):
         if not valid:
             raise ValueError(f"env.{name} must be {words}, got {short(value)}.")
 
 
-def _is_count(value: object, largest: int) -> bool:
-    return type(value) is int and 1 <= value <= largest
+def _is_side(value: object) -> bool:
+    return type(value) is int and 1 <= value <= LARGEST
 
 
 def _is_between(value: object, below: float) -> bool:

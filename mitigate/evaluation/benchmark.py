@@ -113,8 +113,8 @@ def benchmark(
             and writes them to ``critical.md`` in ``out``. The search needs more episodes than the
             printed estimate says.
         seed: corruption seed.
-        safeguard: input guard for instructions, such as "rules" or "module:callable".
-        restore: input guard for frames, such as "checkpoints/restorer".
+        safeguard: input guard for instructions, such as "classifier" or "http://host/v1@model".
+        restore: input guard for frames, such as "checkpoints/restorer" or "module:callable".
         adapt: test-time adaptation: "norm", "tent" or "recentre", or a guard
             (``mitigate/guards/adaptation``). With the suffix ":never", the adaptation is never
             reset between episodes.
@@ -170,7 +170,7 @@ def benchmark(
     with known:
         _print_estimate(agent, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
-            lock.expect(file, *provenance.keep(file.parent, first, made_by, split, chosen))
+            lock.expect(file, provenance.keep(file.parent, first, made_by, split, chosen))
             under = partial(measure, agent, name=name, known=known, workers=workers, guards=guards)
             rows = under(conditions=met) if losses is None else search(under, met, losses)
             if first.rule == RETURN:

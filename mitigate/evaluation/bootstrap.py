@@ -136,11 +136,24 @@ def share(values: ArrayLike, **options: Any) -> Estimate:
     """
     estimate, known = mean(values, **options), np.asarray(values, float)
     units = options.get("units")
+    if not ((known == 0).all() or (known == 1).all()):
+        return estimate
     count = len(known) if units is None else len(np.unique(units))
+    return Estimate(estimate.value, *wilson(estimate.value, count))
+
+
+def wilson(value: float, count: int) -> tuple[float, float]:
+    """Return Wilson's score interval (1927) for the fraction ``value`` of ``count`` observations.
+
+    Without observations, the interval of the value 0 is (0, 1).
+    """
     reach = Z * Z / (count + Z * Z)
-    if (known == 0).all():
-        return Estimate(estimate.value, 0.0, reach)
-    return Estimate(estimate.value, 1 - reach, 1.0) if (known == 1).all() else estimate
+    if value in (0, 1):
+        return (1 - reach, 1.0) if value else (0.0, reach)
+    middle = (value + Z * Z / (2 * count)) / (1 + Z * Z / count)
+    half = Z * math.sqrt(value * (1 - value) / count + Z * Z / (4 * count * count))
+    half /= 1 + Z * Z / count
+    return max(0.0, middle - half), min(1.0, middle + half)
 
 
 def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:

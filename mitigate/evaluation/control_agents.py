@@ -76,8 +76,8 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
     results: list[rows.Row] = []
     with FolderLock(out) as lock:
         world, made_by = provenance.first_world(make_world)
-        notes = provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
-        lock.expect(out / rows.ROWS, *notes)
+        note = provenance.keep(out, world, made_by, split, chosen, env.episodes[split])
+        lock.expect(out / rows.ROWS, note)
         for name, agent in {"oracle": OracleAgent(world), "random": RandomAgent()}.items():
             jobs = jobs_of(chosen, [CLEAN], label_of(name, name, split, 0, world))
             task = ControlTask(agent, make_world, world=world)

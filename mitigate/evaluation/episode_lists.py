@@ -1,20 +1,18 @@
 """Choose the episodes of an evaluation, and separate the rows of different episode lists.
 
-Rows contain the split but not the episode file. Therefore the hash of the episode list is stored
-next to the rows, and rows without common episodes appear in different tables.
+Rows contain the split but not the episode file. Therefore rows without common episodes appear in
+different tables.
 """
 
 from __future__ import annotations
 
-import re
 import warnings
 from collections import Counter, defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from numbers import Integral
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from mitigate.core.files import atomic_text, find, sha256
+from mitigate.core.files import find
 from mitigate.core.names import counted, unknown
 from mitigate.core.seeding import generator
 from mitigate.evaluation.rows import Row
@@ -158,41 +156,6 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
 
 def _in_words(tasks: Sequence[str]) -> str:
     return " or ".join(TASKS.get(task, task) for task in sorted(set(tasks)))
-
-
-# name of the file that stores the hash of a split's episode file
-LIST_HASH = "episodes-{split}.sha256"
-# maximum number of characters read from a hash file, which has one line (heuristic)
-LARGEST = 1 << 16
-_SHA256 = re.compile(r"[0-9a-f]{64}")
-
-
-def keep_list_hash(folder: Path, split: str, source: str) -> None:
-    """Store the hash of a split's episode file next to the rows, in the format of ``sha256sum``.
-
-    Raises:
-        ValueError: If the rows belong to a different episode list, or if the stored hash is
-            damaged. Without this check, rows of a different list would be treated as finished,
-            because rows identify episodes only by id.
-    """
-    note = folder / LIST_HASH.format(split=split)
-    digest = sha256(find(source))
-    if note.is_file():
-        with open(note, encoding="utf-8", errors="replace") as file:
-            words = file.read(LARGEST).split()
-        if not words or not _SHA256.fullmatch(words[0]):
-            raise ValueError(
-                f"{note} must begin with a sha256, but is empty or damaged. Copy it back, or move "
-                f"{folder} aside and evaluate again."
-            )
-        if words[0] != digest:
-            raise ValueError(
-                f"{folder} holds rows of another list of {split} than the current {source}. Choose "
-                "another folder (out=... for an evaluation, folder=... for a training run), or "
-                "delete this one."
-            )
-    with atomic_text(note) as file:
-        file.write(f"{digest}  {source}\n")
 
 
 def by_list(rows: Iterable[Row]) -> list[list[Row]]:

@@ -73,8 +73,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     guards.calibrate(agent, first, training_episodes(first, env.training))
     with FolderLock(out) as lock:
         source = env.episodes[config.split]
-        notes = provenance.keep(out, first, made_by, config.split, chosen, source)
-        lock.expect(out / ROWS, *notes)
+        note = provenance.keep(out, first, made_by, config.split, chosen, source)
+        lock.expect(out / ROWS, note)
         print(  # printed after all checks, so that a failed check prints only its error
             f"evaluate: {config.checkpoint or name} on {config.split}, "
             f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "

@@ -34,10 +34,9 @@ from mitigate.agents.fingerprint import (
 from mitigate.agents.source import is_users, named_values
 from mitigate.core import output
 from mitigate.core.build import Maker
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, find, sha256
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
-from mitigate.evaluation.episode_lists import LIST_HASH, keep_list_hash
 from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
@@ -143,6 +142,10 @@ def _check_version(version: Any) -> None:
 
 
 NOTE = "walked.json"
+_OTHER = (
+    "Choose another folder (out=... for an evaluation, folder=... for a training run), or delete "
+    "this one."
+)
 CLASS, CODE, ENV = "its class", "its code", "its env"  # keys of stored notes, which must not change
 READ = "what its code reads"
 UNREADABLE = "what cannot be read of it"
@@ -156,8 +159,8 @@ def keep(
     split: str,
     episodes: Sequence[Episode],
     source: str | None = None,
-) -> list[Path]:
-    """Store in ``folder`` a description of the world and hashes of the episodes.
+) -> Path:
+    """Store in ``folder`` a description of the world and hashes of the episodes and of their file.
 
     If the folder already has a description, the new one must match it. Worlds with different
     sensors or success rules can share a folder, because each row names its sensors and its rule.
@@ -171,19 +174,22 @@ def keep(
         source: file of the episodes, or None if there is no file.
 
     Returns:
-        The files that were written.
+        The file that was written.
 
     Raises:
         ValueError: If the folder contains rows of a different world or different episodes; the
             message names the difference.
     """
-    if source is not None:
-        keep_list_hash(folder, split, source)
     note = folder / NOTE
     known = _read(note) if output.is_regular(note) else {}
     described = {**_described(world), **made_by}
     sums = {episode.episode_id: _sum(episode) for episode in episodes}
     entry = known.get(split, {})
+    listed = entry.get("list", "") if source is None else sha256(find(source))
+    if entry.get("list", listed) != listed:
+        raise ValueError(
+            f"{folder} holds rows of another list of {split} than the current {source}. {_OTHER}"
+        )
     sensors = {name: asdict(one) for name, one in sorted(world.sensors.items())}
     # A row identifies the success rule directly, and the sensors through the agent's hash.
     kind = json_hash([world.rule, sensors])
@@ -198,14 +204,13 @@ def keep(
     if different or changed:
         what = f"episode {changed[0]} of another list" if changed else "another world"
         detail = "" if changed else f": {_difference(different[0], before, described)}"
-        raise ValueError(
-            f"{folder} holds rows of {what}{detail}. Choose another folder (out=... for an "
-            "evaluation, folder=... for a training run), or delete this one."
-        )
+        raise ValueError(f"{folder} holds rows of {what}{detail}. {_OTHER}")
     known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
+    if listed:
+        known[split]["list"] = listed
     with atomic_text(note) as file:
         json.dump(known, file)
-    return [note] if source is None else [note, folder / LIST_HASH.format(split=split)]
+    return note
 
 
 def _report_unreadable(
@@ -242,7 +247,8 @@ def _read(note: Path) -> dict[str, dict[str, Any]]:
         parts = entry if isinstance(entry, dict) else {"worlds": None}
         worlds, sums = parts.get("worlds", {}), parts.get("sums", {})
         objects = [worlds, sums, *(worlds.values() if isinstance(worlds, dict) else ())]
-        if not all(isinstance(part, dict) for part in objects):
+        whole = all(isinstance(part, dict) for part in objects)
+        if not whole or not isinstance(parts.get("list", ""), str):
             raise ValueError(f"{note}: the entry {short(split)} is damaged. {again}")
     return known
 

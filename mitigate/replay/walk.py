@@ -265,11 +265,8 @@ def _share(drives: Sequence[np.ndarray]) -> Estimate:
     estimate = _mean(drives)
     if not np.isnan(estimate.low):
         return estimate
-    value = estimate.value
-    n, z = sum(len(_blocks(drive)) for drive in drives), bootstrap.Z
-    middle = (value + z * z / (2 * n)) / (1 + z * z / n)
-    half = z * np.sqrt(value * (1 - value) / n + z * z / (4 * n * n)) / (1 + z * z / n)
-    return Estimate(value, max(0.0, float(middle - half)), min(1.0, float(middle + half)))
+    count = sum(len(_blocks(drive)) for drive in drives)
+    return Estimate(estimate.value, *bootstrap.wilson(estimate.value, count))
 
 
 def _mean(drives: Sequence[np.ndarray]) -> Estimate:

@@ -251,15 +251,12 @@ def _rates(gate: Counter) -> dict[str, Any]:
     }
 
 
-ALIAS = "family"  # former name of the option corruption=
-OPTIONS = ("corruption", ALIAS, "severity", "seed", "split", "tokenizer", "mask_token", "tagger")
+OPTIONS = ("corruption", "severity", "seed", "split", "tokenizer", "mask_token", "tagger")
 
 
 def _options(words: Mapping[str, str]) -> dict[str, Any]:
     """Parse the options. Raise ValueError if an option is invalid or has no effect."""
-    if ALIAS in words and "corruption" in words:
-        raise ValueError(f"{ALIAS}= means the same as corruption=. Give one of the two.")
-    options: dict[str, Any] = {("corruption" if k == ALIAS else k): v for k, v in words.items()}
+    options: dict[str, Any] = dict(words)
     for name, example in (("corruption", "black_box"), ("severity", "0.5")):
         if name not in options:
             raise ValueError(

@@ -192,17 +192,17 @@ def test_corrupt_refuses_a_wrong_line(tmp_path, monkeypatch, capsys, line):
 
 EPISODES = [
     ["in.json", "out.json"],
-    ["in.json", "in.json", "family=capitalize", "severity=1"],
-    ["in.json", "out.json", "family=white_box", "severity=1"],
-    ["in.json", "out.json", "family=spatter", "severity=1"],
-    ["in.json", "out.json", "family=capitalize", "severity=inf"],
-    ["in.json", "out.json", "family=capitalize", "severity=x"],
-    ["in.json", "out.json", "family=capitalize", "severity=1", "seed=1.5"],
-    ["in.json", "out.json", "family=capitalize", "severity=1", "what=ever"],
-    ["in.json", "out.json", "family=black_box", "severity=1", "split=../x"],
-    ["in.json", "out.json", "family=capitalize", "severity=1", "tokenizer=../nowhere"],
-    ["/dev/null", "out.json", "family=capitalize", "severity=1"],
-    [".", "out.json", "family=capitalize", "severity=1"],
+    ["in.json", "in.json", "corruption=capitalize", "severity=1"],
+    ["in.json", "out.json", "corruption=white_box", "severity=1"],
+    ["in.json", "out.json", "corruption=spatter", "severity=1"],
+    ["in.json", "out.json", "corruption=capitalize", "severity=inf"],
+    ["in.json", "out.json", "corruption=capitalize", "severity=x"],
+    ["in.json", "out.json", "corruption=capitalize", "severity=1", "seed=1.5"],
+    ["in.json", "out.json", "corruption=capitalize", "severity=1", "what=ever"],
+    ["in.json", "out.json", "corruption=black_box", "severity=1", "split=../x"],
+    ["in.json", "out.json", "corruption=capitalize", "severity=1", "tokenizer=../nowhere"],
+    ["/dev/null", "out.json", "corruption=capitalize", "severity=1"],
+    [".", "out.json", "corruption=capitalize", "severity=1"],
 ]
 
 

@@ -115,7 +115,7 @@ def test_read_episodes_rejects_other_files(tmp_path, raw):
     path.write_bytes(raw)
     assert str(path) in refused(lambda: list(read_episodes(path)))
     out = tmp_path / "out.json"
-    assert episodes_command.main([str(path), str(out), "family=capitalize", "severity=1"]) == 2
+    assert episodes_command.main([str(path), str(out), "corruption=capitalize", "severity=1"]) == 2
     assert [p.name for p in tmp_path.iterdir()] == ["e.json.gz"]  # nothing half written
     if raw not in (b"{}", gzip.compress(b"{}"), FILES["episodes of text"]):
         try:

@@ -24,7 +24,6 @@ from mitigate.corruptions import Corruption, Schedule, folders, frame_files
 from mitigate.corruptions.folders import Settings
 from mitigate.corruptions.language.text import is_english
 from mitigate.encoders.loading import load_weights
-from mitigate.evaluation.episode_lists import LIST_HASH, keep_list_hash
 from mitigate.worlds.episodes import read_extras
 from mitigate.worlds.recorded import open_recording
 from mitigate.worlds.recorded.topics import Topics, choose_topics
@@ -227,17 +226,6 @@ def test_load_rejects_settings_larger_than_the_weights(tmp_path, monkeypatch):
     save_file({"x": torch.zeros(3)}, tmp_path / "model.safetensors")
     with pytest.raises(ValueError, match="require .* weights, but .* has .* bytes"):
         loading.load(tmp_path)
-
-
-def test_keep_list_hash_reads_a_bounded_part(tmp_path):
-    """Issue T2, item 8."""
-    source = tmp_path / "list.json"
-    source.write_text("{}")
-    note = tmp_path / LIST_HASH.format(split="test")
-    with open(note, "wb") as file:
-        file.truncate(8 << 30)
-    with pytest.raises(ValueError, match="must begin with a sha256"):
-        keep_list_hash(tmp_path, "test", str(source))
 
 
 def test_corrupt_writes_a_frame_with_a_long_name(tmp_path):

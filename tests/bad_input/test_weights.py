@@ -263,7 +263,7 @@ def test_adapters_that_do_not_fit_are_rejected(tmp_path, output):
     (tmp_path / adapters.SETTINGS).write_bytes(
         output if isinstance(output, bytes) else json.dumps(output).encode()
     )
-    checkpoint.save_weights(nn.Linear(1, 1), tmp_path / adapters.WEIGHTS)
+    checkpoint.write_tensors(nn.Linear(1, 1), tmp_path / adapters.WEIGHTS)
     refused(lambda: adapters.load_adapters(network, tmp_path))
     refused(lambda: plain_adapters.attach(network, tmp_path))
     assert not adapters.adapted(network)

@@ -18,6 +18,7 @@ from mitigate.training.cells import listed
 URLS = [
     "https://me:PW@h/v1@m",
     "rules+https://me:PW@h/v1@m",
+    "rules+https/PW",
     "lora+https://me:PW@h/v1@m",
     "prompted+https://me:PW@h/v1@m",
     " https://me:PW@h/v1@m",
@@ -161,7 +162,6 @@ def test_columns_of_a_table_never_repeat_a_password():
         "safeguard=http://h:8000/v1@m",
         "safeguard='http://h/v1@org/model:2'",
         "safeguard=none,http://h/@m",
-        "safeguard=rules+http://h/v1@m",
         "safeguard=${oc.env:URL}",
         "safeguard=checkpoints/safeguard",
         'columns.x=["restore=my.module:call","safeguard=http://h/v1@m"]',

@@ -10,7 +10,7 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.core import checkpoint, seeding
+from mitigate.core import checkpoint, checksums, seeding
 from mitigate.training import states
 
 ROOT = Path(__file__).parents[2]
@@ -43,6 +43,11 @@ def flips(data: bytes, name: str) -> list[bytes]:
     """Return ``FLIPS`` copies of ``data``, each with one flipped bit; ``name`` is the seed."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
+
+
+def weights_with_sidecar(file: Path) -> Path:
+    """Write weights as earlier versions did."""
+    return checksums.write(file, lambda draft: checkpoint.write_tensors(nn.Linear(3, 2), draft))
 
 
 def note_of(path: Path) -> Path:
@@ -106,7 +111,7 @@ def test_truncated_checkpoint_is_skipped(tmp_path, share, noted, capsys):
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
 def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
-    file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path / "model.safetensors")
+    file = weights_with_sidecar(tmp_path / "model.safetensors")
     note_of(file).write_bytes(text.encode("latin-1"))
     with pytest.raises(ValueError, match="only model.safetensors.sha256 is damaged, delete it"):
         checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
@@ -133,7 +138,7 @@ def test_damaged_checkpoints_are_not_deleted(tmp_path):
 
 def test_sidecars_are_what_sha256sum_checks(tmp_path):
     states.save(tmp_path, state(1))
-    file = checkpoint.save_weights(nn.Linear(3, 2), tmp_path / "mine.safetensors")
+    file = weights_with_sidecar(tmp_path / "mine.safetensors")
     assert checked(tmp_path) == 0
     file.write_bytes(flipped(file.read_bytes(), 500))
     assert checked(tmp_path) != 0

@@ -11,9 +11,8 @@ import zlib
 from pathlib import Path
 
 import pytest
-from torch import nn
 
-from mitigate.core import checkpoint, files, json_files
+from mitigate.core import checksums, files, json_files
 
 TEXT = "".join(f'{{"line": {n}}}\n' for n in range(20_000))
 
@@ -135,7 +134,7 @@ WRITERS = {
     "text": text_to,
     "bytes": lambda path: files.write_bytes(path, b"data"),
     "a private file": lambda path: files.write_atomically(path, private),
-    "weights": lambda path: checkpoint.save_weights(nn.Linear(3, 2), f"{path}.safetensors"),
+    "a file with a sidecar": lambda path: checksums.write(path, private),
 }
 
 

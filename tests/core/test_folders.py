@@ -12,7 +12,7 @@ import torch
 from torch import nn
 
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, folders, seeding
+from mitigate.core import checkpoint, checksums, folders, seeding
 from mitigate.core.files import sha256
 
 ROOT = Path(__file__).parents[2]
@@ -43,8 +43,8 @@ def write_files(folder: Path, **files: str) -> Path:
 
 def older(module: nn.Module, folder: Path) -> Path:
     """Write weights as earlier versions did: with a sidecar and no manifest."""
-    checkpoint.save_weights(module, folder / checkpoint.WEIGHTS)
-    return folder / checkpoint.WEIGHTS
+    file = folder / checkpoint.WEIGHTS
+    return checksums.write(file, lambda draft: checkpoint.write_tensors(module, draft))
 
 
 def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):

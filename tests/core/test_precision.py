@@ -28,8 +28,12 @@ CPU = torch.device("cpu")
         ({"amx_bf16": True}, "ALL", True),
     ],
 )
-def test_bf16_is_native_with_its_instructions_and_no_lower_cap(capabilities, cap, expected):
-    assert native(capabilities, cap) is expected
+def test_bf16_is_native_with_its_instructions_and_no_lower_cap(
+    capabilities, cap, expected, monkeypatch
+):
+    monkeypatch.setattr(torch.cpu, "get_capabilities", lambda: capabilities)
+    monkeypatch.setenv(precision.CAP, cap)
+    assert native() is expected
 
 
 @pytest.mark.parametrize(("is_native", "expected"), [(False, "fp32"), (True, "bf16")])

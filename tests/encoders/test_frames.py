@@ -7,6 +7,7 @@ import pytest
 from PIL import Image
 
 from mitigate.corruptions import Corruption, DepthSensor, Key
+from mitigate.encoders import sources
 from mitigate.encoders.sources import (
     TRAIN,
     UNSEEN,
@@ -84,15 +85,16 @@ def test_folder_frames_hold_out_val_folders(tmp_path):
     assert list(source.scenes(UNSEEN)) == ["val/c"]
 
 
-def test_folder_frames_split_a_single_folder(tmp_path):
+def test_folder_frames_split_a_single_folder(tmp_path, monkeypatch):
     for number in range(100):
         write(tmp_path, f"{number}.png", number, 2)
-    source = FolderFrames(str(tmp_path), block=3)
+    few = FolderFrames(str(tmp_path))  # with blocks of 50 frames, only one block would be held out
+    assert len(few.scenes(TRAIN)) == 20 and len(few.scenes(UNSEEN)) == 5
+    monkeypatch.setattr(sources, "BLOCK", 3)
+    source = FolderFrames(str(tmp_path))
     assert len(source.scenes(TRAIN)) == 27 and len(source.scenes(UNSEEN)) == 7
     first = list(source.shots(source.scenes(TRAIN)[0], 3, 0))
     assert len(first) == 3
-    few = FolderFrames(str(tmp_path))  # with blocks of 50 frames, only one block would be held out
-    assert len(few.scenes(TRAIN)) == 20 and len(few.scenes(UNSEEN)) == 5
 
 
 def test_collect_requires_one_size(tmp_path):
@@ -119,7 +121,6 @@ def test_folder_frames_name_a_file_of_another_size(tmp_path):
         ("size", [0, -3, 2.5, True, "64", 10**6]),
         ("unit", [0, -1.0, np.nan, np.inf, "mm"]),
         ("held_out", [0, 1, -1, np.nan, "half"]),
-        ("block", [0, -1, 2.5]),
     ],
 )
 def test_folder_frames_reject_invalid_options(tmp_path, name, values):

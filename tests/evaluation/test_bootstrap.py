@@ -11,11 +11,13 @@ import pytest
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import (
     NO_INTERVAL,
+    Z,
     mean,
     prs,
     prs_difference,
     resampled_means,
     share,
+    wilson,
 )
 
 
@@ -81,6 +83,14 @@ def test_nine_equal_outcomes_are_no_certainty(value, low, high):
     assert (result.value, result.low, result.high) == pytest.approx((value, low, high), abs=0.001)
     varied = np.repeat([1.0, 0.0], [240, 160])
     assert share(varied) == mean(varied)
+
+
+def test_wilson_inverts_the_score_test():
+    assert wilson(0.0, 0) == (0.0, 1.0)
+    for value in (0.0, 1.0):
+        assert wilson(value, 9) == pytest.approx(wilson(abs(value - 1e-12), 9))
+    for bound in wilson(0.3, 10):  # each bound is Z of its own standard deviations away
+        assert abs(bound - 0.3) == pytest.approx(Z * math.sqrt(bound * (1 - bound) / 10))
 
 
 def test_intervals_have_nominal_coverage():

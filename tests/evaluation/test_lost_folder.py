@@ -55,17 +55,12 @@ def make_again(out):
     out.mkdir()
 
 
-def remove_notes(out):
-    for path in (*out.glob("*.sha256"), out / "walked.json"):
-        path.unlink()
-
-
 BREAK = {
     "folder": shutil.rmtree,
     "folder made again": make_again,
     "lock": lambda out: (out / ".lock").unlink(),
     "rows": lambda out: (out / ROWS).unlink(),
-    "notes": remove_notes,
+    "notes": lambda out: (out / "walked.json").unlink(),
 }
 
 

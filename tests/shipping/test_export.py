@@ -15,6 +15,7 @@ import sys
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import deepcopy
 from pathlib import Path
 
 import pytest
@@ -154,7 +155,7 @@ def place(tmp_path_factory) -> Path:
     place = tmp_path_factory.mktemp("export")
     torch.manual_seed(0)
     agent = TopologicalAgent(**TINY)
-    base = checkpoint.save_weights(agent, place / "base", half=True)
+    base = checkpoint.save_weights(deepcopy(agent).half(), place / "base")
     run = finished_run(place / "runs/whole", agent, TINY, init=str(base.parent))
     sha = checkpoint.weights_sha(agent)
     matches = [a_row(ROWS, e, c, float(e > 1)) for e in range(8) for c in ("clean", "spatter")]

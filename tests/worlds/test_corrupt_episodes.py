@@ -206,16 +206,6 @@ def test_run_rejects_invalid_options_first(tmp_path, name, option):
     assert "Episode" not in str(error.value)
 
 
-def test_main_accepts_family_for_corruption(tmp_path, capsys):
-    source = str(write(tmp_path / "in.json.gz", episode(1)))
-    for number, option in enumerate(("corruption=mask", "family=mask")):
-        line = [source, str(tmp_path / f"{number}.json"), option, "severity=1"]
-        assert episodes_command.main(line) == 0
-    assert (tmp_path / "0.json").read_bytes() == (tmp_path / "1.json").read_bytes()
-    line = [source, str(tmp_path / "2.json"), "family=mask", "corruption=mask", "severity=1"]
-    assert episodes_command.main(line) == 2 and "Give one of the two" in capsys.readouterr().err
-
-
 def test_run_does_not_overwrite_other_files(tmp_path):
     source, out = write(tmp_path / "in.json.gz", episode(1)), tmp_path / "out.json"
     out.write_text("precious")

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
+from mitigate.core.files import write_bytes
 from mitigate.core.progress import duration
-from tools.bench.pages import put
 
 BEGIN = "<!-- table: make test-faults ARGS=--write -->"
 END = "<!-- end of the table -->"
@@ -50,5 +50,17 @@ def _cell(outcome: str | None) -> str:
 
 
 def write(page: Path, outcomes: Outcomes, families: Mapping[str, str], seed: int) -> None:
-    """Write the table between the two marker lines of ``page``."""
-    put(table(outcomes, families, seed), page, BEGIN, END)
+    """Write the table between the two marker lines of ``page``.
+
+    Raises:
+        ValueError: If the page does not contain these lines.
+    """
+    before, first_marker, rest = page.read_text(encoding="utf-8").partition(BEGIN)
+    _, last_marker, after = rest.partition(END)
+    if not (first_marker and last_marker):
+        raise ValueError(
+            f"{page} must contain the lines {BEGIN!r} and {END!r}, which enclose the table. Add "
+            "them."
+        )
+    text = table(outcomes, families, seed)
+    write_bytes(page, f"{before}{BEGIN}\n{text}\n{END}{after}".encode())

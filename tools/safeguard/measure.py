@@ -21,13 +21,13 @@ import unicodedata
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from math import sqrt
 from pathlib import Path
 from typing import Any
 
 from mitigate.corruptions.language.fidelity import facts
 from mitigate.corruptions.language.landmarks import normal
 from mitigate.corruptions.language.words import bag
+from mitigate.evaluation.bootstrap import wilson
 
 FRESH = Path(__file__).parent / "data" / "fresh"
 HALVES = ("choose", "report")
@@ -65,19 +65,9 @@ class Rate:
             self.bad.append(case)
 
     def __str__(self) -> str:
-        low, high = wilson(self.hits, self.count)
-        share = 100 * self.hits / max(1, self.count)
-        return f"{share:.1f} [{100 * low:.1f}, {100 * high:.1f}] ({self.count})"
-
-
-def wilson(hits: int, count: int) -> tuple[float, float]:
-    """Return the 95 % interval of a proportion (Wilson 1927)."""
-    if not count:
-        return 0.0, 1.0
-    z, share = 1.96, hits / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    half = z * sqrt(share * (1 - share) / count + z * z / (4 * count**2)) / (1 + z * z / count)
-    return max(0.0, middle - half), min(1.0, middle + half)
+        count = max(1, self.count)
+        low, high = wilson(self.hits / count, self.count)
+        return f"{100 * self.hits / count:.1f} [{100 * low:.1f}, {100 * high:.1f}] ({self.count})"
 
 
 def half_of(text: str) -> str:

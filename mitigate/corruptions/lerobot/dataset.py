@@ -60,7 +60,6 @@ class Dataset:
     Attributes:
         path: The folder.
         info: Content of meta/info.json.
-        fps: Frames per second.
         cameras: Cameras by name.
         other_cameras: For each camera that cannot be used, the reason.
         episodes: The episodes, by their number.
@@ -69,7 +68,6 @@ class Dataset:
 
     path: Path
     info: Mapping[str, Any]
-    fps: float
     cameras: Mapping[str, Camera]
     other_cameras: Mapping[str, str]
     episodes: Mapping[int, Episode]
@@ -211,7 +209,7 @@ def open_dataset(folder: Path | str) -> Dataset:
     other = {name: reason for name, reason in read.items() if isinstance(reason, str)}
     videos = [name for name in features if features[name]["dtype"] == VIDEO]
     episodes = read_episodes(path, info, videos)
-    return Dataset(path, info, float(fps), cameras, other, episodes, read_tasks(path / TASKS))
+    return Dataset(path, info, cameras, other, episodes, read_tasks(path / TASKS))
 
 
 def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:

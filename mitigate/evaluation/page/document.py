@@ -35,6 +35,7 @@ SUFFIXES = (".html", ".htm")
 MOST_NUMBERS = 50_000
 # maximum length of a page in characters (heuristic); the episodes take up to 6 million of them
 LARGEST_PAGE = 1 << 26
+MOST_NAMES = 8  # maximum number of names that the first line lists (heuristic)
 SCRIPTS = ("dom", "data", "colours", "table", "heatmap", "episodes", "curves", "walks", "main")
 
 
@@ -149,6 +150,6 @@ def _too_large(size: str, most: str) -> str:
     )
 
 
-def _listed(names: Sequence[str], most: int = 8) -> str:
-    more = f" and {len(names) - most} more agents" if len(names) > most else ""
-    return ", ".join(names[:most]) + more
+def _listed(names: Sequence[str]) -> str:
+    more = f" and {len(names) - MOST_NAMES} more agents" if len(names) > MOST_NAMES else ""
+    return ", ".join(names[:MOST_NAMES]) + more

@@ -16,6 +16,7 @@ SLOPE = 0.1  # slope of the activations for negative inputs (heuristic)
 # thresholds of the second difference below which a pixel counts as flat (heuristic)
 FLAT = (1e-4, 1e-3, 1e-2)
 TEXTURES = 6 + 4 * (3 + len(FLAT))  # number of statistics that :func:`texture` returns per frame
+HIDDEN = 64  # number of hidden units of the gate (heuristic)
 FACTOR = 8  # height and width of the input must be multiples of this many pixels
 
 
@@ -119,11 +120,11 @@ class Gate(nn.Module):
     restore frames.
     """
 
-    def __init__(self, width: int, hidden: int = 64) -> None:
+    def __init__(self, width: int) -> None:
         super().__init__()
         inputs = 14 * width + TEXTURES
         self.norm = nn.LayerNorm(14 * width)
-        self.hidden, self.out = nn.Linear(3 * inputs, hidden), nn.Linear(hidden, 1)
+        self.hidden, self.out = nn.Linear(3 * inputs, HIDDEN), nn.Linear(HIDDEN, 1)
 
     def forward(self, stats: Tensor, texture: Tensor, views: int) -> Tensor:
         """Return the logits [instants].

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from mitigate.core.files import RECORDING
 from mitigate.core.names import unknown
@@ -40,12 +41,7 @@ def open_recording(
     *,
     instruction: str | None = None,
     topics: Mapping[str, str] | None = None,
-    hfov: float | None = None,
-    unit: float | None = None,
-    yaw: float = 0.0,
-    cameras: Sequence[str] | None = None,
-    episodes: Sequence[int] | None = None,
-    tolerance: float | None = None,
+    **options: Any,
 ) -> list[Source]:
     """Open all recorded drives of a bag, a folder of frames, a LeRobot dataset, or a folder of
     drives.
@@ -57,16 +53,8 @@ def open_recording(
         instruction: Instruction for the agents. If None, each drive keeps its recorded instruction.
         topics: Topics to read from a bag, as a mapping such as ``{"rgb": "/front/image_raw"}``. A
             sensor without an entry uses the only suitable topic.
-        hfov: Horizontal field of view in degrees, if the recording does not contain it.
-        unit: Metres per integer step of depth values, in a bag or in the 16-bit PNG files of a
-            folder.
-        yaw: Direction of a bag's cameras in degrees to the right of the heading.
-        cameras: Names of the cameras to read from a dataset or a recording of ``mitigate run``. If
-            None, all are read.
-        episodes: Numbers of the episodes to read from a dataset. If None, all are read.
-        tolerance: Maximum time difference in seconds between the messages of a time step in a bag
-            or TUM folder (default 0.1), or between a row of a dataset and its video frame (default
-            0.0001).
+        options: Other attributes of :class:`mitigate.worlds.recorded.options.Options`, such as
+            ``hfov``.
 
     Returns:
         The drives.
@@ -80,8 +68,7 @@ def open_recording(
     for name in topics or ():
         if name not in allowed:
             raise ValueError(unknown("entry of topics", name, allowed))
-    chosen = Topics(**(topics or {}))
-    options = Options(chosen, hfov, unit, yaw, cameras, episodes, tolerance)
+    chosen = Options(Topics(**(topics or {})), **options)
     if not path.exists():
         raise FileNotFoundError(f"There is no recording {path}. Give a folder or a bag.")
     inside = not _kind_of(path)
@@ -98,8 +85,8 @@ def open_recording(
         )
     sources: list[Source] = []
     for drive, kind in drives.items():
-        options.check(drive, kind)
-        sources += OPEN[kind](drive, options)
+        chosen.check(drive, kind)
+        sources += OPEN[kind](drive, chosen)
     if instruction is not None:
         for source in sources:
             source.instruction = instruction

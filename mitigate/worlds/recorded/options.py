@@ -27,7 +27,20 @@ KINDS = {
 
 @dataclass(frozen=True)
 class Options:
-    """Options of :func:`mitigate.worlds.recorded.open_recording`. See there for their meaning.
+    """Options of :func:`mitigate.worlds.recorded.open_recording`.
+
+    Attributes:
+        topics: Topics to read from a bag.
+        hfov: Horizontal field of view in degrees, if the recording does not contain it.
+        unit: Metres per integer step of depth values, in a bag or in the 16-bit PNG files of a
+            folder.
+        yaw: Direction of a bag's cameras in degrees to the right of the heading.
+        cameras: Names of the cameras to read from a dataset or a recording of ``mitigate run``. If
+            None, all are read.
+        episodes: Numbers of the episodes to read from a dataset. If None, all are read.
+        tolerance: Maximum time difference in seconds between the messages of a time step in a bag
+            or TUM folder (default 0.1), or between a row of a dataset and its video frame (default
+            0.0001).
 
     Raises:
         ValueError: If a value is out of range.

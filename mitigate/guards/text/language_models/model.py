@@ -228,7 +228,7 @@ class LanguageModel(nn.Module):
             raise ValueError(_misfit(folder, "other modules carry LoRA"))
 
 
-def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -> LanguageModel:
+def open_adapter(folder: str | Path, precision: str = "fp32") -> LanguageModel:
     """Build the language model that an adapter folder describes in its card and config.
 
     In "fp32", the adapter is merged into the base weights. Merging makes the model faster and
@@ -244,7 +244,7 @@ def open_adapter(folder: str | Path, precision: str = "fp32", batch: int = 32) -
         "targets": "target_modules",
     }
     lora = {name: config[entry] for name, entry in names.items()}
-    model = LanguageModel(card["base"], precision, lora, card["prompt"], batch)
+    model = LanguageModel(card["base"], precision, lora, card["prompt"])
     model.load(folder)
     if precision == "fp32":
         model.network.merge_adapter()

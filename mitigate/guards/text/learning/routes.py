@@ -16,15 +16,16 @@ from mitigate.guards.text.learning.route_words import WORDS
 from mitigate.worlds.apartments.instructions import TEMPLATES
 
 JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
+LONGEST = 7  # maximum number of clauses, without asides (heuristic)
 
 
-def draw_route(rng: np.random.Generator, longest: int = 7) -> str:
-    """Generate one instruction of at most ``longest`` clauses.
+def draw_route(rng: np.random.Generator) -> str:
+    """Generate one instruction of at most ``LONGEST`` clauses.
 
     Some instructions are verbose or carelessly written.
     """
     while True:
-        text = _careless(_joined(_clauses(rng, longest), rng), rng)
+        text = _careless(_joined(_clauses(rng), rng), rng)
         if not overlaps_validation(text):
             return text
 
@@ -42,8 +43,8 @@ def overlaps_validation(text: str) -> bool:
     return _validation().search(re.sub(r"[^a-z]+", " ", text.lower())) is not None
 
 
-def _clauses(rng: np.random.Generator, longest: int) -> list[str]:
-    count = int(rng.integers(1, longest + 1))
+def _clauses(rng: np.random.Generator) -> list[str]:
+    count = int(rng.integers(1, LONGEST + 1))
     kinds = ["middle"] * count
     if rng.random() < 0.7:
         kinds[0] = "open"
