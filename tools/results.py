@@ -39,6 +39,7 @@ class Table:
 
     page: str = ""
     hours: float = 0.0
+    minutes: float = 0.0
     commands: list[str] = field(default_factory=list)
     full: str = ""
     quick: str = ""
@@ -121,14 +122,16 @@ def is_done(folder: Path, commands: str) -> bool:
 
 
 def cost_table(options: Options, names: Sequence[str], done: set[str]) -> str:
-    """Return a table of the tables' costs in CPU hours."""
-    rows = []
+    """Return a table with the CPU time of each table that is not done."""
+    unit = "minutes" if options.quick else "hours"
+    rows, total = [], 0.0
     for name in names:
-        hours = "about 0.1" if options.quick else f"{options.tables[name].hours:g}"
-        rows.append([name, options.tables[name].page, "done" if name in done else hours])
-    total = sum(options.tables[name].hours for name in names if name not in done)
-    rows.append(["total", "", "about 1" if options.quick else f"{total:g}"])
-    return markdown_table(["Table", "Page", "CPU hours"], rows, words=2)
+        table = options.tables[name]
+        cost = table.minutes if options.quick else table.hours
+        rows.append([name, table.page, "done" if name in done else f"{cost:g}"])
+        total += 0.0 if name in done else cost
+    rows.append(["total", "", f"{total:g}"])
+    return markdown_table(["Table", "Page", f"CPU {unit}"], rows, words=2)
 
 
 def run(programs: Sequence[Sequence[str]], log: Path) -> str:
