@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mitigate.core import workers as processes
-from mitigate.core.progress import Progress, say
+from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
-from mitigate.evaluation.rows import read
 from mitigate.training.parts import hold_statistics
 from mitigate.worlds.world import TrainingEpisodes, World
 
@@ -113,34 +111,6 @@ def refuse(schedule: Schedule | None) -> None:
             "schedule=success_distributed needs success rates, which this recipe does not measure. "
             "Choose schedule=per_episode or per_frame."
         )
-
-
-def prior_rates(path: Path | str) -> dict[str, float]:
-    """Return the success rate per corruption in a file of result rows.
-
-    The split of the rows is printed, because an agent that is trained with these rates must be
-    evaluated on other episodes.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or if its rows belong to several agents, splits or
-            severities.
-    """
-    rows = read(path)
-    kinds = {
-        "agents": {f"{row['name']} {row['agent']}" for row in rows},
-        "splits": {row["split"] for row in rows},
-        "severities": {f"{row['severity']:g}" for row in rows} - {"0"},
-    }
-    for what, values in kinds.items():
-        if len(values) > 1:
-            raise ValueError(
-                f"{path} holds rows of several {what} ({', '.join(sorted(values))}). Name a file "
-                "of one evaluation (prior=...)."
-            )
-    splits = ", ".join(kinds["splits"])
-    say(f"uses success rates on {splits} from {path}: evaluate on other episodes")
-    return success_rates(rows)
 
 
 def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:

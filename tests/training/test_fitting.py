@@ -243,7 +243,6 @@ def test_plan_rejects_changed_settings_of_a_later_stage(tmp_path):
     ("options", "words"),
     [
         (["stages.imitation.recipe.train_parts=[planer]"], "part of the agent 'planer'"),
-        (["recipe=da_success", "stages.imitation.recipe.prior=nowhere.jsonl"], "nowhere.jsonl"),
         (["recipe=ts_distill", "stages.episodes.recipe.teacher=nowhere"], "no teacher at nowhere"),
         (["recipe=ts_distill", "+stages.episodes.recipe.temperature=0"], "must be above 0"),
         (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
