@@ -245,7 +245,7 @@ def test_plan_rejects_changed_settings_of_a_later_stage(tmp_path):
         (["stages.imitation.recipe.train_parts=[planer]"], "part of the agent 'planer'"),
         (["recipe=ts_distill", "stages.episodes.recipe.teacher=nowhere"], "no teacher at nowhere"),
         (["recipe=ts_distill", "+stages.episodes.recipe.temperature=0"], "must be above 0"),
-        (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
+        (["stages.imitation.trainer.precision=fp8"], "auto, fp32, bf16"),
     ],
 )
 def test_plan_checks_all_stages_first(tmp_path, options, words, monkeypatch):
