@@ -144,7 +144,7 @@ class Poses(DrawsBySuccess):
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
         step, piece, pieces, count, state = job
-        self.set_schedule(state)
+        self.schedule.load_state_dict(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
         scenes = share_of(self.placed.scenes, piece, pieces)
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]

@@ -99,7 +99,7 @@ class Rollouts(DrawsBySuccess):
         observation.
         """
         step, piece, pieces, count, state = job
-        self.set_schedule(state)
+        self.schedule.load_state_dict(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
         worlds = [

@@ -305,11 +305,11 @@ def test_plan_rejects_targets_that_are_not_objectives(tmp_path, target, words):
 def test_smoke_run_measures_success_without_workers(tmp_path, monkeypatch, options):
     met = []
 
-    def measured(*_, episodes, workers, **others):
-        met.append((episodes, workers))
+    def measured(self, step, workers):
+        met.append((self.refresh_episodes, workers))
         raise InterruptedError
 
-    monkeypatch.setattr("mitigate.training.success.measure", measured)
+    monkeypatch.setattr("mitigate.training.success.DrawsBySuccess.refresh", measured)
     options = [*options, "agent=recurrent", "debug=smoke", "workers=0", f"folder={tmp_path}"]
     with pytest.raises(InterruptedError):
         train.run(conf.load_config("train", [*options, OFF]))
