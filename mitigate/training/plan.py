@@ -317,7 +317,6 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
         ValueError: If a stage cannot train ``agent``, or if :meth:`ObjectiveSpec.of` raises
             ValueError.
     """
-    _check_settings(config.agent, agent)
     stages = []
     for name, stage in config.active_stages.items():
         objective = ObjectiveSpec.of(stage.recipe)
@@ -330,6 +329,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
         identity = {"agent": config.agent, "recipe": dict(_identity(stage.recipe))}
         trainer = stage.settings(config.trainer)
         stages.append(StagePlan(name, folder / name, objective, trainer, identity))
+    _check_settings(config.agent, agent)
     return stages
 
 
