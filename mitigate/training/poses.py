@@ -149,7 +149,7 @@ class Poses(DrawsBySuccess):
         scenes = share_of(self.placed.scenes, piece, pieces)
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
-    def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
+    def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """Join the results of all jobs into the tensors "frames", "clean" and "targets"."""
         rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")
