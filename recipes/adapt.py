@@ -9,7 +9,7 @@ trainable agent on episodes, and ``AdaptViews`` trains encoders on random poses.
 from __future__ import annotations
 
 import copy
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import torch
@@ -48,21 +48,16 @@ class Adapt(Distil):
         w_kl: float = 0.0,
         w_feat: float = 1.0,
         temperature: float = 2.0,
-        match: Sequence[str] | None = None,
     ) -> None:
         has_adapters(agent)
         super().__init__(
-            agent, rollouts, START, (ADAPTERS,), losses, w_il, w_kl, w_feat, temperature, match
+            agent, rollouts, START, (ADAPTERS,), losses, w_il, w_kl, w_feat, temperature
         )
         self.backbone = backbone_sha(agent)
 
     def finish(self) -> None:
         """Raise ValueError if the backbone has changed."""
         check_backbone(self.agent, self.backbone)
-
-    def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the backbone is unchanged, as 1 or 0."""
-        return {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
 
 
 class AdaptViews(DistilViews):
@@ -87,7 +82,7 @@ class AdaptViews(DistilViews):
         ValueError: If the encoders have no adapters, or if a number is invalid.
     """
 
-    teaches_gates = True
+    adapters_only = True
 
     def __init__(
         self,
@@ -106,7 +101,7 @@ class AdaptViews(DistilViews):
                 f"at most 1, got {strength}; held must be >= 1, got {held}."
             )
         check_weights(w_gate=w_gate)
-        super().__init__(agent, poses, START, w_labels, w_feat, adapters_only=True)
+        super().__init__(agent, poses, START, w_labels, w_feat)
         encoders = [agent.parts()[name] for name in agent.encoders[self.modality]]
         has_adapters(agent, *encoders)
         self.w_gate = w_gate
@@ -146,13 +141,13 @@ class AdaptViews(DistilViews):
             gate.calibrate(self._judged(gate, HELD, self.held, clean=True)[0], self.touched)
 
     def evaluate(self, step: int) -> dict[str, float]:
-        """Return whether the backbone is unchanged, and how often the gates open.
+        """Return how often the gates open.
 
         "clean_opened" and "corrupted_opened" are the fractions of clean and of corrupted views for
         which the gates open. These views differ from the views with which :meth:`finish` sets the
         thresholds at the end of training.
         """
-        values = {"backbone_unchanged": float(backbone_sha(self.agent) == self.backbone)}
+        values: dict[str, float] = {}
         for gate in self.gates:
             few = -(-self.held // 3)
             logits, _ = self._judged(gate, FRESH, few, clean=True)

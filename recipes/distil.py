@@ -44,10 +44,9 @@ class Distil(OnEpisodes):
         losses: same as in ``Imitate``.
         w_il: weight of the imitation loss.
         w_kl: weight of the policy loss.
-        w_feat: weight of the feature loss.
+        w_feat: weight of the feature loss. Features that do not depend on a trained weight are not
+            matched.
         temperature: temperature of the policy loss.
-        match: names of the features that are matched, or None for all features. Features that do
-            not depend on a trained weight are not matched.
 
     Raises:
         FileNotFoundError: If the teacher is missing.
@@ -65,7 +64,6 @@ class Distil(OnEpisodes):
         w_kl: float = 1.0,
         w_feat: float = 1.0,
         temperature: float = 2.0,
-        match: Sequence[str] | None = None,
     ) -> None:
         super().__init__()
         check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
@@ -83,7 +81,6 @@ class Distil(OnEpisodes):
         self.w_kl = w_kl
         self.w_feat = w_feat
         self.temperature = temperature
-        self.match = match
         self.rollouts = rollouts
         rollouts.keep_clean(self.teacher)
 
@@ -106,7 +103,6 @@ class Distil(OnEpisodes):
         if self.w_kl:
             loss = loss + self.w_kl * self.temperature**2 * values["kl"]
         features = {n: f for n, f in out.features.items() if n in target.features}
-        features = matched(features, self.match)
         self._check(features)
         for name, feature in features.items():
             values[f"feat_{name}"] = feature_loss(feature, target.features[name])
@@ -135,14 +131,16 @@ class DistilViews(OnViews):
         teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
         w_labels: weight of the label loss.
         w_feat: weight of the feature loss.
-        adapters_only: whether to train only the agent's adapters.
+
+    Attributes:
+        adapters_only: whether only the agent's adapters and their gates are trained.
 
     Raises:
         FileNotFoundError: If the teacher is missing.
         ValueError: If the adapters have gates, or if a weight is invalid.
     """
 
-    teaches_gates: ClassVar[bool] = False
+    adapters_only: ClassVar[bool] = False
 
     def __init__(
         self,
@@ -151,16 +149,15 @@ class DistilViews(OnViews):
         teacher: str,
         w_labels: float = 1.0,
         w_feat: float = 1.0,
-        adapters_only: bool = False,
     ) -> None:
         super().__init__()
         check_weights(w_labels=w_labels, w_feat=w_feat)
-        if not self.teaches_gates:
+        if not self.adapters_only:
             for name in agent.encoders.get(poses.sensor, ()):
                 refuse_gates(agent.parts()[name])
         self.agent = agent
         self.modality = poses.sensor
-        poses.learn(**views_to_learn(agent, self.modality, adapters_only))
+        poses.learn(**views_to_learn(agent, self.modality, self.adapters_only))
         self.poses = poses
         self.teacher: Any = load_teacher(agent, teacher)
         self.w_labels = w_labels
@@ -181,16 +178,6 @@ class DistilViews(OnViews):
         feat = feature_loss(out.features["views"], target.features["views"])
         loss = self.w_labels * out.losses["labels"] + self.w_feat * feat
         return {"loss": loss, "feat": feat, **out.losses, **out.figures}
-
-
-def matched(features: Mapping[str, Tensor], names: Sequence[str] | None) -> dict[str, Tensor]:
-    """Return the features with the given ``names``, or all if None. Raise ValueError for an unknown
-    name.
-    """
-    unknown = sorted(set(names or ()) - set(features))
-    if unknown:
-        raise ValueError(f"match must be names of {', '.join(features)}, got {unknown}.")
-    return {n: f for n, f in features.items() if names is None or n in names}
 
 
 def policy_kl(student: Tensor, teacher: Tensor, temperature: float) -> Tensor:

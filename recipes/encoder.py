@@ -107,7 +107,7 @@ class HardenEncoder(Objective):
         self.agent = agent
         self.batch_size = batch
         self.micro = micro_batch
-        # freeze first, because trainable TorchScript parameters cannot be copied
+        # freeze first, so that the teacher, which is a copy, is frozen too
         agent.requires_grad_(False)
         self.teacher = as_agent(agent).as_teacher().eval()
         agent.choose_trained()

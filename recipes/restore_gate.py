@@ -83,7 +83,6 @@ class RestoreGate(Objective):
     """
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"pairs": pairs_of}
-    here = True  # jobs run in this process, because a step takes only milliseconds
     needs = ("restore", "doubt", "parts")
     otherwise = RESTORER
 

@@ -18,6 +18,7 @@ from torch import nn
 
 import mitigate
 from mitigate.agents.adapters import ConvAdapter, adapter_parameters, adapters_of, insert_adapters
+from mitigate.agents.building import agent_option
 from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.fusion import reliability
 from mitigate.corruptions import Schedule
@@ -150,7 +151,7 @@ def test_multirun_trains_one_run_per_combination(runs):
 
 def test_export_reloads_to_the_same_outputs(runs, tmp_path, monkeypatch):
     monkeypatch.setattr(export, "WALKS", 1)
-    (option,) = export_command._own_kind(runs[0])  # the command's default
+    (option,) = agent_option([], str(runs[0] / "agent"))  # the command's default
     assert option == "agent=frontier"
     with pytest.raises(ValueError, match=option):
         export.export(runs[0], "tiny", out=tmp_path)

@@ -33,7 +33,7 @@ from mitigate.core.files import write_text
 from mitigate.core.folders import problem, write_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.names import escaped, short
-from mitigate.core.observation import HFOV_DEGREES, VIEWS
+from mitigate.core.observation import VIEWS
 
 WEIGHTS, SETTINGS = "adapters.safetensors", "adapters.json"
 NAME = checkpoint.ADAPTER.strip(".")  # name of the submodule that is added to a target module
@@ -50,7 +50,6 @@ def insert_adapters(
     ring_reduction: int = 4,
     gates: Iterable[str] = (),
     views: int = VIEWS,
-    hfov: float = HFOV_DEGREES,
     run: Run | None = None,
     gate: bool = False,
     middle: int | None = None,
@@ -77,7 +76,6 @@ def insert_adapters(
             is the innermost module that contains the gate and at least one such adapter.
         views: number of views per panorama. If it is 1, targets in ``ring`` get a
             :class:`ConvAdapter`.
-        hfov: horizontal field of view in degrees.
         run: function that calls the model on n frames, such as ``lambda n: model(frames[:n])``. The
             shapes of the targets' outputs determine the kind of adapter; tokens get a
             :class:`TokenAdapter`.
@@ -107,7 +105,7 @@ def insert_adapters(
             adapters[name] = FrameGate(inputs_of(name, module), views=views if ringed else 1)
         elif name in ringed and views > 1:
             channels = channels_of(name, module)
-            adapters[name] = RingAdapter(channels, ring_reduction, kernel, views, hfov)
+            adapters[name] = RingAdapter(channels, ring_reduction, kernel, views)
         elif name in ringed or (name in plain and sites is None):
             narrower = ring_reduction if name in ringed else reduction
             channels = channels_of(name, module)

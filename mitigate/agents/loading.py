@@ -312,15 +312,15 @@ def adapters_only(folder: str | Path) -> bool:
     return is_hardened(folder) and bool(read_card(Path(folder))["adapters_only"])
 
 
-def fill(agent: Any, folder: str | Path, *, base: str | Path | None = None) -> Any:
+def fill(agent: Any, folder: str | Path) -> Any:
     """Load the weights of a hardened folder into ``agent``, including adapters and base weights.
 
-    Adapters of ``agent`` that are not in the folder are not changed. Arguments and errors are as in
+    Adapters of ``agent`` that are not in the folder are not changed. Errors are as in
     :func:`load_hardened`. ValueError is also raised if the agent has different adapters or weights.
     """
     folder = Path(folder)
     card = check_hardened(folder)
-    _fill(agent, folder, card, _weights_of(folder, card, base))
+    _fill(agent, folder, card, _weights_of(folder, card, None))
     return agent
 
 

@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from mitigate.core import names, settings
-from mitigate.core.observation import DEPTH, RGB, VIEWS
+from mitigate.core.observation import DEPTH, RGB
 
 SENSES = (RGB, DEPTH, "instruction")
 MOST_TARGETS = 64  # maximum number of patterns in a list
@@ -94,7 +94,7 @@ def _are_words(value: Any) -> bool:
 
 VOCABULARY = Kind(f"null or a list of at most {MOST_WORDS} words of the letters a to z", _are_words)
 TRUTH = Kind("true or false", lambda value: type(value) is bool)
-ADAPTERS = {  # allowed keyword arguments of ``insert_adapters``
+ADAPTERS = {  # keyword arguments of ``insert_adapters`` that settings may contain
     "target_modules": TARGETS,
     "ring": TARGETS,
     "gates": TARGETS,
@@ -103,8 +103,6 @@ ADAPTERS = {  # allowed keyword arguments of ``insert_adapters``
     "kernel": whole(1, 15),
     "gate": TRUTH,
     "middle": whole(1, 1024),
-    "views": Kind(f"{VIEWS}, as the agents' panoramas have", lambda value: value == VIEWS),
-    "hfov": number(1, 179),
 }
 ENCODERS = {  # settings that all shipped agents have
     "size": whole(16, 1024),

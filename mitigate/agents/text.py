@@ -32,7 +32,7 @@ NEAR = slice(len(THING_NAMES), 2 * len(THING_NAMES))
 
 
 SPECIAL = ("[PAD]", "[UNK]", "[MASK]")
-PAD, UNKNOWN, MASK = range(3)
+PAD, UNKNOWN = 0, 1
 MAX_WORDS = 80
 _WORDS = """
     a after ahead all along an and are armchair around at back bathroom bathtub bear bed

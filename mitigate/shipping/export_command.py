@@ -18,7 +18,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from mitigate.core import build, conf, settings
+from mitigate.core import build, conf
 from mitigate.core.options import paths_and_overrides
 from mitigate.evaluation import config as options
 from mitigate.evaluation.episode_lists import episodes
@@ -65,6 +65,7 @@ def main() -> None:
     if parsed["programs"] and parsed["name"] is not None:
         parser.error("--programs takes one hardened folder, and no name.")
     from mitigate.agents import loading
+    from mitigate.agents.building import agent_option
     from mitigate.shipping.export import add_programs, export
 
     if parsed.pop("programs"):
@@ -78,8 +79,7 @@ def main() -> None:
     parsed["rows"], more = paths_and_overrides(parsed["rows"])
     try:
         words = [*overrides, *more]
-        if not any(option.lstrip("+").startswith("agent=") for option in words):
-            words += _own_kind(parsed["run"])
+        words += agent_option(words, str(parsed["run"] / "agent"))
         if any(option.lstrip("+").startswith("agent=") for option in words):
             parsed["walks"] = _walks_of(parsed["run"], words, configs)
         folder = export(parsed.pop("run"), parsed.pop("name"), **parsed)
@@ -89,19 +89,6 @@ def main() -> None:
     if card["latency_ms"]:
         print(f"latency in ms: {json.dumps(card['latency_ms'])}")
     print(f"wrote {folder}")
-
-
-def _own_kind(run: Path) -> list[str]:
-    """Return the option ``agent=`` for the agent of ``run``.
-
-    The list is empty if the agent has exported programs or is not a shipped kind of agent.
-    """
-    from mitigate.agents import loading
-
-    config = run / loading.CONFIG
-    kind = loading.kind_of(config) if config.is_file() else loading.TARGET
-    name = "" if kind == loading.TARGET else settings.named(kind)
-    return [f"agent={name}"] if name else []
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:

@@ -247,7 +247,11 @@ def harden(
         config=identity,
     )
     with FolderLock(folder):
-        _check_folder(trainer, folder)
+        if newest := states.load_newest(trainer.folder):
+            recorded = states.as_json(newest[1]["config"])
+            states.check_same(
+                folder, recorded, trainer.config, "Or choose another folder (out=...)."
+            )
         provenance.keep(folder, first, made_by, SPLIT, compared)
         each = seconds_per_episode(before, world(), compared)
         count = len(compared) * len(conditions)
@@ -299,19 +303,6 @@ def harden(
             "episodes (validation=)."
         )
     return Hardened(_like(policy, after), after, report, rows, folder, chosen)
-
-
-def _check_folder(trainer: Trainer, folder: Path) -> None:
-    """Raise ValueError if the folder contains a run of another policy or with other settings."""
-    newest = states.load_newest(trainer.folder)
-    if newest is None:
-        return
-    if changed := states.differences(states.as_json(newest[1]["config"]), trainer.config):
-        raise ValueError(
-            f"{folder} contains a run with a different policy or different arguments "
-            f"({'; '.join(changed[:6])}). Use the old ones to continue it, or choose another "
-            "folder (out=...)."
-        )
 
 
 class _Training:

@@ -70,7 +70,6 @@ class TrainerConfig:
     lr: float | None = None
     weight_decay: float | None = None
     warmup: int | None = None
-    schedule: str | None = None
     grad_clip: float | None = None
     log_every: int | None = None
     save_every: int | None = None
@@ -212,7 +211,6 @@ def check_values(config: TrainConfig) -> None:
 def check_trainer(settings: Mapping[str, Any]) -> None:
     """Raise ValueError for trainer settings that are unknown or out of range."""
     from mitigate.core import precision
-    from mitigate.training import optimization
 
     known = [entry.name for entry in fields(TrainerConfig)]
     for name in settings:
@@ -221,8 +219,6 @@ def check_trainer(settings: Mapping[str, Any]) -> None:
                 unknown("setting of a trainer", f"trainer.{name}", [f"trainer.{n}" for n in known])
             )
     check_limits(settings)
-    if "schedule" in settings:
-        optimization.check(settings["schedule"])
     precision.check(settings.get("precision", "auto"))
     precision.device_of(settings.get("device", "auto"))
 

@@ -8,15 +8,6 @@ from typing import Any
 from torch.optim import AdamW
 from torch.optim.lr_scheduler import LambdaLR
 
-SCHEDULES = ("cosine", "constant", "linear")
-
-
-def check(schedule: str) -> None:
-    """Raise ValueError unless ``schedule`` is one of ``SCHEDULES``."""
-    if schedule not in SCHEDULES:
-        known = ", ".join(SCHEDULES)
-        raise ValueError(f"trainer.schedule must be one of {known}, got {schedule}.")
-
 
 def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: float) -> AdamW:
     """Return an AdamW optimizer of the parameters in ``groups`` that are not frozen.
@@ -39,22 +30,20 @@ def adamw(groups: list[dict[str, Any]], name: str, lr: float, weight_decay: floa
     return AdamW(trained, lr=lr, weight_decay=weight_decay)
 
 
-def scheduler(optimizer: AdamW, steps: int, warmup: int, schedule: str) -> LambdaLR:
+def scheduler(optimizer: AdamW, steps: int, warmup: int) -> LambdaLR:
     """Return the schedule of the learning rate.
 
-    The learning rate rises from 0 during ``warmup`` updates, and then follows ``schedule``. Unless
-    the schedule is constant, the learning rate is 0 after ``steps`` updates.
+    The learning rate rises from 0 during ``warmup`` updates. It then follows a cosine, and is 0
+    after ``steps`` updates.
     """
-    return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup, schedule))
+    return LambdaLR(optimizer, lambda step: _rate(step, steps, warmup))
 
 
-def _rate(step: int, steps: int, warmup: int, schedule: str) -> float:
+def _rate(step: int, steps: int, warmup: int) -> float:
     """Return the factor by which the learning rate is multiplied at update ``step`` (counted from
     0).
     """
     if step < warmup:
         return (step + 1) / (warmup + 1)
-    if schedule == "constant":
-        return 1.0
     share = min(1.0, (step - warmup) / max(1, steps - warmup))
-    return 1.0 - share if schedule == "linear" else 0.5 * (1.0 + math.cos(math.pi * share))
+    return 0.5 * (1.0 + math.cos(math.pi * share))

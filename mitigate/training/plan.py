@@ -24,7 +24,7 @@ from typing import Any
 from omegaconf import OmegaConf
 from torch import nn
 
-from mitigate.agents.agent import as_agent
+from mitigate.agents.agent import as_agent, stated_settings
 from mitigate.agents.building import build_agent, inherit_settings
 from mitigate.agents.observation import check_fits
 from mitigate.core.build import build, locate, maker
@@ -317,7 +317,6 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
         ValueError: If a stage cannot train ``agent``, or if :meth:`ObjectiveSpec.of` raises
             ValueError.
     """
-    _check_settings(config.agent, agent)
     stages = []
     for name, stage in config.active_stages.items():
         objective = ObjectiveSpec.of(stage.recipe)
@@ -330,6 +329,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
         identity = {"agent": config.agent, "recipe": dict(_identity(stage.recipe))}
         trainer = stage.settings(config.trainer)
         stages.append(StagePlan(name, folder / name, objective, trainer, identity))
+    _check_settings(config.agent, agent)
     return stages
 
 
@@ -342,17 +342,12 @@ def _identity(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
 def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
     """Raise ValueError for settings of an agent that its constructor does not accept."""
     known = {*signature(locate(node["_target_"])).parameters, *map(str, node)}
-    wrong = sorted(name for name in _settings_of(agent) if name not in known)
+    wrong = sorted(name for name in stated_settings(agent) or {} if name not in known)
     if wrong:
         raise ValueError(
             f"settings() of {type(agent).__name__} has {', '.join(wrong)}, which its constructor "
             "does not take. Return arguments of the constructor, so that the agent can be rebuilt."
         )
-
-
-def _settings_of(agent: Any) -> dict[str, Any]:
-    """Return the settings of an agent, or an empty dict if the agent has no ``settings()``."""
-    return dict(getattr(agent, "settings", dict)())
 
 
 def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
@@ -435,4 +430,4 @@ def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
 
     excluded = as_agent(agent).own_config_only
     config = {name: value for name, value in data(node).items() if name not in excluded}
-    return {"_target_": node["_target_"], **config, **data(_settings_of(agent))}
+    return {"_target_": node["_target_"], **config, **data(stated_settings(agent) or {})}

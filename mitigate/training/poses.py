@@ -144,12 +144,12 @@ class Poses(DrawsBySuccess):
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
         step, piece, pieces, count, state = job
-        self.set_schedule(state)
+        self.schedule.load_state_dict(state)
         rng = generator(self.seed, "perception", self.sensor, step, piece)
         scenes = share_of(self.placed.scenes, piece, pieces)
         return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
 
-    def collate(self, pieces: list[list[tuple]]) -> dict[str, Any]:
+    def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """Join the results of all jobs into the tensors "frames", "clean" and "targets"."""
         rows = [row for piece in pieces for row in piece]
         names = ("frames", "clean", "targets")

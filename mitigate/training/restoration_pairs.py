@@ -42,11 +42,6 @@ class PosePairs(Poses):
             )
         self.ring = len(self.placed.sensors[self.sensor].yaws) > 1
 
-    def collate(self, pieces: list[Any]) -> dict[str, Any]:
-        """Return the batch of :meth:`Poses.collate` without targets."""
-        batch = super().collate(pieces)
-        return {"frames": batch["frames"], "clean": batch["clean"]}
-
 
 @dataclass(eq=False, repr=False)
 class FramePairs:

@@ -13,13 +13,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from mitigate.agents.agent import Decisions, as_agent
-from mitigate.core.files import sha256
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.training.objective import OnSource, check_counts, check_share, divided
 from mitigate.training.parts import OWN, TRAINABLE
-from mitigate.training.success import DrawsBySuccess, prior_rates
+from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
 PIECES = 4  # number of jobs into which the episodes of a step are divided (heuristic)
@@ -40,15 +39,12 @@ class Rollouts(DrawsBySuccess):
         episodes: number of episodes per step.
         follow_oracle: fraction of decisions that follow the expert.
         seed: seed of episodes, corruptions and actions.
-        prior: file with result rows of an earlier evaluation, which give the initial success rates
-            of the schedule.
         refresh_every: number of steps between two measurements of success rates; with 0, they are
             measured only if there are no rates yet.
         refresh_episodes: number of training episodes per corruption in each measurement.
 
     Raises:
-        ValueError: If there are no episodes, if a fraction is invalid, or if ``prior_rates`` raises
-            ValueError.
+        ValueError: If there are no episodes, or if a fraction is invalid.
     """
 
     agent: Any
@@ -58,7 +54,6 @@ class Rollouts(DrawsBySuccess):
     episodes: int = 3
     follow_oracle: float = 0.5
     seed: int = 0
-    prior: str | None = None
     refresh_every: int = 0
     refresh_episodes: int = 8
 
@@ -69,8 +64,6 @@ class Rollouts(DrawsBySuccess):
         self.clean = False
         self.teachers: tuple[Any, ...] = ()
         self.picture: np.ndarray | None = None
-        if self.prior is not None:
-            self.schedule.refresh(prior_rates(self.prior))
 
     def keep_clean(self, *teachers: Any) -> None:
         """Also keep the clean observations, from which ``teachers`` compute their fixed features in
@@ -86,10 +79,8 @@ class Rollouts(DrawsBySuccess):
 
     def identity(self) -> dict[str, str]:
         """Return hashes of the files on which the batches depend."""
-        prior = {} if self.prior is None else {"prior_sha256": sha256(self.prior)}
         # a user-defined source of episodes that reads no files needs no method identity()
-        files: dict[str, str] = getattr(self.training, "identity", dict)()
-        return {**files, **prior}
+        return dict(getattr(self.training, "identity", dict)())
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
         """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
@@ -98,7 +89,6 @@ class Rollouts(DrawsBySuccess):
         If new success rates are due, this method measures them with ``workers`` processes.
         """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
-        due = due and not (step == 0 and self.prior)
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
         state = self.schedule.state_dict()
@@ -109,7 +99,7 @@ class Rollouts(DrawsBySuccess):
         observation.
         """
         step, piece, pieces, count, state = job
-        self.set_schedule(state)
+        self.schedule.load_state_dict(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
         episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
         worlds = [

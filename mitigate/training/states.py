@@ -131,15 +131,17 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
     return [] if old == new else [f"{path}: {old} -> {new}"]
 
 
-def check_same(folder: Path, old: dict[str, Any], new: dict[str, Any]) -> None:
+def check_same(
+    folder: Path, old: dict[str, Any], new: dict[str, Any], advice: str = OTHER_FOLDER
+) -> None:
     """Raise ValueError if the run in ``folder`` has a config (``old``) that differs from
-    ``new``.
+    ``new``. The message ends with ``advice``.
     """
     different = differences(old, new)
     if different:
         raise ValueError(
             f"{folder} holds a run with other settings ({'; '.join(different[:6])}). Use the old "
-            f"settings to resume it. {OTHER_FOLDER}"
+            f"settings to resume it. {advice}"
         )
 
 

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from mitigate.core import workers as processes
-from mitigate.core.progress import Progress, say
+from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
-from mitigate.evaluation.rows import read
 from mitigate.training.parts import hold_statistics
-from mitigate.worlds.world import TrainingEpisodes, World
+from mitigate.worlds.world import TrainingEpisodes
 
 
 class DrawsBySuccess:
@@ -33,75 +31,37 @@ class DrawsBySuccess:
     def refresh(self, step: int, workers: int | None = None) -> None:
         """Measure the success rate under every corruption on training episodes, and update the
         schedule.
+
+        The same episodes, which are sampled from (seed, step), are run under every corruption. The
+        agent is in training mode afterwards.
+
+        Args:
+            step: training step.
+            workers: number of processes, which does not affect the rates; with 0, only this process
+                is used. None means one process per core if that saves time, but only this process
+                if the agent is on a GPU.
         """
-        rates = measure(
-            self.agent,
-            self.schedule,
-            self.world,
-            self.training,
-            episodes=self.refresh_episodes,
-            seed=self.seed,
-            step=step,
-            workers=workers,
-        )
-        self.schedule.refresh(rates)
+        rng = generator(self.seed, "refresh", step)
+        episodes = [self.training.draw(rng, (0, 1)) for _ in range(self.refresh_episodes)]
+        corruptions = [self.schedule.corruption(name) for name in self.schedule.names]
+        groups = [
+            [(e, c, {"corruption": c.name, "seed": self.seed}) for c in corruptions]
+            for e in episodes
+        ]
+        task = EpisodeTask(self.agent.eval(), self.world)
+        on_gpu = any(p.device.type != "cpu" for p in self.agent.parameters())
+        if workers == 0 or (workers is None and on_gpu):
+            workers = 1
+        total = len(episodes) * len(corruptions)
+        started = processes.count(workers, total, WORTH)
+        successes: dict[str, list[int]] = {c.name: [] for c in corruptions}
+        with Progress(f"success at step {step}", total, unit="episode") as progress:
+            for item in processes.results(task, groups, started, progress):
+                if item is not None:
+                    successes[item[1]["corruption"]].append(item[1]["success"])
+                    progress.advance()
+        self.schedule.refresh({name: float(np.mean(won)) for name, won in successes.items()})
         hold_statistics(self.agent.train())
-
-    def set_schedule(self, state: dict[str, Any]) -> None:
-        """Restore the state that the schedule had when the job was created."""
-        if state != self.schedule.state_dict():
-            self.schedule.load_state_dict(state)
-
-
-def measure(
-    agent: Any,
-    schedule: Schedule,
-    world: Callable[[], World],
-    training: TrainingEpisodes,
-    *,
-    episodes: int,
-    seed: int,
-    step: int,
-    workers: int | None = None,
-) -> dict[str, float]:
-    """Measure the success rate of ``agent`` under every corruption of ``schedule``.
-
-    The same episodes, which are sampled from (seed, step), are run under every corruption.
-
-    Args:
-        agent: a module with ``reset`` and ``act``; it stays in eval mode.
-        schedule: the schedule whose corruptions are measured.
-        world: function that constructs a world.
-        training: source of the episodes.
-        episodes: number of episodes per corruption.
-        seed: seed of episodes and corruptions.
-        step: training step.
-        workers: number of processes, which does not affect the rates; with 0, only this process is
-            used. None means one process per core if that saves time, but only this process if the
-            agent is on a GPU.
-
-    Returns:
-        The success rate in [0, 1] by corruption.
-    """
-    rng = generator(seed, "refresh", step)
-    drawn_episodes = [training.draw(rng, (0, 1)) for _ in range(episodes)]
-    corruptions = [schedule.corruption(name) for name in schedule.names]
-    groups = [
-        [(e, c, {"corruption": c.name, "seed": seed}) for c in corruptions] for e in drawn_episodes
-    ]
-    task = EpisodeTask(agent.eval(), world)
-    on_gpu = any(p.device.type != "cpu" for p in agent.parameters())
-    if workers == 0 or (workers is None and on_gpu):
-        workers = 1
-    total = len(drawn_episodes) * len(corruptions)
-    started = processes.count(workers, total, WORTH)
-    with Progress(f"success at step {step}", total, unit="episode") as progress:
-        measures = []
-        for item in processes.results(task, groups, started, progress):
-            if item is not None:
-                measures.append(item[1])
-                progress.advance()
-    return success_rates(measures)
 
 
 def refuse(schedule: Schedule | None) -> None:
@@ -113,42 +73,3 @@ def refuse(schedule: Schedule | None) -> None:
             "schedule=success_distributed needs success rates, which this recipe does not measure. "
             "Choose schedule=per_episode or per_frame."
         )
-
-
-def prior_rates(path: Path | str) -> dict[str, float]:
-    """Return the success rate per corruption in a file of result rows.
-
-    The split of the rows is printed, because an agent that is trained with these rates must be
-    evaluated on other episodes.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or if its rows belong to several agents, splits or
-            severities.
-    """
-    rows = read(path)
-    kinds = {
-        "agents": {f"{row['name']} {row['agent']}" for row in rows},
-        "splits": {row["split"] for row in rows},
-        "severities": {f"{row['severity']:g}" for row in rows} - {"0"},
-    }
-    for what, values in kinds.items():
-        if len(values) > 1:
-            raise ValueError(
-                f"{path} holds rows of several {what} ({', '.join(sorted(values))}). Name a file "
-                "of one evaluation (prior=...)."
-            )
-    splits = ", ".join(kinds["splits"])
-    say(f"uses success rates on {splits} from {path}: evaluate on other episodes")
-    return success_rates(rows)
-
-
-def success_rates(results: list[dict[str, Any]]) -> dict[str, float]:
-    """Return the mean success rate per corruption, from result rows or measures; clean episodes are
-    left out.
-    """
-    names = {row["corruption"] for row in results} - {"clean"}
-    return {
-        n: float(np.mean([r["success"] for r in results if r["corruption"] == n]))
-        for n in sorted(names)
-    }

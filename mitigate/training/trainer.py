@@ -33,7 +33,7 @@ from mitigate.training.ranks import Ranks
 from mitigate.training.workers import Workers
 
 # settings that affect the weights; a run is not resumed if one of them differs
-FIXED = ("steps", "lr", "weight_decay", "warmup", "schedule", "grad_clip", "seed", "precision")
+FIXED = ("steps", "lr", "weight_decay", "warmup", "grad_clip", "seed", "precision")
 
 
 class LossNotFinite(ValueError):
@@ -52,9 +52,8 @@ class Trainer:
         folder: folder for ``step-*.pt`` and TensorBoard files. If it contains a checkpoint,
             training resumes from it.
         lr, weight_decay: values for parameter groups that do not set their own.
-        warmup: number of updates during which the learning rate rises from 0.
-        schedule: schedule of the learning rate after warm-up, one of ``optimization.SCHEDULES``.
-            Unless the schedule is constant, the learning rate ends at 0.
+        warmup: number of updates during which the learning rate rises from 0. It then falls to 0
+            on a cosine.
         grad_clip: maximum global gradient norm; 0 disables clipping.
         log_every, save_every, eval_every, figure_every: intervals in updates; 0 means never (a
             checkpoint is always written at the end).
@@ -85,7 +84,6 @@ class Trainer:
     lr: float = 1e-3
     weight_decay: float = 0.01
     warmup: int = 0
-    schedule: str = "cosine"
     grad_clip: float = 1.0
     log_every: int = 50
     save_every: int = 1000
@@ -102,7 +100,6 @@ class Trainer:
     config: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
-        optimization.check(self.schedule)
         check_limits(vars(self))
         self.folder = Path(self.folder)
         self.device = device_of(self.device)
@@ -110,15 +107,14 @@ class Trainer:
         self.precision = self.ranks.of_first(choose(self.precision, self.device))
         self.objective = self.objective.to(self.device)
         self.name = self.name or type(self.objective).__name__
-        fixed = {name: vars(self)[name] for name in FIXED}
+        # runs that an older version started recorded the schedule of the learning rate
+        fixed = {name: vars(self)[name] for name in FIXED} | {"schedule": "cosine"}
         if self.lag:
             fixed |= {"lag": self.lag, "save_every": self.save_every}
         self.config = states.as_json(self.config) | {"trainer": fixed}
         groups = self.objective.parameter_groups()
         self.optimizer = optimization.adamw(groups, self.name, self.lr, self.weight_decay)
-        self.scheduler = optimization.scheduler(
-            self.optimizer, self.steps, self.warmup, self.schedule
-        )
+        self.scheduler = optimization.scheduler(self.optimizer, self.steps, self.warmup)
         self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
         self._saved = 0  # number of steps in the newest checkpoint
         self._finished = False  # whether the newest checkpoint is marked as finished

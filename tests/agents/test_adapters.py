@@ -243,9 +243,9 @@ def test_failed_insertion_keeps_the_model():
     model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.Flatten(), nn.Linear(8, 4))
     for options in (
         {"target_modules": ["0", "2"]},  # the output of a Linear module is not a feature map
-        {"target_modules": ["0"], "ring": ["0"], "hfov": 200.0},
+        {"target_modules": ["0"], "ring": ["0"], "kernel": 2},
     ):
-        with pytest.raises(ValueError, match="channels of 2|hfov|field of view"):
+        with pytest.raises(ValueError, match="channels of 2|kernel"):
             insert_adapters(model, **options)
         assert not adapters.adapted(model)
         assert all(p.requires_grad for p in model.parameters())

@@ -294,7 +294,7 @@ def test_schema_has_the_arguments_of_its_class():
         assert kind.keys() == names(schema.class_of(target))
     assert POLICY.keys() == names(Policy, "rgb", "depth", "vocabulary")
     assert PLANNER.keys() == names(Planner, "rgb_width", "depth_width", "vocabulary")
-    assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "run")
+    assert schema.ADAPTERS.keys() == names(insert_adapters, "model", "views", "run")
     assert PLANNER["fusion"].keys() == names(weigher, "width")
 
 

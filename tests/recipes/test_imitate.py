@@ -14,14 +14,12 @@ from mitigate.agents.agent import Output
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
-from mitigate.evaluation import rows
 from mitigate.recipes.distil import policy_kl
 from mitigate.recipes.imitate import Imitate, check_losses, imitation
 from mitigate.training.rollouts import Rollouts
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
-from tests.evaluation.made_rows import cell
 from tests.tiny import assemble
 
 SMALL = {"heads": 2, "text_layers": 1, "layers": 1}
@@ -39,32 +37,6 @@ def test_adapters_alone_train_in_frozen_modules(tmp_path):
     backbone, whole = backbone_sha(agent), weights_sha(agent)
     Trainer(recipe(agent, "adapters"), steps=2, folder=tmp_path, seed=0, lr=1e-2, warmup=0).fit()
     assert backbone_sha(agent) == backbone and weights_sha(agent) != whole
-
-
-def test_prior_needs_the_evaluation_of_one_agent(tmp_path):
-    """The rows of a training run contain two agents (before and after training), and a mean over
-    both describes neither."""
-    schedule = Schedule("success_distributed", 0.6, names=("flare", "spatter"))
-    hard = [r for name in schedule.names for r in cell(2, corruption=name, severity=0.6)]
-    rows.write(tmp_path / "one.jsonl", cell(8) + hard)
-    assemble(
-        Imitate,
-        TopologicalAgent(16),
-        **SOURCES,
-        schedule=schedule,
-        prior=str(tmp_path / "one.jsonl"),
-    )
-    for other, message in (({"name": "trained"}, "agents"), ({"severity": 0.2}, "severities")):
-        mixed = [{**row, **other} for row in hard]
-        rows.write(tmp_path / "two.jsonl", hard + mixed)
-        with pytest.raises(ValueError, match=f"several {message}"):
-            assemble(
-                Imitate,
-                TopologicalAgent(16),
-                **SOURCES,
-                schedule=schedule,
-                prior=str(tmp_path / "two.jsonl"),
-            )
 
 
 def test_unknown_part_is_rejected():

@@ -313,7 +313,7 @@ def test_harden_rejects_another_policy_in_the_folder(tmp_path):
     with torch.no_grad():
         other.head.bias.add_(1)
     rows = (tmp_path / "rows.jsonl").read_bytes()
-    with pytest.raises(ValueError, match="different policy"):
+    with pytest.raises(ValueError, match=r"other settings \(policy: .*out="):
         mitigate.harden(other, world, listed=FEW, out=tmp_path, **SHORT)
     assert (tmp_path / "rows.jsonl").read_bytes() == rows
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 import mitigate
+from mitigate.agents.building import agent_option
 from mitigate.agents.frontier import FrontierAgent
 from mitigate.agents.recurrent import RecurrentAgent
 from mitigate.core import conf
@@ -30,7 +31,7 @@ def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
     cfg = conf.load_config("train", ["recipe=imitation", "debug=smoke", *options])
     cfg.runs = str(tmp_path)
     run = train.run(cfg)
-    (option,) = export_command._own_kind(run)  # the command's default
+    (option,) = agent_option([], str(run / "agent"))  # the command's default
     assert option == f"agent={kind.partition('_')[0]}"
     with pytest.raises(ValueError, match=option):
         export.export(run, "mine", out=tmp_path)

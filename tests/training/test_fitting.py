@@ -243,10 +243,9 @@ def test_plan_rejects_changed_settings_of_a_later_stage(tmp_path):
     ("options", "words"),
     [
         (["stages.imitation.recipe.train_parts=[planer]"], "part of the agent 'planer'"),
-        (["recipe=da_success", "stages.imitation.recipe.prior=nowhere.jsonl"], "nowhere.jsonl"),
         (["recipe=ts_distill", "stages.episodes.recipe.teacher=nowhere"], "no teacher at nowhere"),
         (["recipe=ts_distill", "+stages.episodes.recipe.temperature=0"], "must be above 0"),
-        (["stages.imitation.trainer.schedule=cosin"], "cosine, constant, linear"),
+        (["stages.imitation.trainer.precision=fp8"], "auto, fp32, bf16"),
     ],
 )
 def test_plan_checks_all_stages_first(tmp_path, options, words, monkeypatch):
@@ -306,11 +305,11 @@ def test_plan_rejects_targets_that_are_not_objectives(tmp_path, target, words):
 def test_smoke_run_measures_success_without_workers(tmp_path, monkeypatch, options):
     met = []
 
-    def measured(*_, episodes, workers, **others):
-        met.append((episodes, workers))
+    def measured(self, step, workers):
+        met.append((self.refresh_episodes, workers))
         raise InterruptedError
 
-    monkeypatch.setattr("mitigate.training.success.measure", measured)
+    monkeypatch.setattr("mitigate.training.success.DrawsBySuccess.refresh", measured)
     options = [*options, "agent=recurrent", "debug=smoke", "workers=0", f"folder={tmp_path}"]
     with pytest.raises(InterruptedError):
         train.run(conf.load_config("train", [*options, OFF]))

@@ -12,7 +12,7 @@ from mitigate.core.observation import Observation, cameras
 from mitigate.core.precision import computing
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import EpisodeTask
-from mitigate.training.success import measure
+from mitigate.training.rollouts import Rollouts
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.rooms import wanderer
@@ -53,13 +53,12 @@ class Careful(nn.Module):
 
 
 def test_rates_do_not_depend_on_the_number_of_processes(capsys):
-    agent, world = Careful().train(), Grey
-    schedule = Schedule("success_distributed", 0.6, names=("low_light", "missing_data"))
-    options = {"episodes": 2, "seed": 0, "step": 60}
-    none, alone, two = (
-        measure(agent, schedule, world, DrawnEpisodes(2), **options, workers=n) for n in (0, 1, 2)
-    )
-    assert none == alone == two == {"low_light": 0.0, "missing_data": 1.0} and not agent.training
+    names = ("low_light", "missing_data")
+    for workers in (0, 1, 2):
+        schedule = Schedule("success_distributed", 0.6, names=names)
+        source = Rollouts(Careful(), Grey, DrawnEpisodes(2), schedule, refresh_episodes=2)
+        source.refresh(60, workers)
+        assert schedule.success == {"low_light": 0.0, "missing_data": 1.0}
     assert "success at step 60: 4 episodes" in capsys.readouterr().out
 
 

@@ -131,7 +131,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
         ('+columns.mine=["recipe=harden","agent.sze=3"]', "Column mine: .*agent.size?"),
         ("+columns.mine=recurrent", "columns.mine=recurrent must be a list of options"),
         ('+columns.mine=["recipe=harden","severity=7"]', "Column mine: severity must be from 0"),
-        ('+columns.mine=["recipe=harden","trainer.schedule=cosin"]', "Column mine: .*cosine"),
+        ('+columns.mine=["recipe=harden","trainer.precision=fp8"]', "Column mine: .*fp32"),
         ('+columns.mine=["recipe=harden","seed=3"]', "Column mine: seed=3 is set by the table"),
         (
             '+columns.mine=["severity=0.9"]',

@@ -161,7 +161,6 @@ def test_negative_number_of_workers_is_rejected(tmp_path):
         ("severity_depth=nan", "severity_depth must be from 0 to 1, got nan"),
         ("rollouts=0", "rollouts must be from 1 to 100000, got 0"),
         ("refresh_episodes=0", "refresh_episodes must be .* got 0"),
-        ("trainer.schedule=cosin", "cosine, constant, linear"),
         ("trainer.precision=fp8", "auto, fp32, bf16"),
         ("+trainer.warmpu=3", "no setting of a trainer 'trainer.warmpu'.*mean trainer.warmup"),
     ],

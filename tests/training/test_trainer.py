@@ -256,7 +256,6 @@ def test_trainer_rejects_the_folder_of_another_run(tmp_path):
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
-        ({"schedule": "cosin"}, "cosine, constant, linear"),
         ({"precision": "fp8"}, "auto, fp32, bf16"),
         ({"steps": 0}, "trainer.steps must be a number from 1"),
         ({"grad_clip": -1.0}, "grad_clip must be a number from 0"),

@@ -7,7 +7,7 @@ its own request, deadline and retries.
 from __future__ import annotations
 
 import base64
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
@@ -42,8 +42,6 @@ class RemoteAgent(AnsweringAgent):
         timeout: seconds for one request.
         retries: number of retries of a request after a temporary failure.
         pause: seconds before the first retry; the pause doubles before each later retry.
-        key: environment variable with the API key.
-        options: additional fields of the request.
 
     Raises:
         ValueError: If a setting is invalid.
@@ -62,8 +60,6 @@ class RemoteAgent(AnsweringAgent):
         timeout: float = 60.0,
         retries: int = 5,
         pause: float = 1.0,
-        key: str = "OPENAI_API_KEY",
-        options: Mapping[str, Any] | None = None,
     ) -> None:
         if not model:
             raise ValueError("agent.model must be the name of the model at the endpoint.")
@@ -78,13 +74,7 @@ class RemoteAgent(AnsweringAgent):
         self.otherwise = fallback
         self.together = together
         self.client = ChatClient(
-            url,
-            model,
-            key=key,
-            timeout=timeout,
-            retries=retries,
-            pause=pause,
-            options={**OPTIONS, **(options or {})},
+            url, model, timeout=timeout, retries=retries, pause=pause, options=OPTIONS
         )
         self._settings |= {
             "url": self.client.url,
@@ -96,7 +86,7 @@ class RemoteAgent(AnsweringAgent):
         self.unreadable = 0
 
     def settings(self) -> dict[str, Any]:
-        """Return the arguments that determine the actions; deadlines and retries are left out."""
+        """Return what determines the actions; deadlines and retries are left out."""
         return dict(self._settings)
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:

@@ -13,7 +13,7 @@ import argparse
 import json
 import sys
 import time
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from itertools import islice
 from pathlib import Path
 from typing import Any
@@ -25,32 +25,26 @@ from mitigate.core.errors import error_message
 from mitigate.core.files import atomic_text, find, open_text, write_text
 from mitigate.core.markdown import markdown_table
 from mitigate.core.options import positive
-from mitigate.core.seeding import generator
 from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.guard import Rewriter, Safeguard, open_safeguard, passages
 from mitigate.guards.text.learning.data import read_texts
-from mitigate.guards.text.learning.spoken import SPLITS, spoken
 from mitigate.guards.text.metrics import CLEAN, Repair, Scores, by_family, table
 from mitigate.guards.text.pieces import sentences
 from mitigate.worlds.episodes import read_episodes
 
 FAMILIES = (CLEAN, *MANNERS, "capitalize", "mask", "black_box")
 ALONE = "-alone"
-# step of the golden-ratio sequence, which spreads any number of texts evenly
-GOLDEN = (5**0.5 - 1) / 2
 Repairer = Callable[[list[str]], list[str]]
 
 
-def corrupted(
-    texts: Sequence[str], families: Iterable[str], severity: float, split: str, seed: int = 0
-) -> list[Repair]:
+def corrupted(texts: Sequence[str], severity: float, split: str, seed: int = 0) -> list[Repair]:
     """Corrupt every text with every family, and return the results without repair (``repaired``
     equals ``heard``).
     """
     repairs = []
-    for family in families:
+    for family in FAMILIES:
         for index, clean in enumerate(texts):
             heard = clean
             if family != CLEAN:
@@ -117,7 +111,7 @@ def before_after(cfg: Any, before: Any, trained: nn.Module, folder: Path) -> Non
     quick = cfg.evaluation
     listed = islice(read_episodes(find(cfg.env.episodes[quick.split])), quick.episodes)
     texts = [episode.instruction.text for episode in listed]
-    every = corrupted(texts, FAMILIES, cfg.severity, "test", cfg.seed)
+    every = corrupted(texts, cfg.severity, "test", cfg.seed)
     chosen = [
         r for i, r in enumerate(every) if i % len(FAMILIES) == (i // len(texts)) % len(FAMILIES)
     ]
@@ -168,17 +162,6 @@ def summary(scores: dict[str, dict[str, Scores]]) -> str:
     return markdown_table(head, lines)
 
 
-def examples(repairs: Sequence[Repair], count: int, seed: int) -> str:
-    """Return ``count`` repairs as a Markdown list; ``seed`` determines the random choice."""
-    order = generator(seed, "examples").permutation(len(repairs))[:count]
-    chosen = [repairs[i] for i in sorted(order)]
-    return "\n".join(
-        f"{n}. `{r.family}`\n   - meant: {r.clean.strip()}\n   - heard: {r.heard.strip()}\n"
-        f"   - repaired: {r.repaired.strip()}"
-        for n, r in enumerate(chosen, 1)
-    )
-
-
 def read_lines(path: str, count: int | None) -> list[str]:
     """Return the instructions of an episode file, or the lines of a text file."""
     if path.endswith((".json", ".json.gz")):
@@ -188,56 +171,31 @@ def read_lines(path: str, count: int | None) -> list[str]:
     return lines[:count]
 
 
-def voices(split: str, count: int | None) -> list[Repair]:
-    """Return hand-written texts of a split, evenly spread over the styles. In the results,
-    ``family`` is the style.
-    """
-    texts = spoken(split)
-    chosen = sorted(range(len(texts)), key=lambda i: i * GOLDEN % 1)[:count]
-    sample = [texts[i] for i in sorted(chosen)]
-    return [Repair(text.voice, text.plain, text.original, text.original) for text in sample]
-
-
-def _heard(options: argparse.Namespace) -> tuple[list[Repair], str]:
-    """Return the corrupted texts, and a title."""
-    if options.voices:
-        repairs = voices(options.voices, options.count)
-        return repairs, f"{len(repairs)} texts of the {options.voices} voices"
-    texts = read_lines(options.texts, options.count)
-    if not texts:
-        raise ValueError(f"There are no instructions in {options.texts}.")
-    repairs_of_texts = corrupted(
-        texts, options.families, options.severity, options.split, options.seed
-    )
-    about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
-    return repairs_of_texts, f"{Path(options.texts).name}, {about}"
-
-
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("safeguards", nargs="+", help="none, classifier, lora-alone, a folder, ...")
-    heard = parser.add_mutually_exclusive_group(required=True)
-    heard.add_argument("--texts", help="episode file, or text file with one per line")
-    heard.add_argument("--voices", choices=SPLITS, help="people's texts of a split, unchanged")
+    parser.add_argument(
+        "--texts", required=True, help="episode file, or text file with one per line"
+    )
     parser.add_argument("--count", type=positive, help="number of texts; default all")
-    parser.add_argument("--families", nargs="+", default=FAMILIES, choices=FAMILIES)
     parser.add_argument("--severity", type=float, default=1.0)
     parser.add_argument("--split", default="test", help="attacks: train, validation, test")
-    parser.add_argument("--examples", type=int, default=0, help="random examples to print")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=Path("runs/safeguard-text"))
     options = parser.parse_args(arguments)
-    changed, title = _heard(options)
+    texts = read_lines(options.texts, options.count)
+    if not texts:
+        raise ValueError(f"There are no instructions in {options.texts}.")
+    changed = corrupted(texts, options.severity, options.split, options.seed)
     results = {}
     for name in options.safeguards:
         began = time.monotonic()
         results[name] = repaired(changed, choose(name))
         spent = (time.monotonic() - began) / len(changed)
         print(f"{name}: {1000 * spent:.1f} ms per instruction, in batches", flush=True)
-    write(results, options.out, title)
-    if options.examples:
-        print(examples(results[options.safeguards[-1]], options.examples, options.seed))
+    about = f"{len(texts)} texts, severity {options.severity:g}, {options.split} attacks"
+    write(results, options.out, f"{Path(options.texts).name}, {about}")
 
 
 if __name__ == "__main__":

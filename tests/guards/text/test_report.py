@@ -24,7 +24,7 @@ TEXTS = ["Walk past the sofa and turn left at the door.", "Leave the pantry. Sto
 
 @pytest.mark.slow
 def test_report_tries_every_text_in_every_family():
-    hurt = report.corrupted(TEXTS, report.FAMILIES, 1.0, "validation")
+    hurt = report.corrupted(TEXTS, 1.0, "validation")
     assert len(hurt) == len(TEXTS) * len(report.FAMILIES)
     assert all(r.injected for r in hurt if r.family == "black_box")
     loud = [
@@ -36,10 +36,9 @@ def test_report_tries_every_text_in_every_family():
 @pytest.mark.slow
 def test_report_command_writes_tables_and_repairs(tmp_path, capsys):
     (tmp_path / "texts.txt").write_text("# two\n" + "\n".join(TEXTS) + "\n")
-    arguments = ["none", "classifier", "--texts", str(tmp_path / "texts.txt"), "--examples", "3"]
+    arguments = ["none", "classifier", "--texts", str(tmp_path / "texts.txt")]
     report.main([*arguments, "--out", str(tmp_path)])
-    printed = capsys.readouterr().out
-    assert "| classifier |" in printed and printed.count("- meant:") == 3
+    assert "| classifier |" in capsys.readouterr().out
     lines = [json.loads(line) for line in (tmp_path / "repairs.jsonl").open()]
     assert len(lines) == 2 * len(TEXTS) * len(report.FAMILIES)
 
@@ -47,7 +46,7 @@ def test_report_command_writes_tables_and_repairs(tmp_path, capsys):
 @pytest.mark.parametrize("count", ["0", "-1", "2.5"])
 def test_report_accepts_only_positive_counts(count, capsys):
     with pytest.raises(SystemExit):
-        report.main(["classifier", "--voices", "test", "--count", count])
+        report.main(["classifier", "--texts", "texts.txt", "--count", count])
     assert f"must be a whole number >= 1, got '{count}'" in capsys.readouterr().err
 
 

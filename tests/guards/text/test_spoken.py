@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 
 from mitigate.guards.text.learning import spoken
-from mitigate.training.reports.safeguard import voices
 
 
 def test_spoken_splits_share_no_voice_and_no_text():
@@ -33,11 +32,6 @@ def test_passage_returns_neighbouring_parts_of_a_train_voice():
         assert message and len(message.split()) <= 250
         (whole,) = [t for heard, t in train.items() if message in heard][:1]
         assert all(part in whole.plain for part in plain.split(". ")[:1] if part)
-
-
-def test_report_spreads_its_texts_over_the_voices():
-    some = voices("validation", 30)
-    assert len(some) == 30 and {r.family for r in some} == set(spoken.VALIDATION)
 
 
 def test_spoken_names_the_known_splits():
