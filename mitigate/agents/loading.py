@@ -77,6 +77,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
     place = find(folder)
     if (place / CARD).is_file():
         return load_hardened(place, agent=agent)
+    folders.check(place if place.is_dir() else place.parent)
     reject_other_models(place)
     if (place / "agent").is_dir():
         raise ValueError(f"{folder} is the folder of a run. Name its agent, {place / 'agent'}.")
@@ -85,7 +86,6 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         raise FileNotFoundError(
             f"{config} is missing, so the settings of the agent in {folder} are unknown."
         )
-    folders.check(config.parent)
     lora = place / PEFT_WEIGHTS
     weights = lora if lora.is_file() else checkpoint.weights_file(place)
     with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
