@@ -31,7 +31,7 @@ from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.core.pretrained import PEFT_WEIGHTS
 
-FORMAT = 2  # format number of a card; format 1 can also be read (core/older_folders.py)
+FORMAT = 2  # format number of a card
 CARD, README = "card.json", "README.md"
 PROGRAM, INPUTS = "program.pt2", "program.json"
 FILES = (CONFIG, README, INPUTS)  # files of an exported agent besides weights and programs
@@ -77,6 +77,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
     place = find(folder)
     if (place / CARD).is_file():
         return load_hardened(place, agent=agent)
+    folders.check(place if place.is_dir() else place.parent)
     reject_other_models(place)
     if (place / "agent").is_dir():
         raise ValueError(f"{folder} is the folder of a run. Name its agent, {place / 'agent'}.")
@@ -85,7 +86,6 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         raise FileNotFoundError(
             f"{config} is missing, so the settings of the agent in {folder} are unknown."
         )
-    folders.check(config.parent)
     lora = place / PEFT_WEIGHTS
     weights = lora if lora.is_file() else checkpoint.weights_file(place)
     with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
@@ -357,12 +357,12 @@ def check_hardened(folder: Path) -> dict[str, Any]:
     for name in (*weights, *needed):
         if name not in manifest.files:
             raise ValueError(
-                f"{folder / manifest.source} must list {name}, but does not list it. {_AGAIN}"
+                f"{folder / folders.MANIFEST} must list {name}, but does not list it. {_AGAIN}"
             )
     unlisted = [n for n in KNOWN if n not in manifest.files and os.path.lexists(folder / n)]
     if unlisted:
         raise ValueError(
-            f"{folder / unlisted[0]} is not listed in {manifest.source}, so it cannot be checked. "
+            f"{folder / unlisted[0]} is not listed in {folders.MANIFEST}, so it cannot be checked. "
             "Fetch the folder again, or delete that file if you put it there."
         )
     folders.check(folder, optional=(PROGRAM,), again=_AGAIN)
@@ -382,12 +382,17 @@ def read_card(folder: Path) -> dict[str, Any]:
         )
     card = read_object(file, _AGAIN)
     manifest = folders.read_manifest(folder, _AGAIN)
-    if manifest is None or manifest.kind != "hardened":
+    if manifest is None:
+        raise FileNotFoundError(
+            f"{folder} is not a complete hardened checkpoint: {folders.MANIFEST} is missing. "
+            f"{_AGAIN}"
+        )
+    if manifest.kind != "hardened":
         raise ValueError(
             f"{file} is the card of another kind of folder, such as a restorer (restore=...). Name "
             "a hardened checkpoint (checkpoints/hardened/...)."
         )
-    if manifest.source != CARD and card.get("format") != FORMAT:
+    if card.get("format") != FORMAT:
         raise ValueError(
             f"{file} must be a card of format {FORMAT}, got {short(card.get('format'))}. {_AGAIN}"
         )

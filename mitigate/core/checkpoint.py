@@ -1,9 +1,8 @@
 """Read and write weights: ``model.safetensors`` in a folder. Single safetensors files can be read.
 
-A folder has a manifest (``folders.py``); the weights of earlier versions have a sidecar with their
-sha256 (``checksums.py``). Manifests and sidecars are checked before the weights are read. Weights
-without a checksum, from an older version or another project, are also accepted.
-``training/states.py`` handles the states from which training resumes.
+A folder has a manifest (``folders.py``), which is checked before the weights are read. Weights
+without a manifest, such as those of another project, are also accepted. ``training/states.py``
+handles the states from which training resumes.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from safetensors import SafetensorError, safe_open
 from safetensors.torch import load_file, save_file
 from torch import nn
 
-from mitigate.core import checksums, folders
+from mitigate.core import folders
 from mitigate.core.files import lfs_problem, weights_below, write_text
 from mitigate.core.names import short
 
@@ -189,7 +188,7 @@ def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
 
 
 def load_tensors(file: Path) -> dict[str, torch.Tensor]:
-    """Return the tensors of a safetensors file; if its sha256 is recorded, check it first.
+    """Return the tensors of a safetensors file; if a manifest lists the file, check it first.
 
     Raises:
         ValueError: If the file is damaged.
@@ -226,8 +225,7 @@ def _again(file: Path) -> str:
     # this is the layout of a training run
     if folder.name == "agent" and any(folder.parent.glob("*/step-*.pt")):
         return "They belong to a run: the same `make train` command writes them again."
-    manifest = file.with_name(folders.MANIFEST)
-    note = manifest if manifest.is_file() else checksums.sidecar(file)
+    note = file.with_name(folders.MANIFEST)
     alone = f" If you know that only {note.name} is damaged, delete it." if note.is_file() else ""
     return f"Fetch or train them again.{alone}"
 

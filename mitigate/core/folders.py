@@ -8,7 +8,7 @@ Every folder that this project ships or trains has the same layout::
     card.json, README.md, program.*    optional
 
 A folder in the format of another library keeps the names of that library, such as
-``adapter_config.json`` of PEFT. ``core/older_folders.py`` reads folders of earlier versions.
+``adapter_config.json`` of PEFT.
 
 When a folder is updated, files are replaced one by one. During the update, the manifest lists both
 the new files and the files that they replace. A reader therefore gets either all old files or all
@@ -28,7 +28,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from mitigate.core import checksums, older_folders, output
+from mitigate.core import output
 from mitigate.core.files import (
     LONGEST_DRAFT,
     draft_path,
@@ -55,10 +55,10 @@ _SHA256 = re.compile(r"[0-9a-f]{64}")
 
 
 class Entry(NamedTuple):
-    """Entry of a manifest; ``size`` is in bytes, or None in an older layout without sizes."""
+    """Entry of a manifest; ``size`` is in bytes."""
 
     sha256: str
-    size: int | None = None
+    size: int
 
 
 class Manifest(NamedTuple):
@@ -68,14 +68,11 @@ class Manifest(NamedTuple):
         kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
         files: files by name.
         replaced: the previous files, while a folder is being replaced.
-        source: name of the file from which the list was read: the manifest, or the card of an older
-            folder.
     """
 
     kind: str
     files: dict[str, Entry]
     replaced: dict[str, Entry]
-    source: str = MANIFEST
 
 
 @contextmanager
@@ -157,9 +154,6 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
         for name in old.keys() - new.keys():
             (folder / name).unlink(missing_ok=True)
         _write_manifest(folder, Manifest(kind, new, {}))
-    for name in new:
-        # in the older layout, each file had a sidecar
-        checksums.sidecar(folder / name).unlink(missing_ok=True)
 
 
 def seal(folder: str | Path, kind: str) -> None:
@@ -199,8 +193,6 @@ def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
         if manifest is not None:
             return manifest.files
         present = [folder / name for name in new if (folder / name).is_file()]
-        if any(checksums.problem(file) for file in present):
-            return {}
         return {file.name: Entry(sha256(file), file.stat().st_size) for file in present}
     except (ValueError, OSError):
         return {}
@@ -219,21 +211,13 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
     """Return the manifest of ``folder``, or None if it has none.
 
-    The manifest of a folder in an older format is the list of files in its card.
-
     Raises:
-        ValueError: If the manifest or the card is invalid. The message ends with the text
-            ``again``, which says how to continue.
+        ValueError: If the manifest is invalid. The message ends with the text ``again``, which says
+            how to continue.
     """
-    folder = Path(folder)
-    file = folder / MANIFEST
+    file = Path(folder) / MANIFEST
     if not output.is_regular(file):
-        listed = older_folders.card_files(folder, again)
-        if listed is None:
-            return None
-        entries = {name: Entry(str(digest)) for name, digest in listed.items()}
-        _check_names(folder / older_folders.CARD, entries)
-        return Manifest("hardened", entries, {}, older_folders.CARD)
+        return None
     record = read_object(file, again)
     kind = record.get("kind")
     if record.get("format") != FORMAT or not isinstance(kind, str) or "files" not in record:
@@ -290,18 +274,16 @@ def check(
     if manifest is None:
         return None
     try:
-        _compare(folder, manifest, manifest.files, optional, again)
+        _compare(folder, manifest.files, optional, again)
     except (ValueError, FileNotFoundError):
         if not manifest.replaced:
             raise
-        _compare(folder, manifest, manifest.replaced, optional, again)
+        _compare(folder, manifest.replaced, optional, again)
         return manifest._replace(files=manifest.replaced, replaced={})
     return manifest
 
 
-def _compare(
-    folder: Path, manifest: Manifest, files: dict[str, Entry], optional: Iterable[str], again: str
-) -> None:
+def _compare(folder: Path, files: dict[str, Entry], optional: Iterable[str], again: str) -> None:
     for name, entry in files.items():
         file = folder / name
         if name in optional and not os.path.lexists(file):
@@ -312,22 +294,22 @@ def _compare(
             if pointer := lfs_problem(file):
                 raise ValueError(f"{file} {pointer}.")
             raise ValueError(
-                f"{file} does not have the sha256 that {manifest.source} states: it was changed or "
+                f"{file} does not have the sha256 that {MANIFEST} states: it was changed or "
                 f"truncated. {again}"
             )
 
 
 def _matches(file: Path, entry: Entry) -> bool:
     """Return whether a file matches its entry; the file is read only if its size is right."""
-    return entry.size in (None, file.stat().st_size) and sha256(file) == entry.sha256
+    return entry.size == file.stat().st_size and sha256(file) == entry.sha256
 
 
 def problem(file: Path) -> str:
-    """Compare ``file`` with the manifest of its folder, or with the sidecar of an older version.
+    """Compare ``file`` with the manifest of its folder.
 
     Returns:
-        A predicate such as "does not have the sha256 ...". It is "" if the file is intact, or if
-        neither a manifest nor a sidecar lists it.
+        A predicate such as "does not have the sha256 ...". It is "" if the file is intact, or if no
+        manifest lists it.
 
     Raises:
         PermissionError: If the user has no permission to read the file; it may be intact.
@@ -338,15 +320,11 @@ def problem(file: Path) -> str:
         return f"cannot be compared with its manifest ({error})"
     versions = (manifest.files, manifest.replaced) if manifest else ()
     listed = [entries[file.name] for entries in versions if file.name in entries]
-    if manifest is None or not listed:
-        return checksums.problem(file)
-    sound = any(_matches(file, entry) for entry in listed)
-    return "" if sound else f"does not have the sha256 in {manifest.source}"
+    sound = not listed or any(_matches(file, entry) for entry in listed)
+    return "" if sound else f"does not have the sha256 in {MANIFEST}"
 
 
 def is_listed(file: Path) -> bool:
-    """Return whether a manifest, or a sidecar of an older version, contains the sha256 of
-    ``file``.
-    """
+    """Return whether the manifest of its folder contains the sha256 of ``file``."""
     manifest = read_manifest(file.parent)
-    return bool(manifest and file.name in manifest.files) or checksums.sidecar(file).is_file()
+    return manifest is not None and file.name in manifest.files

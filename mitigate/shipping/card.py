@@ -257,8 +257,6 @@ def _cell(numbers: list[float | None]) -> str:
 
 
 def _use(card: dict[str, Any]) -> str:
-    # file names in older and in current folders
-    listed = "card.json" if "files" in card else "manifest.json"
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     whole = card.get("program", True)
     of_user = not whole and not loading.is_ours(card.get("class", ""))
@@ -267,7 +265,7 @@ def _use(card: dict[str, Any]) -> str:
         f"{', agent=Mine(...)' if of_user else ''})\n```\n\n"
         f"{'Build the agent with the settings in `config.yaml`. ' * of_user}"
         f"{'The weights are loaded into this object. ' * of_user}"
-        f"Before loading, every file is compared with its sha256 in `{listed}`. "
+        "Before loading, every file is compared with its sha256 in `manifest.json`. "
     )
     if not whole:
         return (

@@ -30,7 +30,7 @@ from torch import Tensor, nn
 
 from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, folders, older_folders, settings
+from mitigate.core import checkpoint, folders, settings
 from mitigate.core.files import find, last_lines, write_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
@@ -200,8 +200,6 @@ def add_programs(folder: Path) -> Path:
     with folders.replace_folder(folder) as draft:
         shutil.copytree(folder, draft, dirs_exist_ok=True)
         programs.save_programs(exported, draft / loading.PROGRAM)
-        card = {**older_folders.without_sums(card), "format": loading.FORMAT}
-        _write_json(draft / loading.CARD, card)
         folders.seal(draft, "hardened")
         loading.check_hardened(draft)
     return folder / loading.PROGRAM

@@ -22,7 +22,7 @@ from torch import nn
 
 from mitigate.agents import adapters
 from mitigate.agents import loading as agents
-from mitigate.core import checkpoint, older_folders
+from mitigate.core import checkpoint, folders
 from mitigate.encoders import folder as encoder_folder
 from mitigate.encoders import loading, plain_adapters
 from mitigate.guards.text.language_models import adapter_folder
@@ -178,9 +178,8 @@ def test_load_rejects_invalid_safetensors(tmp_path, raw):
 
 
 def card(**changes) -> dict:
-    output = {"format": 1, "files": {}, "adapters_only": False, "base": None, "vocabulary": None}
-    output |= {"commit": "0", "agent": "0", **changes}
-    return output | {"sha256": older_folders.card_sha(output)}
+    output = {"format": 2, "adapters_only": False, "base": None, "vocabulary": None}
+    return output | {"commit": "0", "agent": "0", **changes}
 
 
 OTHER = "../../../etc/passwd"
@@ -193,13 +192,10 @@ CARDS = {
     "many digits": b'{"format": ' + b"1" * 10_000 + b"}",
     "bytes": bytes(range(256)),
     "large": b" " * (1 << 24) + b"{}",
-    "no sum": {"format": 1},
-    "another sum": card() | {"commit": "1"},
-    "another format": card(format=2),
-    "format as text": card(format="1"),
+    "no entries": {"format": 2},
+    "another format": card(format=1),
+    "format as text": card(format="2"),
     "no files": card(),
-    "files in a list": card(files=["config.yaml"]),
-    "files outside": card(files={OTHER: "0", "config.yaml": "0"}),
     "a base of text": card(adapters_only=True, base="checkpoints/base"),
     "a base without a path": card(adapters_only=True, base={"sha256": "0"}),
     "a base of numbers": card(adapters_only=True, base={"weights": 1, "sha256": 2}),
@@ -211,7 +207,9 @@ CARDS = {
 def test_load_hardened_rejects_invalid_card(tmp_path, output):
     raw = output if isinstance(output, bytes) else json.dumps(output).encode()
     (tmp_path / agents.CARD).write_bytes(raw)
-    assert str(tmp_path) in refused(lambda: agents.load_hardened(tmp_path))
+    refused(lambda: agents.load_hardened(tmp_path), str(tmp_path))
+    folders.seal(tmp_path, "hardened")
+    refused(lambda: agents.load_hardened(tmp_path), str(tmp_path))
 
 
 @pytest.mark.parametrize("folder", [None, 3, True])
@@ -221,12 +219,15 @@ def test_load_hardened_rejects_values_that_are_no_path(folder):
 
 
 @pytest.mark.parametrize("name", [OTHER, "/etc/passwd", "..", "", ".", "a/b", "./x", "a\\..\\/b"])
-def test_card_reads_no_file_outside_its_folder(tmp_path, name):
-    needed = (*agents.FILES, checkpoint.WEIGHTS)
-    for each in needed:
+def test_manifest_reads_no_file_outside_its_folder(tmp_path, name):
+    for each in (*agents.FILES, checkpoint.WEIGHTS):
         (tmp_path / each).write_text("x")
-    files = {name: "0"} | dict.fromkeys(needed, agents.sha256(tmp_path / needed[0]))
-    (tmp_path / agents.CARD).write_text(json.dumps(card(files=files)))
+    (tmp_path / agents.CARD).write_text(json.dumps(card()))
+    folders.seal(tmp_path, "hardened")
+    file = tmp_path / folders.MANIFEST
+    manifest = json.loads(file.read_text())
+    manifest["files"][name] = manifest["files"][agents.CONFIG]
+    file.write_text(json.dumps(manifest))
     refused(lambda: agents.load_hardened(tmp_path), "not a plain file name")
 
 
@@ -353,13 +354,12 @@ def test_sound_files_of_before_are_still_read(tmp_path):
 
 
 def test_loading_a_hardened_folder_does_not_open_its_program(tmp_path, monkeypatch):
-    """A malicious card can contain matching checksums, so they must not make loading run code."""
+    """A malicious manifest can contain matching checksums, so they must not make loading run
+    code."""
     shutil.copytree(ROOT / "checkpoints/hardened/ts_distill", tmp_path / "mine")
-    program, file = tmp_path / "mine" / agents.PROGRAM, tmp_path / "mine" / agents.CARD
+    program = tmp_path / "mine" / agents.PROGRAM
     program.write_bytes(pickle.dumps(Code(tmp_path / "ran")))
-    content = json.loads(file.read_text())
-    content["files"][agents.PROGRAM] = agents.sha256(program)
-    file.write_text(json.dumps(content | {"sha256": older_folders.card_sha(content)}))
+    folders.seal(tmp_path / "mine", "hardened")
     monkeypatch.chdir(ROOT)
     assert not agents.load_hardened(tmp_path / "mine").training
     assert not (tmp_path / "ran").exists()

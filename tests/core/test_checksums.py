@@ -1,4 +1,4 @@
-"""Tests of the sha256 checksums of training states, weight files and older folders."""
+"""Tests of the sha256 checksums of training states."""
 
 from __future__ import annotations
 
@@ -8,12 +8,10 @@ from pathlib import Path
 
 import pytest
 import torch
-from torch import nn
 
-from mitigate.core import checkpoint, checksums, seeding
+from mitigate.core import seeding
 from mitigate.training import states
 
-ROOT = Path(__file__).parents[2]
 FLIPS = 50
 STATE = {
     "model": {"w": torch.arange(300.0), "deep": {"b": torch.ones(7)}},
@@ -43,11 +41,6 @@ def flips(data: bytes, name: str) -> list[bytes]:
     """Return ``FLIPS`` copies of ``data``, each with one flipped bit; ``name`` is the seed."""
     places = seeding.generator(0, "flipped bits", name).integers(0, 8 * len(data), FLIPS)
     return [flipped(data, int(bit)) for bit in places]
-
-
-def weights_with_sidecar(file: Path) -> Path:
-    """Write weights as earlier versions did."""
-    return checksums.write(file, lambda draft: checkpoint.write_tensors(nn.Linear(3, 2), draft))
 
 
 def note_of(path: Path) -> Path:
@@ -111,17 +104,11 @@ def test_truncated_checkpoint_is_skipped(tmp_path, share, noted, capsys):
 
 @pytest.mark.parametrize("text", ["", "\n", "0" * 64, "0" * 64 + "  other\n", "\xff", "x  model"])
 def test_damaged_sidecar_is_named_and_may_be_deleted(tmp_path, text):
-    file = weights_with_sidecar(tmp_path / "model.safetensors")
-    note_of(file).write_bytes(text.encode("latin-1"))
-    with pytest.raises(ValueError, match="only model.safetensors.sha256 is damaged, delete it"):
-        checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
     path = states.save(tmp_path, state(1))
     note_of(path).write_bytes(text.encode("latin-1"))
     with pytest.raises(states.Damaged, match=r"If only the \.sha256 files are damaged"):
         states.load_newest(tmp_path)
-    for remaining in (file, path):
-        note_of(remaining).unlink()
-    checkpoint.load_weights(nn.Linear(3, 2), tmp_path)
+    note_of(path).unlink()
     assert states.load_newest(tmp_path)[1]["step"] == 1
 
 
@@ -138,9 +125,9 @@ def test_damaged_checkpoints_are_not_deleted(tmp_path):
 
 def test_sidecars_are_what_sha256sum_checks(tmp_path):
     states.save(tmp_path, state(1))
-    file = weights_with_sidecar(tmp_path / "mine.safetensors")
+    path = states.save(tmp_path, state(2))
     assert checked(tmp_path) == 0
-    file.write_bytes(flipped(file.read_bytes(), 500))
+    path.write_bytes(flipped(path.read_bytes(), 500))
     assert checked(tmp_path) != 0
 
 
@@ -162,12 +149,3 @@ def test_save_keeps_new_checkpoints_before_a_damaged_later_step(tmp_path):
         "step-00000009.pt",
     ]
     assert states.load_newest(tmp_path)[1]["step"] == 5
-
-
-@pytest.mark.parametrize("name", ["base", "teacher", "safeguard"])
-def test_shipped_weights_have_their_sums_beside_them(name):
-    assert checked(ROOT / "checkpoints" / name) == 0
-
-
-def test_shipped_hardened_folders_have_none(tmp_path):
-    assert not list((ROOT / "checkpoints/hardened").rglob("*.sha256"))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -11,12 +12,32 @@ import pytest
 import torch
 from torch import nn
 
-from mitigate.agents.topological import TopologicalAgent
-from mitigate.core import checkpoint, checksums, folders, seeding
+import mitigate
+from mitigate.core import checkpoint, folders, seeding
 from mitigate.core.files import sha256
+from mitigate.guards.frames.restorer import load_restorer
+from mitigate.guards.text import classifier
+from mitigate.guards.text.language_models.adapter_folder import adapter_tensors, read_adapter
 
 ROOT = Path(__file__).parents[2]
 FLIPS = 50
+KINDS = {"restorer": "restorer", "safeguard": "safeguard", "safeguard_classifier": "safeguard"}
+# the kinds of all shipped folders
+SHIPPED = {
+    name: "hardened" if name.startswith("hardened/") else KINDS.get(name, "agent")
+    for file in sorted((ROOT / "checkpoints").rglob("*.safetensors"))
+    for name in [file.parent.relative_to(ROOT / "checkpoints").as_posix()]
+}
+READERS = {
+    "base": mitigate.load,
+    "recurrent/base": mitigate.load,
+    "frontier/base": mitigate.load,
+    "hardened/stacked": mitigate.load,
+    "hardened/conv_adapter": mitigate.load,
+    "restorer": load_restorer,
+    "safeguard": lambda folder: adapter_tensors(folder, read_adapter(folder)[1]),
+    "safeguard_classifier": classifier.load.__wrapped__,  # without its cache
+}
 
 
 class Killed(BaseException):
@@ -41,10 +62,8 @@ def write_files(folder: Path, **files: str) -> Path:
     return folder
 
 
-def older(module: nn.Module, folder: Path) -> Path:
-    """Write weights as earlier versions did: with a sidecar and no manifest."""
-    file = folder / checkpoint.WEIGHTS
-    return checksums.write(file, lambda draft: checkpoint.write_tensors(module, draft))
+def flip(file: Path) -> None:
+    file.write_bytes(flipped(file.read_bytes(), 4 * file.stat().st_size))
 
 
 def test_write_folder_lists_size_and_sha256_of_every_file(tmp_path):
@@ -82,12 +101,35 @@ def test_weights_detect_every_flipped_bit(tmp_path):
             checkpoint.load_weights(nn.Linear(30, 20), path)
 
 
-def test_shipped_weights_with_a_flipped_bit_are_refused(tmp_path):
-    folder = shutil.copytree(ROOT / "checkpoints/base", tmp_path / "base")
-    file = folder / checkpoint.WEIGHTS
-    file.write_bytes(flipped(file.read_bytes(), 8 * 2_000_000))
-    with pytest.raises(ValueError, match="does not have the sha256"):
-        checkpoint.load_weights(TopologicalAgent(), folder)
+@pytest.mark.parametrize("name", SHIPPED)
+def test_shipped_folder_has_a_manifest_of_all_its_files(name):
+    folder = ROOT / "checkpoints" / name
+    manifest = folders.check(folder)
+    assert manifest.files.keys() | {folders.MANIFEST} == names(folder)
+    assert manifest.kind == SHIPPED[name] and not manifest.replaced
+
+
+@pytest.mark.parametrize("name", READERS)
+def test_shipped_folder_loads_and_detects_flipped_bits(name, tmp_path, monkeypatch):
+    # the settings of adapters name the folder of their base agent relative to ROOT
+    monkeypatch.chdir(ROOT)
+    folder = Path(shutil.copytree(ROOT / "checkpoints" / name, tmp_path / "mine"))
+    assert READERS[name](folder) is not None
+    for file in folders.check(folder).files:
+        sound = (folder / file).read_bytes()
+        flip(folder / file)
+        with pytest.raises(ValueError, match=rf"{re.escape(file)}.* (sha256|damaged)"):
+            READERS[name](folder)
+        (folder / file).write_bytes(sound)
+    assert READERS[name](folder) is not None
+
+
+def test_weights_without_a_manifest_load(tmp_path):
+    """Folders of other projects have no manifest."""
+    shutil.copytree(ROOT / "checkpoints/frontier/base", tmp_path, dirs_exist_ok=True)
+    (tmp_path / folders.MANIFEST).unlink()
+    agent = mitigate.load(ROOT / "checkpoints/frontier/base")
+    assert checkpoint.weights_sha(mitigate.load(tmp_path)) == checkpoint.weights_sha(agent)
 
 
 def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
@@ -102,19 +144,16 @@ def test_file_of_another_size_is_not_read(tmp_path, monkeypatch):
         folders.check(folder)
 
 
-@pytest.mark.parametrize("earlier", ["manifest", "sidecar", "nothing"])
+@pytest.mark.parametrize("earlier", ["manifest", "nothing"])
 @pytest.mark.parametrize("when", range(4))
 def test_kill_leaves_the_old_or_the_new_file(tmp_path, monkeypatch, when, earlier):
     """A file is replaced in three writes: a manifest with the old and the new checksum, the file,
     and the final manifest."""
     old = nn.Linear(3, 2)
     new = nn.Linear(3, 2)
-    if earlier == "manifest":
-        checkpoint.save_weights(old, tmp_path)
-    else:
-        note = older(old, tmp_path)
-        if earlier == "nothing":
-            note.with_name(f"{note.name}.sha256").unlink()
+    checkpoint.save_weights(old, tmp_path)
+    if earlier == "nothing":
+        (tmp_path / folders.MANIFEST).unlink()
     replace, calls = os.replace, []
 
     def replace_until_killed(*paths):
@@ -220,17 +259,13 @@ def test_damaged_manifest_is_rejected(tmp_path, output):
     checkpoint.load_weights(nn.Linear(3, 2), file)
 
 
-def test_older_folders_are_read_and_upgraded_when_written(tmp_path):
+def test_folder_without_a_manifest_gets_one_when_it_is_written(tmp_path):
     module = nn.Linear(3, 2)
-    file = older(module, tmp_path)
-    (tmp_path / "config.yaml").write_text("agent: {}\n")
+    checkpoint.save_agent(module, tmp_path, "agent: {}\n")
+    (tmp_path / folders.MANIFEST).unlink()
     loaded = nn.Linear(3, 2)
     checkpoint.load_weights(loaded, tmp_path)
     assert torch.equal(loaded.weight, module.weight)
-    note = file.with_name(f"{file.name}.sha256")
-    note.write_text(f"{'0' * 64}  {file.name}\n")
-    with pytest.raises(ValueError, match="does not have the sha256"):
-        checkpoint.load_weights(loaded, tmp_path)
     checkpoint.save_agent(module, tmp_path, "agent: {width: 2}\n")
     assert names(tmp_path) == {folders.MANIFEST, "config.yaml", checkpoint.WEIGHTS}
     assert folders.check(tmp_path).files.keys() == {"config.yaml", checkpoint.WEIGHTS}

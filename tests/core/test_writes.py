@@ -50,7 +50,7 @@ ALLOWED = {
     ("mitigate/agents/topological/stored.py", "memmap"): OWN,
     ("mitigate/guards/text/language_models/adapter_folder.py", "save_pretrained"): OWN,
     ("mitigate/agents/vlm/agent.py", "save_pretrained"): OWN,
-    ("mitigate/guards/text/fit.py", "save_file"): DRAFT,
+    ("mitigate/guards/text/fit.py", "save_file"): OWN,
     ("mitigate/core/folders.py", "open"): "syncs a file of its draft; it truncates nothing",
     ("mitigate/shipping/export.py", "copytree"): OWN,
     ("mitigate/shipping/export.py", "save_file"): OWN,

@@ -228,7 +228,7 @@ def test_load_rejects_the_folder_of_another_encoder(tmp_path):
     (tmp_path / folders.CARD).write_text('{"format": 1, "sensor": ["rgb"]}')
     with pytest.raises(ValueError, match="does not have the sha256"):
         result().load(tmp_path)
-    (tmp_path / MANIFEST).unlink()  # earlier versions wrote no manifest
+    (tmp_path / MANIFEST).unlink()  # files that no manifest lists are not compared
     with pytest.raises(ValueError, match=r"to an encoder with sensor=\['rgb'\]"):
         result().load(tmp_path)
 

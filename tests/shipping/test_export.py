@@ -268,8 +268,6 @@ def test_adapter_folder_holds_no_backbone_and_needs_its_base(place, tmp_path):
     folder = place / "hardened/adapted"
     assert loading.check_hardened(folder)["adapters_only"]
     assert not (folder / "model.safetensors").exists()
-    # no sidecars, because the cards contain the checksums
-    assert not list((place / "hardened").rglob("*.sha256"))
     other = checkpoint.save_weights(TopologicalAgent(**TINY), tmp_path / "other")
     with pytest.raises(ValueError, match="has a different one"):
         loading.load_hardened(folder, base=other)
@@ -387,6 +385,12 @@ def test_changed_card_is_rejected(copied, text, problem):
 def test_folder_without_a_card_is_rejected(tmp_path):
     with pytest.raises(FileNotFoundError, match=r"card\.json is missing"):
         loading.load_hardened(tmp_path)
+
+
+def test_folder_without_a_manifest_is_rejected(copied):
+    (copied / folders.MANIFEST).unlink()
+    with pytest.raises(FileNotFoundError, match=r"manifest\.json is missing"):
+        mitigate.load(copied)
 
 
 @pytest.mark.parametrize("name", ["model.safetensors", "program.pt2", "config.yaml"])

@@ -20,7 +20,7 @@ import numpy as np
 from safetensors import SafetensorError
 from safetensors.numpy import load_file
 
-from mitigate.core import checksums
+from mitigate.core import folders
 from mitigate.core.files import find
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
@@ -195,19 +195,17 @@ def load(folder: str | Path) -> Classifier:
             raise FileNotFoundError(
                 f"There is no classifier in {folder}: {needed.name} is missing. {_AGAIN}"
             )
-    problem = checksums.problem(file)
+    folders.check(folder, again=_AGAIN)
     try:
-        config = read_json(config_file, _AGAIN)
-        if not problem:
-            arrays = load_file(file)
-            # folders of earlier versions contain no networks, so use the shipped ones
-            if NAMES[0] not in arrays:
-                shipped = load_file(find(SHIPPED) / WEIGHTS)
-                arrays |= {name: shipped[name] for name in NAMES}
-            classifier = Classifier(config, arrays)
-            if all(classifier.arrays[name].shape == (SIZE,) for name in ARRAYS):
-                return classifier
-            problem = "has arrays of another shape"
+        config, arrays = read_json(config_file, _AGAIN), load_file(file)
+        # folders of earlier versions contain no networks, so use the shipped ones
+        if NAMES[0] not in arrays:
+            shipped = load_file(find(SHIPPED) / WEIGHTS)
+            arrays |= {name: shipped[name] for name in NAMES}
+        classifier = Classifier(config, arrays)
+        if all(classifier.arrays[name].shape == (SIZE,) for name in ARRAYS):
+            return classifier
+        problem = "has arrays of another shape"
     except (ValueError, KeyError, TypeError, IndexError, SafetensorError) as error:
         problem = f"cannot be read ({short(str(error), 120)})"
     raise ValueError(f"The classifier in {folder} is damaged: {file.name} {problem}. {_AGAIN}")

@@ -26,9 +26,9 @@ from safetensors.numpy import save_file
 from scipy.optimize import minimize
 from scipy.sparse import csr_matrix
 
-from mitigate.core import checksums
+from mitigate.core import folders
 from mitigate.core.errors import error_message
-from mitigate.core.files import find, make_folder, write_text
+from mitigate.core.files import find, write_text
 from mitigate.core.progress import say
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
@@ -218,13 +218,13 @@ def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> Weights
 
 def save(trained: Classifier, folder: Path) -> None:
     """Write a classifier into a folder."""
-    make_folder(folder)
-    write_text(folder / model.CONFIG, json.dumps(trained.config) + "\n")
     arrays = {
         name: array.astype(np.float16 if name in model.ARRAYS else np.float32)
         for name, array in trained.arrays.items()
     }
-    checksums.write(folder / model.WEIGHTS, lambda file: save_file(arrays, file))
+    with folders.write_folder(folder, "safeguard") as draft:
+        write_text(draft / model.CONFIG, json.dumps(trained.config) + "\n")
+        save_file(arrays, draft / model.WEIGHTS)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

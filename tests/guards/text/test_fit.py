@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from safetensors.numpy import save_file
 
+from mitigate.core import folders
 from mitigate.core.files import ROOT, find
 from mitigate.guards.text import choices, classifier, fit
 from mitigate.guards.text.guard import Safeguard, open_safeguard
@@ -53,6 +54,12 @@ def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeyp
         message = Safeguard(classifier=one).canonicalise(text).text
         assert message == "Turn left at the sofa. Stop by the lamp."
     assert open_safeguard(str(tmp_path)).canonicalise(text).text == message
+
+
+def test_save_writes_a_manifest(tmp_path):
+    shipped = find(choices.CLASSIFIER)
+    fit.save(classifier.load(shipped), tmp_path)
+    assert folders.check(tmp_path) == folders.check(shipped)
 
 
 @pytest.mark.parametrize("extra", [{}, {"hidden": np.zeros((31, 10)), "linear": np.zeros(31)}])
