@@ -196,7 +196,9 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
     if not adapters:
         raise ValueError("There are no adapters to save: call insert_adapters(model, ...) first.")
     before = vars(model).get(_STATISTICS, {})
-    if any(not v.equal(before.get(name, v)) for name, v in _statistics(model).items()):
+    now = _statistics(model)
+    # the model may have moved to another device or dtype
+    if any(not v.float().cpu().equal(before.get(n, v).float().cpu()) for n, v in now.items()):
         warnings.warn(
             "The backbone's running statistics (BatchNorm) have changed, and the adapters fit only "
             "this backbone: save it, too, or train with it in eval mode, model.eval().",
@@ -394,4 +396,4 @@ def _statistics(model: nn.Module) -> dict[str, Tensor]:
     """Return copies of the running means and variances of the model's normalisation layers."""
     buffers = dict(model.named_buffers())
     running = [name for name in buffers if name.rpartition(".")[2].startswith("running_")]
-    return {name: buffers[name].clone().float().cpu() for name in running}
+    return {name: buffers[name].clone() for name in running}

@@ -363,3 +363,10 @@ def test_load_rejects_invalid_folders(tmp_path, spoil):
     with pytest.raises(error, match="is missing|truncated|are damaged|trained on a backbone"):
         load_adapters(model, tmp_path)
     assert not adapters.adapted(model)
+
+
+def test_adapters_fit_a_model_without_values():
+    """Loading counts the weights of an agent on the device "meta" before it allocates memory."""
+    with torch.device("meta"):
+        model = nn.Sequential(nn.Conv2d(3, 8, 3), nn.BatchNorm2d(8))
+        assert insert_adapters(model, ["0"]) == ["0"]
