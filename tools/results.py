@@ -27,6 +27,7 @@ from mitigate.core.errors import command
 from mitigate.core.files import make_folder, write_text
 from mitigate.core.markdown import markdown_table, plain_text
 from mitigate.core.names import unknown
+from mitigate.core.output import open_output
 from mitigate.core.progress import say
 
 CONFIG = Path(__file__).with_suffix(".yaml")
@@ -136,7 +137,7 @@ def cost_table(options: Options, names: Sequence[str], done: set[str]) -> str:
 
 def run(programs: Sequence[Sequence[str]], log: Path) -> str:
     """Run the programs of a table one after the other until one fails; return its error."""
-    with log.open("ab") as file:
+    with open_output(log, "ab") as file:
         for words in programs:
             say(shlex.join(words))
             module = ["-m", "mitigate"] if words[0] == "mitigate" else []

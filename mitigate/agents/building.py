@@ -16,7 +16,7 @@ from torch import nn
 
 from mitigate.agents import loading, schema
 from mitigate.agents.agent import stated_settings
-from mitigate.core import checkpoint, seeding, settings
+from mitigate.core import checkpoint, folders, seeding, settings
 from mitigate.core.build import build, locate, plain
 from mitigate.core.contracts import read
 from mitigate.core.files import find
@@ -113,8 +113,8 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     If the file does not exist, the result is empty.
 
     Raises:
-        ValueError: If the weights belong to a different kind of agent than ``node``, or the file
-            holds a value that the agent does not accept.
+        ValueError: If the file was changed, if the weights belong to a different kind of agent than
+            ``node``, or if the file holds a value that the agent does not accept.
     """
     place = find(weights)
     if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):
@@ -122,6 +122,8 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
     file = loading.config_of(place)
     if not file.is_file():
         return {}
+    if problem := folders.problem(file):
+        raise ValueError(f"{file} {problem}. {folders.AGAIN}")
     if loading.is_ours(node["_target_"]):
         return loading.agent_settings(file, node["_target_"])
     constructor = locate(node["_target_"])

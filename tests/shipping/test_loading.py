@@ -10,7 +10,7 @@ import torch
 import yaml
 
 import mitigate
-from mitigate.agents.building import agent_option
+from mitigate.agents.building import agent_option, stored_settings
 from mitigate.core import checkpoint, conf
 from mitigate.evaluation import evaluate
 from mitigate.worlds.apartments import simulator
@@ -61,6 +61,16 @@ def test_changed_hardened_folder_is_rejected(tmp_path):
         file.write(b"x")
     with pytest.raises(ValueError, match="does not have the sha256"):
         mitigate.load(folder)
+
+
+def test_evaluate_rejects_changed_settings(tmp_path):
+    folder = Path(shutil.copytree(ROOT / "checkpoints/base", tmp_path / "base"))
+    node = conf.composed("evaluate", []).agent
+    assert stored_settings(node, str(folder))
+    with open(folder / "config.yaml", "a") as file:
+        file.write("# another\n")
+    with pytest.raises(ValueError, match=r"config\.yaml does not have the sha256"):
+        stored_settings(node, str(folder))
 
 
 def test_options_take_the_agent_kind_of_the_weights():
