@@ -12,7 +12,6 @@ scores of new texts, and the network would rely on them too much.
 from __future__ import annotations
 
 import argparse
-import json
 import re
 import sys
 from collections import Counter
@@ -28,7 +27,7 @@ from scipy.sparse import csr_matrix
 
 from mitigate.core import checksums
 from mitigate.core.errors import error_message
-from mitigate.core.files import find, make_folder, write_text
+from mitigate.core.files import find, make_folder, write_json
 from mitigate.core.progress import say
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
@@ -219,7 +218,7 @@ def regression(x: Any, y: np.ndarray, weight: np.ndarray, steps: int) -> Weights
 def save(trained: Classifier, folder: Path) -> None:
     """Write a classifier into a folder."""
     make_folder(folder)
-    write_text(folder / model.CONFIG, json.dumps(trained.config) + "\n")
+    write_json(folder / model.CONFIG, trained.config)
     arrays = {
         name: array.astype(np.float16 if name in model.ARRAYS else np.float32)
         for name, array in trained.arrays.items()
