@@ -28,7 +28,7 @@ from pathlib import Path
 
 from safetensors.numpy import load_file
 
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 
 ROOT = Path(__file__).resolve().parent.parent
 STORED = ROOT / "runs" / "compare"
@@ -88,7 +88,7 @@ def measure(commit: str | None, only: list[str] | None, episodes: int) -> dict[s
             print(f"{sha or 'working tree'}: {name}", flush=True)
             digests[name] = function()
             if sha:
-                write_text(file, json.dumps(digests, indent=2))
+                write_json(file, digests, indent=2)
     return {n: v for n, v in digests.items() if not only or n.rpartition("/")[2] in only}
 
 

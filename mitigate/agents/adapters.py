@@ -29,7 +29,7 @@ from mitigate.agents.adapter_layers import (
 )
 from mitigate.agents.sites import MAP, Run, channels_of, find_sites, first, inputs_of, listed, named
 from mitigate.core import checkpoint
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 from mitigate.core.folders import problem, write_folder
 from mitigate.core.json_files import read_json
 from mitigate.core.names import escaped, short
@@ -210,7 +210,7 @@ def write_adapters(model: nn.Module, draft: Path) -> None:
         "backbone_sha256": backbone_sha(model),
         "adapters": {name: adapter.settings for name, adapter in adapters.items()},
     }
-    write_text(draft / SETTINGS, json.dumps(settings, indent=2))
+    write_json(draft / SETTINGS, settings, indent=2)
 
 
 def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:

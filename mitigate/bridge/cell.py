@@ -7,7 +7,6 @@ first, so that a damaged file is never used as a result.
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +21,7 @@ from mitigate.bridge.hook.mitigate_hook import CLOSE, RESET
 from mitigate.bridge.recording import is_whole
 from mitigate.bridge.results import Reports
 from mitigate.core import output
-from mitigate.core.files import atomic_text, last_lines, sha256
+from mitigate.core.files import last_lines, sha256, write_json
 from mitigate.core.json_files import read_object
 from mitigate.core.names import counted, short
 from mitigate.corruptions import Corruption
@@ -57,8 +56,7 @@ def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
     """Mark a condition as finished: write ``entries`` and a checksum of the events to
     ``done.json``.
     """
-    with atomic_text(folder / DONE) as file:
-        json.dump({**entries, "events": _seal(folder)}, file)
+    write_json(folder / DONE, {**entries, "events": _seal(folder)})
 
 
 def _seal(folder: Path) -> dict[str, Any]:

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from mitigate.bridge.results import Reports
 from mitigate.core import output
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_json
 from mitigate.core.json_files import read_object
 from mitigate.core.output import open_output
 from mitigate.corruptions import Corruption, Key, corrupt_instruction
@@ -292,8 +292,7 @@ class Subset:
                 hashes = sorted(hash_episode(_read_name(line, known)) for line in {*file})
                 bound = hashes[min(self.count, len(hashes)) - 1]
                 choice = {"bound": bound, "episodes": self.count, "of": len(hashes)}
-                with atomic_text(self.folder / "episodes.json") as out:
-                    json.dump(choice, out)
+                write_json(self.folder / "episodes.json", choice)
         return choice
 
 

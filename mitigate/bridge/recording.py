@@ -24,7 +24,7 @@ import numpy as np
 from mitigate.bridge.cameras import Camera, Rig
 from mitigate.bridge.condition import Observer
 from mitigate.core import output
-from mitigate.core.files import RECORDING, atomic_text, draft_path, make_folder, write_bytes
+from mitigate.core.files import RECORDING, draft_path, make_folder, write_bytes, write_json
 from mitigate.core.locks import delete_abandoned
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.core.output import open_output
@@ -86,11 +86,10 @@ class Recorder(Observer):
         output.make_checked(draft)
         self.draft, self.target, self.cameras = draft, target, {}
         header = {"unit": UNIT, "depth": "16-bit PNG", "frames": "clean"}
-        with atomic_text(self.folder / RECORDING) as file:
-            json.dump(header, file)
+        write_json(self.folder / RECORDING, header)
         fields = ("scene", "id", "text", "tokens", "language", "category")
-        with atomic_text(self.draft / "episode.json") as file:
-            json.dump({name: message.get(name) for name in fields}, file)
+        episode = {name: message.get(name) for name in fields}
+        write_json(self.draft / "episode.json", episode)
         write_bytes(self.draft / "steps.jsonl", b"")
 
     def frame(
@@ -102,8 +101,7 @@ class Recorder(Observer):
         cameras = {unique_part(name): camera for name, camera in rig.describe().items()}
         if not cameras.keys() <= self.cameras.keys():
             self.cameras = cameras | self.cameras
-            with atomic_text(self.draft / CAMERAS) as file:
-                json.dump(self.cameras, file)
+            write_json(self.draft / CAMERAS, self.cameras)
         for camera in rig.cameras:
             frame = camera.read(memory, offsets)
             file_name = f"{int(message['call']):06d}.png"
@@ -116,8 +114,7 @@ class Recorder(Observer):
         """Write the result of the episode and move its folder to the final place."""
         if self.draft is not None and self.target is not None:
             result = {name: value for name, value in message.items() if name != "kind"}
-            with atomic_text(self.draft / "end.json") as file:
-                json.dump(result, file)
+            write_json(self.draft / "end.json", result)
             # an earlier run left this folder, or this run has recorded the same episode before
             output.delete_folder(self.target)
             output.forget(self.draft)

@@ -6,6 +6,7 @@ import difflib
 import gzip
 import hashlib
 import io
+import json
 import os
 import secrets
 import stat
@@ -317,6 +318,14 @@ def write_bytes(path: Path | str, data: bytes) -> None:
 def write_text(path: Path | str, text: str) -> None:
     """Write ``text`` as UTF-8 to ``path`` atomically."""
     write_bytes(path, text.encode())
+
+
+def write_json(path: Path | str, value: Any, indent: int | None = None, **options: Any) -> None:
+    """Write ``value`` as JSON and a final newline to ``path`` atomically.
+
+    ``options`` are other arguments of ``json.dumps``. A path in ``.gz`` is not gzipped.
+    """
+    write_bytes(path, (json.dumps(value, indent=indent, **options) + "\n").encode())
 
 
 def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:

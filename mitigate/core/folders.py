@@ -19,7 +19,6 @@ from __future__ import annotations
 
 import glob
 import hashlib
-import json
 import os
 import re
 import tempfile
@@ -36,6 +35,7 @@ from mitigate.core.files import (
     make_folder,
     put_folder,
     sha256,
+    write_json,
     write_text,
 )
 from mitigate.core.json_files import read_object
@@ -205,7 +205,7 @@ def _write_manifest(folder: Path, manifest: Manifest) -> None:
     text = {"format": FORMAT, "kind": manifest.kind, "files": plain(manifest.files)}
     if manifest.replaced:
         text["replaced"] = plain(manifest.replaced)
-    write_text(folder / MANIFEST, json.dumps(text, indent=1) + "\n")
+    write_json(folder / MANIFEST, text, indent=1)
 
 
 def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:

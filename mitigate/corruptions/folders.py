@@ -4,7 +4,6 @@ written atomically.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from hashlib import blake2b
@@ -14,7 +13,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from mitigate.core.files import sha256, write_bytes
+from mitigate.core.files import sha256, write_bytes, write_json
 from mitigate.core.json_files import LARGEST_LIST, read_object
 from mitigate.core.names import escaped, short
 from mitigate.core.observation import DEPTH, RGB, Z_MAX
@@ -314,7 +313,7 @@ def short_hash(text: str) -> str:
 
 def write_summary(out: Path, summary: dict) -> None:
     """Write ``corrupt.json``."""
-    write_bytes(out / SUMMARY, (json.dumps(summary, indent=1) + "\n").encode())
+    write_json(out / SUMMARY, summary, indent=1)
 
 
 # -------------------------------------------------------------------------------- user errors

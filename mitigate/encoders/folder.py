@@ -8,13 +8,12 @@ the folder. Therefore the caller must construct the encoder.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.agents import adapters
 from mitigate.core import checkpoint, folders
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json, write_text
 from mitigate.core.json_files import read_object
 
 if TYPE_CHECKING:
@@ -45,7 +44,7 @@ def write(encoder: Encoder, folder: str | Path) -> Path:
             adapters.write_adapters(encoder.model, draft)
         else:
             checkpoint.write_tensors(encoder.model, draft / checkpoint.WEIGHTS)
-        write_text(draft / CARD, json.dumps(described(encoder), indent=2))
+        write_json(draft / CARD, described(encoder), indent=2)
         write_text(
             draft / README,
             f"# A hardened encoder\n\nTrained by `make train RECIPE=encoder` (mitigate). In plain "

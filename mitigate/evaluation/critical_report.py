@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -10,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from mitigate.core.files import atomic_text, make_folder
+from mitigate.core.files import make_folder, write_json, write_text
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.corruptions.registry import title
@@ -35,11 +34,9 @@ def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
             plots.severity_curves(part.grid, folder / pictures[-1])
             image = f"![SR against severity]({pictures[-1]})"
         texts.append(f"{markdown(part)}\n\n{image}\n")
-    with atomic_text(folder / "critical.md") as file:
-        file.write("\n".join(texts))
-    with atomic_text(folder / "critical.json") as file:
-        json.dump([entry for part in parts for entry in entries(part)], file, indent=1)
-        file.write("\n")
+    write_text(folder / "critical.md", "\n".join(texts))
+    found = [entry for part in parts for entry in entries(part)]
+    write_json(folder / "critical.json", found, indent=1)
     return [folder / "critical.md", folder / "critical.json", *(folder / one for one in pictures)]
 
 

@@ -34,7 +34,7 @@ from mitigate.agents.fingerprint import (
 from mitigate.agents.source import is_users, named_values
 from mitigate.core import output
 from mitigate.core.build import Maker
-from mitigate.core.files import atomic_text, find, sha256
+from mitigate.core.files import find, sha256, write_json
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.evaluation.rows import read
@@ -208,8 +208,7 @@ def keep(
     known[split] = {"worlds": worlds | {kind: described}, "sums": sums_before | sums}
     if listed:
         known[split]["list"] = listed
-    with atomic_text(note) as file:
-        json.dump(known, file)
+    write_json(note, known)
     return note
 
 

@@ -24,7 +24,7 @@ from omegaconf import MISSING
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
-from mitigate.core.files import atomic_text
+from mitigate.core.files import atomic_text, write_json
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import short
@@ -174,8 +174,7 @@ def run(
         lock.expect(out / SETTINGS, out / DECISIONS, out / TABLE)
         for name, corruption in product(agents, corruptions):  # delete pictures of an earlier run
             _picture_file(out, name, corruption.name).unlink(missing_ok=True)
-        with atomic_text(out / SETTINGS) as file:
-            json.dump(settings, file, indent=1)
+        write_json(out / SETTINGS, settings, indent=1)
         return replay(config, agents, recordings, corruptions, guards, out)
 
 

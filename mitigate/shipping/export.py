@@ -31,7 +31,7 @@ from torch import Tensor, nn
 from mitigate.agents import adapters, loading
 from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, folders, settings
-from mitigate.core.files import find, last_lines, write_text
+from mitigate.core.files import find, last_lines, write_json, write_text
 from mitigate.core.json_files import read_object
 from mitigate.core.names import short
 from mitigate.core.output import output_folder
@@ -307,7 +307,7 @@ def _write(
         **checks,
     }
     write_text(draft / loading.README, readme(card))
-    _write_json(draft / loading.CARD, card)
+    write_json(draft / loading.CARD, card, indent=2, allow_nan=False)
     for file in draft.iterdir():
         file.chmod(0o644)  # safetensors writes files that only their owner can read
     folders.seal(draft, "hardened")
@@ -332,7 +332,9 @@ def _programs(
     print("exporting the programs", flush=True)
     exported = programs.export_programs(shipped, size)
     programs.save_programs(exported, draft / loading.PROGRAM)
-    _write_json(draft / loading.INPUTS, programs.description(shipped, size))
+    write_json(
+        draft / loading.INPUTS, programs.description(shipped, size), indent=2, allow_nan=False
+    )
     eager = programs.networks(shipped)
     modules = {kind: program.module() for kind, program in exported.items()}
     before, after = (programs.outputs(programs.networks(a), inputs) for a in (agent, shipped))
@@ -460,7 +462,3 @@ def check_walks(draft: str, check_file: str, expected: str) -> None:
     target = json.loads(Path(expected).read_text(encoding="utf-8"))
     if measures != target:
         raise ValueError(f"its episodes gave {measures}, expected {target}")
-
-
-def _write_json(file: Path, value: Any) -> None:
-    write_text(file, json.dumps(value, indent=2, allow_nan=False) + "\n")

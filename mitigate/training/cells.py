@@ -5,7 +5,6 @@ A cell is one column with one seed. A cell consists of a training run and evalua
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +15,7 @@ from omegaconf import MISSING, DictConfig
 from mitigate.cluster import programs
 from mitigate.core import build, conf
 from mitigate.core.addresses import check_arguments
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.evaluation import config as evaluate_options
@@ -169,7 +168,7 @@ class Cell:
 
     def keep(self) -> None:
         """Record the options that determine which agent the cell's rows belong to."""
-        write_text(self.folder / OPTIONS, json.dumps(self._agent_options))
+        write_json(self.folder / OPTIONS, self._agent_options)
 
     def check_kept(self) -> None:
         """Raise ValueError if the cell's folder contains the rows of a different agent."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from hydra.utils import get_method
@@ -11,7 +10,7 @@ from torch import nn
 
 from mitigate.agents.fingerprint import code_sha
 from mitigate.core import checkpoint, seeding
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json, write_text
 from mitigate.core.progress import say
 from mitigate.evaluation.evaluate import load
 from mitigate.training import states
@@ -62,7 +61,7 @@ def train_stage(
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
     # if there are checkpoints, the trainer compares their recorded identity with this one
     if ranks.first and not states.checkpoints(stage.folder):
-        write_text(stage.folder / IDENTITY, json.dumps(identity, indent=2))
+        write_json(stage.folder / IDENTITY, identity, indent=2)
     trainer = Trainer(
         objective,
         folder=stage.folder,

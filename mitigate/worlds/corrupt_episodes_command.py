@@ -29,7 +29,7 @@ from typing import Any
 from tqdm import tqdm
 
 from mitigate.core.errors import command
-from mitigate.core.files import atomic_text, sha256
+from mitigate.core.files import sha256, write_json
 from mitigate.core.json_files import LARGEST_LIST, read_json
 from mitigate.core.names import printable
 from mitigate.core.options import asks_help, paths_and_options
@@ -133,9 +133,7 @@ def run(
     }
     if corruption in MANNERS:
         summary["gate"] = _rates(gate)
-    with atomic_text(f"{out}{SUMMARY}") as file:
-        json.dump(summary, file, indent=2, ensure_ascii=False)
-        file.write("\n")
+    write_json(f"{out}{SUMMARY}", summary, indent=2, ensure_ascii=False)
     return summary
 
 

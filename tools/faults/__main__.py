@@ -21,7 +21,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-from mitigate.core.files import write_bytes
+from mitigate.core.files import write_json
 from mitigate.core.workers import cores
 from tools.faults import commands, evaluation, report, training
 
@@ -90,7 +90,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             # a failed run without faults has the single outcome UNBROKEN, which replaces all others
             before = {} if report.UNBROKEN in new else stored.get(name, {})
             stored[name] = {f: o for f, o in before.items() if f != report.UNBROKEN} | new
-            write_bytes(file, json.dumps(stored, indent=1).encode())
+            write_json(file, stored, indent=1)
     tried, survived = report.count(outcomes)
     print(f"tried {tried}, survived {survived}", flush=True)
     if options.write:

@@ -9,7 +9,6 @@ load.
 from __future__ import annotations
 
 import copy
-import json
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
@@ -33,7 +32,7 @@ from mitigate.agents.vlm.rollout import (
 )
 from mitigate.core import folders
 from mitigate.core.checkpoint import load_tensors
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 from mitigate.core.json_files import read_object
 from mitigate.core.names import unknown
 from mitigate.core.pretrained import (
@@ -311,7 +310,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
                 if file.name not in (CONFIG, PEFT_WEIGHTS):
                     file.unlink()  # the README template that PEFT writes
             base = {"model": self.model, "sha256": self._base()}
-            write_text(draft / BASE, json.dumps(base, indent=1) + "\n")
+            write_json(draft / BASE, base, indent=1)
 
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.

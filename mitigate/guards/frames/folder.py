@@ -6,12 +6,11 @@ run when it is read. The sizes of the networks come from the card, and must be w
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from mitigate.core import checkpoint, folders
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 from mitigate.core.json_files import read_json
 from mitigate.core.observation import DEPTH, RGB
 
@@ -35,7 +34,7 @@ def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path
         if half:
             checkpoint.load_weights(restorer, draft)
         card = {"format": FORMAT, "hash": restorer.hash, "settings": restorer.settings()}
-        write_text(draft / CARD, json.dumps(card, indent=1))
+        write_json(draft / CARD, card, indent=1)
     return Path(folder)
 
 

@@ -12,7 +12,6 @@ scores of new texts, and the network would rely on them too much.
 from __future__ import annotations
 
 import argparse
-import json
 import re
 import sys
 from collections import Counter
@@ -28,7 +27,7 @@ from scipy.sparse import csr_matrix
 
 from mitigate.core import folders
 from mitigate.core.errors import error_message
-from mitigate.core.files import find, write_text
+from mitigate.core.files import find, write_json
 from mitigate.core.progress import say
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
@@ -223,7 +222,7 @@ def save(trained: Classifier, folder: Path) -> None:
         for name, array in trained.arrays.items()
     }
     with folders.write_folder(folder, "safeguard") as draft:
-        write_text(draft / model.CONFIG, json.dumps(trained.config) + "\n")
+        write_json(draft / model.CONFIG, trained.config)
         save_file(arrays, draft / model.WEIGHTS)
 
 

@@ -31,7 +31,7 @@ import cv2
 import numpy as np
 
 from mitigate.core.errors import command
-from mitigate.core.files import atomic_text, write_bytes
+from mitigate.core.files import atomic_text, write_bytes, write_json
 from mitigate.core.names import unknown
 from mitigate.core.options import asks_help, paths_and_options
 from mitigate.core.output import output_folder
@@ -76,8 +76,7 @@ def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> l
         for number, scene in enumerate(places):
             write_bytes(out / "scenes" / f"{scene}.glb", glb(apartment_of(scene).faces))
             print(f"scene {number + 1}/{len(places)}: {scene}", flush=True)
-        with atomic_text(out / "navmesh.json") as file:
-            json.dump(NAVMESH, file, indent=1)
+        write_json(out / "navmesh.json", NAVMESH, indent=1)
         writers = {"vln": write_vln, "ogn": write_objectnav}
         return [writers[task](out, split, listed) for task, listed in episodes.items()]
 

@@ -5,7 +5,6 @@ The folder also contains a card that names the adapter's base model.
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +12,7 @@ from torch import Tensor
 
 from mitigate.core import folders
 from mitigate.core.checkpoint import load_tensors
-from mitigate.core.files import write_text
+from mitigate.core.files import write_json
 from mitigate.core.json_files import read_json
 from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
@@ -45,7 +44,7 @@ def write_adapter(
         for file in draft.iterdir():
             if file.name not in (CONFIG, ADAPTER):
                 file.unlink()  # PEFT's README template
-        write_text(draft / CARD, json.dumps(card, indent=1) + "\n")
+        write_json(draft / CARD, card, indent=1)
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
