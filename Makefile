@@ -49,7 +49,7 @@ table: $(VENV)/.stamp ## join row files or run folders: ARGS="runs/a runs/b --ou
 report: $(VENV)/.stamp ## write rows as one HTML file, of docs/results or: ARGS="runs/a --out report.html"
 	$(BIN)/python -m mitigate.report $(ARGS)
 
-results: $(VENV)/.stamp-encoders $(VENV)/.stamp-third-party ## compute all published tables again: ARGS="quick=true"
+results: $(VENV)/.stamp-encoders $(VENV)/.stamp-third-party ## compute the main tables again: ARGS="quick=true"
 	$(BIN)/python -m tools.results $(ARGS)
 
 results-check: $(VENV)/.stamp ## recompute the published figures from their rows: ARGS="docs/results/faults.md"

@@ -1,9 +1,9 @@
-"""Compute every published table again, with the code and the weights of this checkout.
+"""Compute the main published tables again, with the code and the weights of this checkout.
 
     make results                                  # run it again to continue after an interruption
     make results ARGS="quick=true"                # small versions of all tables, about an hour
     make results ARGS="only=[faults] launcher=ray"
-    make results ARGS="list=true"                 # the costs, without running anything
+    make results ARGS="costs=true"                # print the costs only
 
 ``results.yaml`` contains the options and the tables. Tables are computed one after the other. The
 output of the commands is shown, and stored in ``log.txt`` in the folder of the table. A table that
