@@ -249,6 +249,9 @@ def test_load_takes_no_import_path_from_a_folder(tmp_path, pictures):
     saved = OmegaConf.load(out / "config.yaml")
     saved.agent.model = "os:system"
     OmegaConf.save(saved, out / "config.yaml")
+    with pytest.raises(ValueError, match="config.yaml does not have the sha256"):
+        stored_settings(cfg.agent, str(out))
+    (out / "manifest.json").unlink()
     with pytest.raises(ValueError, match="There is no setting of agent 'model'"):
         stored_settings(cfg.agent, str(out))
 
