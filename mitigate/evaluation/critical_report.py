@@ -35,8 +35,8 @@ def write(parts: Sequence[Scores], folder: Path | str) -> list[Path]:
             image = f"![SR against severity]({pictures[-1]})"
         texts.append(f"{markdown(part)}\n\n{image}\n")
     write_text(folder / "critical.md", "\n".join(texts))
-    found = [entry for part in parts for entry in entries(part)]
-    write_json(folder / "critical.json", found, indent=1)
+    listed = [entry for part in parts for entry in entries(part)]
+    write_json(folder / "critical.json", listed, indent=1)
     return [folder / "critical.md", folder / "critical.json", *(folder / one for one in pictures)]
 
 

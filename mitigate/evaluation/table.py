@@ -29,20 +29,20 @@ OUT = Path("runs/table")
 
 def run(
     paths: Iterable[Path | str],
-    out: Path | str = OUT,
+    out: Path | str | None = OUT,
     seeds: Sequence[int] | None = None,
     against: str | None = None,
     drawn: str = "episode",
     critical: Sequence[float] | None = None,
     intervals: bool = False,
-) -> list[Path]:
-    """Read the rows in ``paths``, write a report to ``out``, and return the report's files.
+) -> str:
+    """Read the rows in ``paths``, write a report to ``out``, and return the text to print.
 
-    The table is the first file.
+    The text is the table, followed by the paths of the report's files.
 
     Args:
         paths: row files or folders.
-        out: folder of the report.
+        out: folder of the report, or None to write no files.
         seeds: the seeds to use, or None for all.
         against: the column with which the other columns are compared. The default is the column
             "base" or "before" if it exists, and otherwise the first column.
@@ -59,30 +59,21 @@ def run(
     """
     from mitigate.evaluation import critical_report, report
     from mitigate.evaluation.critical import scores
-
-    rows = select(paths, seeds)
-    if critical is not None:
-        return critical_report.write(scores(rows, critical, against, drawn), out)
-    return report.write(rows, out, against=against, drawn=drawn, intervals=intervals)
-
-
-def text(
-    paths: Iterable[Path | str],
-    seeds: Sequence[int] | None = None,
-    against: str | None = None,
-    drawn: str = "episode",
-    critical: Sequence[float] | None = None,
-    intervals: bool = False,
-) -> str:
-    """Return the table as Markdown. Arguments and errors are those of :func:`run`."""
-    from mitigate.evaluation import critical_report, report
-    from mitigate.evaluation.critical import scores
     from mitigate.evaluation.sections import sections
 
     rows = select(paths, seeds)
     if critical is not None:
-        return "\n\n".join(map(critical_report.markdown, scores(rows, critical, against, drawn)))
-    return report.markdown(sections(rows, against, drawn), intervals=intervals)
+        parts = scores(rows, critical, against, drawn)
+        if out is None:
+            return plain_text("\n\n".join(map(critical_report.markdown, parts)))
+        files = critical_report.write(parts, out)
+    elif out is None:
+        return plain_text(report.markdown(sections(rows, against, drawn), intervals=intervals))
+    else:
+        files = report.write(rows, out, against=against, drawn=drawn, intervals=intervals)
+    return "\n".join(
+        [plain_text(files[0].read_text(encoding="utf-8")), *(f"wrote {file}" for file in files)]
+    )
 
 
 def select(paths: Iterable[Path | str], seeds: Sequence[int] | None) -> list[Row]:
@@ -157,10 +148,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     check_paths(options.paths, "--out DIR")
     chosen = vars(options)
     if chosen.pop("print_only"):
-        del chosen["out"]
-        print(plain_text(text(**chosen)))
-        return 0
-    paths = run(**chosen)
-    print(plain_text(paths[0].read_text(encoding="utf-8")))
-    print("\n".join(f"wrote {path}" for path in paths))
+        chosen["out"] = None
+    print(run(**chosen))
     return 0
