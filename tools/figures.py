@@ -19,9 +19,14 @@ import os
 import re
 import subprocess
 import sys
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
+from io import StringIO
 from pathlib import Path
+
+from mitigate.evaluation import table
+from tools.third_party.results import stored_tables
 
 ROOT = Path(__file__).resolve().parents[1]
 PAGES = ("docs/results/*.md", "docs/lab/*.md")
@@ -95,27 +100,23 @@ def commands(text: str) -> list[str]:
 
 
 def run(command: str) -> list[Figure]:
-    """Run a command of a page; return the figures that it prints.
+    """Run a command of a page in this process; return the figures that it prints.
 
     Raises:
         RuntimeError: If the command fails.
     """
-    command = re.sub(r"^mitigate table ", "python -m mitigate.table ", command)
-    if "mitigate.table" in command:
-        command += " --print-only"
     # the shell expands braces: {base,harden}-val_unseen.jsonl.gz
-    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    done = subprocess.run(
-        ["bash", "-c", command],
-        cwd=ROOT,
-        env={**os.environ, "PATH": path},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    if done.returncode:
-        raise RuntimeError(f"{command} failed:\n{done.stderr.strip()}")
-    return figures(done.stdout)
+    words = subprocess.run(
+        ["bash", "-c", f"printf '%s\\n' {command}"], capture_output=True, text=True, check=True
+    ).stdout.splitlines()
+    if words[-2] == "--table":
+        return figures(stored_tables(Path(words[-1])))
+    arguments = words[words.index("table") + 1 :] if words[0] == "mitigate" else words[3:]
+    with redirect_stdout(StringIO()) as printed, redirect_stderr(StringIO()) as errors:
+        status = table.main([*arguments, "--print-only"])
+    if status:
+        raise RuntimeError(f"{command} failed:\n{errors.getvalue().strip()}")
+    return figures(printed.getvalue())
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,9 @@ class Checked:
 
 def check(text: str, printed: list[Figure]) -> Checked:
     """Compare the figures of a page with the figures that its commands printed."""
-    confirmed, wrong, without = 0, [], []
+    confirmed = 0
+    wrong: list[Figure] = []
+    without: list[Figure] = []
     known = set(printed)
     for section in re.split(r"^(?=###? )", text, flags=re.MULTILINE):
         unknown = wrong if commands(section) else without
@@ -158,7 +161,8 @@ def main() -> int:
     pages = options.pages or [page for glob in PAGES for page in sorted(ROOT.glob(glob))]
     texts = {page: page.read_text("utf-8") for page in pages}
     unique = dict.fromkeys(command for text in texts.values() for command in commands(text))
-    with ThreadPoolExecutor(os.cpu_count()) as pool:
+    os.chdir(ROOT)  # the commands name files relative to it
+    with ProcessPoolExecutor(os.cpu_count()) as pool:
         try:
             printed = dict(zip(unique, pool.map(run, unique), strict=True))
         except RuntimeError as error:

@@ -61,7 +61,9 @@ def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, A
 
 def parse_json(text: str | bytes) -> Any:
     """Parse JSON like ``json.loads``, but raise ValueError for numbers that are not finite."""
-    return json.loads(text, parse_constant=_no_number, parse_float=_finite)
+    if isinstance(text, bytes):
+        text = text.decode(json.detect_encoding(text), "surrogatepass")
+    return _FINITE.decode(text)
 
 
 def _no_number(name: str) -> NoReturn:
@@ -73,6 +75,9 @@ def _finite(digits: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{digits:.20} is too large a number")
     return value
+
+
+_FINITE = json.JSONDecoder(parse_constant=_no_number, parse_float=_finite)
 
 
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:

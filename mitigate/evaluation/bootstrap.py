@@ -99,12 +99,20 @@ def resampled_means(
             f"values must be a finite array [conditions, episodes], got the shape {table.shape} "
             f"with {int(np.isnan(table).sum())} NaN. Leave out the episodes that lack a result."
         )
-    unit = np.arange(table.shape[1]) if units is None else np.unique(units, return_inverse=True)[1]
+    count = table.shape[1]
+    unit = np.arange(count) if units is None else np.asarray(units)
+    if (np.diff(unit) > 0).all():  # each episode is a unit, so all resamples have equal size
+        return _sums(_times_drawn(count, resamples, seed), table.T) / count
+    unit = np.unique(unit, return_inverse=True)[1]
     times = _times_drawn(int(unit.max()) + 1, resamples, seed)
-    count = np.bincount(unit).astype(float)
-    parts = np.array_split(times, min(resamples, math.ceil(times.size / PART)))
     sums = np.stack([np.bincount(unit, row) for row in table], axis=1)
-    return np.concatenate([part @ sums / (part @ count)[:, None] for part in parts])
+    return _sums(times, sums) / (times @ np.bincount(unit).astype(float))[:, None]
+
+
+def _sums(times: np.ndarray, values: np.ndarray) -> np.ndarray:
+    """Return the product of two matrices, computed in parts that fit into a core's cache."""
+    parts = np.array_split(times, min(len(times), math.ceil(times.size / PART)))
+    return np.concatenate([part @ values for part in parts])
 
 
 @lru_cache(maxsize=4)

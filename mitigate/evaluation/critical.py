@@ -15,6 +15,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from itertools import chain
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -307,10 +308,10 @@ class Scores:
             loss: fraction of the clean success, or None for the area.
         """
         seeds = self.seeds(columns, names)
-        curves = [[self.curve(c, n, seed) for n in names for seed in seeds] for c in columns]
-        every = [values for lists in curves for curve in lists for values in curve.values()]
+        lines = [[(c, n, seed) for n in names for seed in seeds] for c in columns]
+        every = [values for line in chain(*lines) for values in self.curve(*line).values()]
         common = ~np.isnan(np.stack(every)).any(axis=0)
-        parts = [_scored(lists, common, self.grid.units[common], loss) for lists in curves]
+        parts = [np.stack([self._scored(line, common)[loss] for line in group]) for group in lines]
         count = int(common.sum())
         above = tuple(bool(np.isinf(part[:, 0]).any()) for part in parts)
         # critical severities above 1 are clipped to 1; areas are not clipped
@@ -321,24 +322,33 @@ class Scores:
         bounds = {(True, False): "lower", (False, True): "upper", (True, True): "unknown"}
         return Score(_estimate(first - others[0]), count, bounds.get((above[0], above[1]), ""))
 
+    def _scored(
+        self, line: tuple[str, str, int], common: np.ndarray
+    ) -> dict[float | None, np.ndarray]:
+        """Return each measure of one curve, shape [1 + resamples].
 
-def _scored(
-    curves: list[Curve], common: np.ndarray, units: np.ndarray, loss: float | None
-) -> np.ndarray:
-    """Return the critical severities or areas of C curves, shape [C, 1 + resamples].
+        The first value is that of the data. The others are those of the resamples.
 
-    Column 0 holds the values of the data. The other columns hold the values of the resamples.
-    """
-    tables = [np.stack([values[common] for values in curve.values()]) for curve in curves]
-    table = np.concatenate(tables)
-    means = np.concatenate([table.mean(axis=1)[None], resampled_means(table, units=units)])
-    parts = np.split(means, np.cumsum([len(one) for one in tables])[:-1], axis=1)
-    return np.stack(
-        [
-            area([*curve], part) if loss is None else crossing([*curve], part, loss)
-            for curve, part in zip(curves, parts, strict=True)
-        ]
-    )
+        Args:
+            line: column, corruption and seed of the curve.
+            common: mask of the episodes to use [N].
+        """
+        key = (line, common.tobytes())
+        if key not in self._kept:
+            curve = self.curve(*line)
+            table = np.stack([values[common] for values in curve.values()])
+            draws = resampled_means(table, units=self.grid.units[common])
+            means = np.concatenate([table.mean(axis=1)[None], draws])
+            self._kept[key] = {
+                loss: area([*curve], means) if loss is None else crossing([*curve], means, loss)
+                for loss in self.measures
+            }
+        return self._kept[key]
+
+    @cached_property
+    def _kept(self) -> dict[tuple, dict[float | None, np.ndarray]]:
+        """Measures of curves, because several comparisons and groups need the same curve."""
+        return {}
 
 
 def _estimate(values: np.ndarray) -> Estimate:

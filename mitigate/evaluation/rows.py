@@ -13,6 +13,7 @@ import os
 import re
 import warnings
 from collections.abc import Iterable
+from functools import lru_cache
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -41,6 +42,7 @@ IDENTITY: dict[str, Any] = {
 }
 SCORES = ("success", "spl", RETURN)
 REQUIRED = IDENTITY | {"success": (int, float), "spl": (int, float)}
+_REQUIRED_OF_RETURN = IDENTITY | {RETURN: (int, float)}
 MEASURES = (
     *("success", "spl", "path_length", "geodesic_distance", "distance_to_goal", "ndtw"),
     *("collisions", "decisions", "steps", "cut", "limit"),
@@ -53,11 +55,16 @@ GREATEST = 1e9  # maximum value of a measure, in metres or steps (heuristic)
 # pattern of corruption names; the name of a pair contains +
 _NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9_.+-]*")
 _HASH = re.compile(r"[A-Za-z0-9_.-]+")
-_TEXTS = (*(key for key, kind in IDENTITY.items() if kind is str), "version", "weights", SCENE)
+_TEXTS = {key for key, kind in IDENTITY.items() if kind is str} | {"version", "weights", SCENE}
 # patterns that match the ids of generated episodes and of episodes from the Habitat bridge
 _OF_A_SCENE = re.compile(r"(\d+)-\w+-\d+|(.+)/[^/]+")
-_SHARES = ("severity", "success", "spl", "ndtw", "cut")  # entries that are numbers from 0 to 1
-_NUMBERS = ("severity", "seed", *MEASURES)
+# the smallest and the greatest value of each number
+_LIMITS = {
+    **dict.fromkeys(MEASURES, (0, GREATEST)),
+    **dict.fromkeys(("severity", "success", "spl", "ndtw", "cut"), (0, 1)),
+    "seed": (-(2**63), 2**63),
+    RETURN: (-GREATEST, GREATEST),
+}
 _ROUNDING = 1e-9
 # byte order mark that Windows editors write; if files were joined, it may occur in the middle
 _MARK = "\ufeff"
@@ -286,7 +293,7 @@ def _parse(line: str) -> Any:
 def _problem(row: Any) -> str:
     if not isinstance(row, dict):
         return f"is not a JSON object in UTF-8 (finite numbers, at most {LONGEST_LINE} characters)"
-    required = IDENTITY | {RETURN: (int, float)} if row.get("rule") == RETURN else REQUIRED
+    required = _REQUIRED_OF_RETURN if row.get("rule") == RETURN else REQUIRED
     lacking = [key for key in required if key not in row]
     if lacking:
         return f"lacks {', '.join(lacking)}"
@@ -297,17 +304,15 @@ def _problem(row: Any) -> str:
             actual = type(row[key]).__name__
             return f"has a wrong {key}: {short(row[key])} ({expected}, not {actual})"
     for key, value in row.items():
-        if expected := allowed(key, value):
+        if expected := (_allowed_text if isinstance(value, str) else allowed)(key, value):
             return f"has a wrong {short(key)}: {short(value)} ({expected})"
     return ""
 
 
 def allowed(key: str, value: Any) -> str:
     """Describe the allowed values if ``value`` is invalid for ``key``, else return ""."""
-    if key in _NUMBERS and isinstance(value, bool):  # bool is a subclass of int
-        return "a number: 1 for true, 0 for false"
-    if key in _SHARES and value is not None and not _number(value, 0, 1):
-        return "a number from 0 to 1"
+    if key in _LIMITS:
+        return _allowed_number(key, value)
     if key == "corruption" and not _NAME.fullmatch(value):
         return "a name of letters, digits and _.+-"
     if key == "agent" and not _HASH.fullmatch(value):
@@ -318,17 +323,23 @@ def allowed(key: str, value: Any) -> str:
         isinstance(value, str) and len(value) <= LONGEST_TEXT and value.isprintable()
     ):
         return f"a line of at most {LONGEST_TEXT} printable characters"
-    if key == "seed" and not _number(value, -(2**63), 2**63):
-        return "a whole number below 2^63"
-    if key in MEASURES and value is not None and not _number(value, 0, GREATEST):
-        return f"a number from 0 to {GREATEST:g}"
-    if key == RETURN and not _number(value, -GREATEST, GREATEST):
-        return f"a number from {-GREATEST:g} to {GREATEST:g}"
     return ""
 
 
-def _number(value: Any, low: float, high: float) -> bool:
-    return isinstance(value, (int, float)) and low <= value <= high + _ROUNDING
+# most rows of a file have the same texts
+_allowed_text = lru_cache(maxsize=4096)(allowed)
+
+
+def _allowed_number(key: str, value: Any) -> str:
+    low, high = _LIMITS[key]
+    if isinstance(value, bool):  # bool is a subclass of int
+        return "a number: 1 for true, 0 for false"
+    if isinstance(value, (int, float)):
+        if low <= value <= high + _ROUNDING:
+            return ""
+    elif value is None and key in ("severity", *MEASURES):
+        return ""
+    return "a whole number below 2^63" if key == "seed" else f"a number from {low:g} to {high:g}"
 
 
 def _line(row: Row) -> str:
