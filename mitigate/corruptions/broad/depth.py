@@ -9,7 +9,16 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
+from mitigate.corruptions.broad.composition import (
+    composed,
+    copied,
+    displaced,
+    field,
+    log_uniform,
+    pattern,
+    shapes,
+    torn,
+)
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key
 
@@ -122,6 +131,75 @@ def lost(views, strength, rng, now):
     return out
 
 
+def patterned(views, strength, rng, now):
+    """Add errors in stripes, rings or checks, which are independent of depth or grow with it."""
+    wave = pattern(rng, views.shape[1:])
+    if rng.random() < 0.4:
+        wave = np.roll(wave, int(now.integers(views.shape[1])), 0)
+    amount = np.float32(strength * rng.uniform(0.03, 0.4))
+    if rng.random() < 0.3:
+        return np.where(wave > 1.0 - 1.5 * amount, np.float32(_fill(rng)), views)
+    return views + amount * wave * (views if rng.random() < 0.6 else np.float32(0.3))
+
+
+def tilted(views, strength, rng, now):
+    """Scale depth by a factor that changes linearly over the image or differs between views."""
+    height, width = views.shape[1:]
+    y, x = np.mgrid[-1 : 1 : height * 1j, -1 : 1 : width * 1j].astype(np.float32)
+    if rng.random() < 0.3:
+        factors = 0.4 * strength * rng.standard_normal((len(views), 1, 1))
+    else:
+        factors = strength * (rng.uniform(-0.4, 0.4) * x + rng.uniform(-0.4, 0.4) * y)
+    return views * (1.0 + np.clip(factors, -0.7, 0.7)).astype(np.float32)
+
+
+def wrapped(views, strength, rng, now):
+    """Fold distances beyond a random limit back to short distances, in all or some places."""
+    limit = _limit(views, strength, rng)
+    where = views > limit
+    if rng.random() < 0.5:
+        where &= field(rng, views.shape[1:], log_uniform(rng, 0.05, 0.6)) < rng.uniform(-1, 1)
+    return np.where(where, views - limit * np.floor(views / limit), views)
+
+
+def ranged(views, strength, rng, now):
+    """Replace distances above a random limit, or below one."""
+    fill, limit = np.float32(_fill(rng)), _limit(views, strength, rng)
+    if rng.random() < 0.3:
+        return np.where(views < 0.4 * limit, fill, views)
+    return np.where(views > limit, fill, views)
+
+
+def spread(views, strength, rng, now):
+    """Let near or far objects grow in the image."""
+    size = 1 + 2 * max(1, round(0.06 * strength * rng.uniform(0.3, 1.0) * min(views.shape[1:])))
+    kernel, change = (
+        np.ones((size, size), np.uint8),
+        cv2.erode if rng.random() < 0.6 else cv2.dilate,
+    )
+    return _each(views, lambda view: change(view, kernel))
+
+
+def ghost(views, strength, rng, now):
+    """Mix depth with shifted or mirrored copies, or with depth of other headings.
+
+    Pixels get the smaller value, the mean, or the copy within a random map.
+    """
+    other, kind = copied(views, strength, rng), rng.random()
+    if kind < 0.3:
+        return np.fmin(views, other)
+    if kind < 0.5:
+        return views + np.float32(0.6 * strength * rng.random()) * (other - views)
+    place = field(rng, views.shape[1:], log_uniform(rng, 0.05, 0.5))
+    return np.where(place > 1.5 - 2.0 * strength * rng.random(), other, views)
+
+
+def _limit(views, strength, rng) -> np.float32:
+    """Sample a distance that is less than that of the farthest reading."""
+    farthest = np.fmax.reduce(views, axis=None)
+    return np.float32(farthest * log_uniform(rng, 0.7 - 0.6 * strength, 0.9))
+
+
 def _fill(rng: np.random.Generator) -> float:
     """Sample the value that replaces depth: no reading (NaN) in most cases, otherwise a depth in
     range.
@@ -139,7 +217,25 @@ def _each(views, change) -> np.ndarray:
     return np.where(holes, np.float32(np.nan), out)
 
 
-PRIMITIVES = (curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidden, lost)
+PRIMITIVES = (
+    curve,
+    uneven,
+    noisy,
+    smooth,
+    steps,
+    warped,
+    swapped,
+    holes,
+    hidden,
+    lost,
+    patterned,
+    tilted,
+    wrapped,
+    ranged,
+    spread,
+    torn,
+    ghost,
+)
 
 
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
