@@ -194,6 +194,6 @@ def _suite(record: Record) -> str:
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
     if record.name in SUITE:
         return "full"
-    if record.name in SENSORS:
+    if record in sensors.CAMERAS:
         return "sensors"
     return record.family or short.get(record.half, "-")
