@@ -41,7 +41,7 @@ UNSEEN = {
         unseen.RECORDS, key=lambda r: (MODALITIES.index(r.modality), HALVES.index(r.half))
     )
 }
-# measured errors of named depth cameras
+# measured errors of named depth cameras, and stronger noise
 SENSORS = {record.name: record for record in sensors.RECORDS}
 # names of the random compositions for training
 BROAD = {record.name: record for record in broad.RECORDS}
@@ -194,6 +194,6 @@ def _suite(record: Record) -> str:
     short = {VALIDATION: "unseen_val", TEST: "unseen_test"}
     if record.name in SUITE:
         return "full"
-    if record.name in SENSORS:
+    if record in sensors.CAMERAS:
         return "sensors"
     return record.family or short.get(record.half, "-")

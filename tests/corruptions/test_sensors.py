@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from mitigate.core import conf
-from mitigate.corruptions import DepthSensor, Key, corrupt, registry
+from mitigate.corruptions import DepthSensor, Key, corrupt, sensors
 
-NAMES = tuple(registry.SENSORS)
+NAMES = tuple(record.name for record in sensors.CAMERAS)
 KEY = Key(0, "episode", 3)
 STEP = 9 / 351.3  # metres between two neighbouring depth values of a Kinect v1 at 3 m
 # published standard deviation in metres at a depth of 3 m, and largest depth in metres
@@ -81,3 +81,11 @@ def test_systematic_error_is_constant_in_an_episode():
 
     assert error("a", 0) == pytest.approx(error("a", 5), abs=2e-3)
     assert abs(error("a", 0) - error("b", 0)) > 2e-3
+
+
+def test_strong_noise_is_five_times_that_of_the_suite():
+    noise = [
+        corrupt(plane(3.0), name, 0.6, key=KEY) - 3.0
+        for name in ("strong_gaussian_noise", "gaussian_noise")
+    ]
+    assert noise[0] == pytest.approx(5 * noise[1], abs=1e-5)

@@ -17,7 +17,7 @@ from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
 CONVERSATIONS = "conversations.jsonl"
-LIMIT = 500  # maximum number of decisions per episode, equal to VLN-CE's step limit
+LIMIT = 500  # VLN-CE's step limit
 
 
 def write_conversations(
@@ -28,6 +28,7 @@ def write_conversations(
     answers: str = "navid",
     history: int = 4,
     task: str = TASK,
+    limit: int = LIMIT,
 ) -> int:
     """Run the expert of ``world``, and write one JSON line per decision to ``conversations.jsonl``.
 
@@ -43,6 +44,7 @@ def write_conversations(
         answers: style of the answers, see ``AnsweringAgent``.
         history: maximum number of earlier frames.
         task: text of the question.
+        limit: maximum number of decisions per episode.
 
     Returns:
         The number of lines.
@@ -57,7 +59,7 @@ def write_conversations(
             rng = np.random.default_rng(0)  # never used, because the expert decides at every step
             expert_share = 1.0
             targets, _ = run_episode(
-                world, episode, memory, _no_agent, allowed, expert_share, rng, False, LIMIT
+                world, episode, memory, _no_agent, allowed, expert_share, rng, False, limit
             )
             names = [f"frames/{number:06d}/{step:04d}.png" for step in range(len(targets))]
             for name, frame in zip(names, memory.frames, strict=True):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.json_files import read_object
-from mitigate.core.names import short, unknown
+from mitigate.core.names import LONGEST_NAME, short, unknown
 from mitigate.corruptions.lerobot.metadata import (
     IMAGE,
     INFO,
@@ -151,6 +152,30 @@ class Dataset:
             raise ValueError(
                 f"{path}: the timestamps of episode {episode.index} must increase. {FIX}"
             )
+
+    def instruction(self, rows: Rows, name: str) -> str:
+        """Return the task of the first row of an episode, and warn if other rows have other tasks.
+
+        Args:
+            rows: The rows of the episode.
+            name: Name of the episode in messages.
+
+        Raises:
+            ValueError: If the task is unknown.
+        """
+        first = int(rows.tasks[0])
+        if first not in self.tasks:
+            raise ValueError(
+                f"{name} has the task {first}, which {TASKS} lacks. Copy the dataset again."
+            )
+        count = len(np.unique(rows.tasks))
+        if count > 1:
+            warnings.warn(
+                f"{name} has {count} tasks. The instruction is the first: "
+                f"{short(self.tasks[first], LONGEST_NAME)}.",
+                stacklevel=3,
+            )
+        return self.tasks[first]
 
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
         """Read the numeric features, such as state and action, from a file in data/.

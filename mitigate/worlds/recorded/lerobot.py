@@ -6,17 +6,15 @@ Therefore these drives have no poses, and all cameras are assumed to face forwar
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
-from mitigate.core.names import LONGEST_NAME, short
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.lerobot import Camera, Dataset, Episode, open_dataset
-from mitigate.corruptions.lerobot.dataset import TOLERANCE, Rows, rows_of
+from mitigate.corruptions.lerobot.dataset import TOLERANCE, rows_of
 from mitigate.corruptions.lerobot.frames import read_frames
 from mitigate.worlds.recorded.drive_files import assumed_lens
 from mitigate.worlds.recorded.options import Options
@@ -42,22 +40,6 @@ class LerobotEpisode(Source):
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         times = [float(self.times[index]) for index in chosen]
         return read_frames(self.dataset, self.episode, self.read, chosen, times, self.tolerance)
-
-
-def _instruction(dataset: Dataset, rows: Rows, name: str) -> str:
-    first = int(rows.tasks[0])
-    if first not in dataset.tasks:
-        raise ValueError(
-            f"{name} has the task {first}, which meta/tasks.parquet lacks. Copy the dataset again."
-        )
-    count = len(np.unique(rows.tasks))
-    if count > 1:
-        warnings.warn(
-            f"{name} has {count} tasks. The instruction is the first: "
-            f"{short(dataset.tasks[first], LONGEST_NAME)}.",
-            stacklevel=2,
-        )
-    return dataset.tasks[first]
 
 
 def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
@@ -96,7 +78,7 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
         drives.append(
             LerobotEpisode(
                 name=name,
-                instruction=_instruction(dataset, rows, name),
+                instruction=dataset.instruction(rows, name),
                 cameras={camera.name: assumed_lens(camera.kind, options.hfov) for camera in chosen},
                 times=rows.times,
                 signals={n: values[mine] for n, values in signals[episode.data].items()},

@@ -1,0 +1,1 @@
+"""Corruptions of three authors who did not know the training augmentations of mitigate."""
