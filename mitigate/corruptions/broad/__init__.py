@@ -42,6 +42,6 @@ _record = partial(
     Record.of, severity="strongest primitive", episode=STATE, frame="noise, views, or maps"
 )
 RECORDS = (
-    _record("rgb", broad_rgb, source="PRIME, AugMix", label="Broad RGB", version="3"),
+    _record("rgb", broad_rgb, source="PRIME, AugMix", label="Broad RGB", version="2"),
     _record("depth", broad_depth, source="after PRIME", version="2"),
 )

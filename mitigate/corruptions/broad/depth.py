@@ -11,13 +11,10 @@ import numpy as np
 
 from mitigate.corruptions.broad.composition import (
     composed,
-    copied,
     displaced,
     field,
     log_uniform,
-    pattern,
     shapes,
-    torn,
 )
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key
@@ -133,7 +130,7 @@ def lost(views, strength, rng, now):
 
 def patterned(views, strength, rng, now):
     """Add errors in stripes, rings or checks, which are independent of depth or grow with it."""
-    wave = pattern(rng, views.shape[1:])
+    wave = _pattern(rng, views.shape[1:])
     if rng.random() < 0.4:
         wave = np.roll(wave, int(now.integers(views.shape[1])), 0)
     amount = np.float32(strength * rng.uniform(0.03, 0.4))
@@ -173,11 +170,28 @@ def ranged(views, strength, rng, now):
 def spread(views, strength, rng, now):
     """Let near or far objects grow in the image."""
     size = 1 + 2 * max(1, round(0.06 * strength * rng.uniform(0.3, 1.0) * min(views.shape[1:])))
-    kernel, change = (
-        np.ones((size, size), np.uint8),
-        cv2.erode if rng.random() < 0.6 else cv2.dilate,
-    )
+    kernel = np.ones((size, size), np.uint8)
+    change = cv2.erode if rng.random() < 0.6 else cv2.dilate
     return _each(views, lambda view: change(view, kernel))
+
+
+def torn(views, strength, rng, now):
+    """Shift bands of rows or columns by random distances, or exchange blocks of pixels.
+
+    The bands are the same in all views and frames, or new for each frame.
+    """
+    source = now if rng.random() < 0.5 else rng
+    if rng.random() < 0.3:
+        return _exchanged(views, strength, source, int(rng.integers(3, 9)))
+    axis = int(rng.integers(1, 3))
+    bands, reach = int(rng.integers(2, 25)), 0.3 * strength * views.shape[3 - axis]
+    out = views.copy()
+    cuts = np.sort(source.integers(0, views.shape[axis], bands))
+    for start, stop in zip((0, *cuts), (*cuts, views.shape[axis]), strict=True):
+        if source.random() < 0.3 + 0.5 * strength:
+            band = (slice(None),) * axis + (slice(start, stop),)
+            out[band] = np.roll(views[band], int(source.uniform(-reach, reach)), 3 - axis)
+    return out
 
 
 def ghost(views, strength, rng, now):
@@ -185,13 +199,60 @@ def ghost(views, strength, rng, now):
 
     Pixels get the smaller value, the mean, or the copy within a random map.
     """
-    other, kind = copied(views, strength, rng), rng.random()
+    other, kind = _copied(views, strength, rng), rng.random()
     if kind < 0.3:
         return np.fmin(views, other)
     if kind < 0.5:
         return views + np.float32(0.6 * strength * rng.random()) * (other - views)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.05, 0.5))
     return np.where(place > 1.5 - 2.0 * strength * rng.random(), other, views)
+
+
+def _pattern(rng: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
+    """Return a periodic map, float32 [H, W] from -1 to 1: stripes, rings or checks with soft or
+    sharp edges.
+
+    The period is 0.03 to 0.8 times the shorter side.
+    """
+    (height, width), side = shape, min(shape)
+    y, x = np.mgrid[:height, :width].astype(np.float32) / side
+    waves, angle = 2 * np.pi / log_uniform(rng, 0.03, 0.8), rng.uniform(0, np.pi)
+    if rng.random() < 0.4:  # along rows or columns, as readout errors and blinds are
+        angle = rng.choice((0.0, np.pi / 2))
+    phases = rng.uniform(0, 2 * np.pi, 2)
+    along, across = (x * np.cos(turn) + y * np.sin(turn) for turn in (angle, angle + np.pi / 2))
+    kind = rng.random()
+    if kind < 0.25:
+        along = np.hypot(x - rng.uniform(0, width / side), y - rng.uniform(0, height / side))
+    wave = np.sin(waves * along + phases[0])
+    if kind > 0.75:
+        wave = wave * np.sin(waves * across + phases[1])
+    sharp = log_uniform(rng, 1.0, 20.0)
+    return (np.tanh(sharp * wave) / np.tanh(sharp)).astype(np.float32)
+
+
+def _exchanged(views, strength, source, blocks: int) -> np.ndarray:
+    """Exchange up to a third of ``blocks`` x ``blocks`` blocks of each view."""
+    high, wide = views.shape[1] // blocks, views.shape[2] // blocks
+    places = source.permutation(blocks * blocks)[: 2 + round(0.3 * strength * blocks * blocks)]
+    out = views.copy()
+    for place, other in zip(places, np.roll(places, 1), strict=True):
+        (row, column), (down, right) = divmod(int(place), blocks), divmod(int(other), blocks)
+        block = np.s_[:, row * high : (row + 1) * high, column * wide : (column + 1) * wide]
+        out[block] = views[:, down * high : (down + 1) * high, right * wide : (right + 1) * wide]
+    return out
+
+
+def _copied(views: np.ndarray, strength: float, rng: np.random.Generator) -> np.ndarray:
+    """Return a shifted or mirrored copy of each view, or the views of other headings."""
+    kind = rng.random()
+    if kind < 0.4:
+        reach = 0.4 * strength * min(views.shape[1:])
+        shifts = 1 + (rng.uniform(-1, 1, 2) * reach).astype(int)
+        return np.roll(views, shifts, (1, 2))
+    if kind < 0.7:
+        return views[:, ::-1] if rng.random() < 0.4 else views[:, :, ::-1]
+    return np.roll(views, int(rng.integers(1, max(2, len(views)))), 0)
 
 
 def _limit(views, strength, rng) -> np.float32:

@@ -5,20 +5,15 @@ Each primitive maps float32 views [V, H, W, 3] in [0, 1] to views of the same sh
 
 from __future__ import annotations
 
-from itertools import permutations
-
 import cv2
 import numpy as np
 
 from mitigate.corruptions.broad.composition import (
     composed,
-    copied,
     displaced,
     field,
     log_uniform,
-    pattern,
     shapes,
-    torn,
 )
 from mitigate.corruptions.keying import Key
 
@@ -203,62 +198,6 @@ def lost(views, strength, rng, now):
     return out
 
 
-def patterned(views, strength, rng, now):
-    """Add or multiply stripes, rings or checks, or blend them with a colour; they stand still or
-    move with each frame.
-    """
-    wave, colour = pattern(rng, views.shape[1:3])[..., None], _colour(rng)
-    if rng.random() < 0.4:
-        wave = np.roll(wave, int(now.integers(views.shape[1])), 0)
-    amount, kind = np.float32(strength * rng.uniform(0.2, 0.9)), rng.random()
-    if kind < 0.35:
-        return np.clip(views + 0.5 * amount * wave * (colour + np.float32(0.3)), 0.0, 1.0)
-    if kind < 0.7:
-        return np.clip(views * (1.0 + amount * wave), 0.0, 1.0)
-    return views + (colour - views) * amount * np.clip(0.5 + wave, 0.0, 1.0)
-
-
-def channels(views, strength, rng, now):
-    """Exchange, lose, invert or displace colour channels, partly or completely."""
-    kind, share = rng.random(), min(1.0, strength * rng.uniform(0.5, 1.5))
-    if kind < 0.3:
-        changed = views[..., list(rng.choice(_ORDERS))]
-    elif kind < 0.55:
-        changed = views.copy()
-        changed[..., int(rng.integers(3))] = rng.choice((0.0, 1.0, rng.random()))
-    elif kind < 0.75:
-        changed = np.where(rng.random(3) < 0.6, 1.0 - views, views)
-    else:
-        reach, changed, share = 0.12 * strength * min(views.shape[1:3]), views.copy(), 1.0
-        for colour in range(3):
-            shifts = [int(each) for each in np.rint(rng.uniform(-reach, reach, 2))]
-            changed[..., colour] = np.roll(views[..., colour], shifts, (1, 2))
-    return views + np.float32(share) * (changed.astype(np.float32) - views)
-
-
-# all orders of three colours except the original one
-_ORDERS = tuple(permutations(range(3)))[1:]
-
-
-def ghost(views, strength, rng, now):
-    """Blend views with shifted or mirrored copies, or with views of other headings."""
-    share = np.float32(0.5 * strength * rng.uniform(0.3, 1.0))
-    other = copied(views, strength, rng)
-    if rng.random() < 0.4:  # a reflection adds light
-        return np.clip(views + share * other, 0.0, 1.0)
-    return views + share * (other - views)
-
-
-def spread(views, strength, rng, now):
-    """Let the brightest, darkest or median pixels spread to their neighbours."""
-    size = 1 + 2 * max(1, round(0.05 * strength * rng.uniform(0.3, 1.0) * min(views.shape[1:3])))
-    kind, kernel = rng.random(), np.ones((size, size), np.uint8)
-    if kind < 0.3:
-        return _each(views, lambda view: cv2.medianBlur(view, min(5, size)))
-    change = cv2.dilate if kind < 0.65 else cv2.erode
-    return _each(views, lambda view: change(view, kernel))
-
-
 def _colour(rng: np.random.Generator) -> np.ndarray:
     """Sample a colour: black, white, a grey level or any other colour."""
     kind = rng.random()
@@ -282,11 +221,6 @@ PRIMITIVES = (
     covered,
     hidden,
     lost,
-    patterned,
-    channels,
-    torn,
-    ghost,
-    spread,
 )
 
 
