@@ -1,11 +1,11 @@
 """Simulate the depth errors of four cameras, and Gaussian noise that is stronger than in the suite.
 
-The models of cameras come from publications and datasheets. At severity 0.5, a frame has the errors that the source reports. At other severities, the errors are
-multiplied by 2 * severity. A profile has up to five errors, which are applied in this order: (1)
-pixels take the depth of a neighbour (lateral noise), (2) depth has a wrong offset and scale in the
-whole episode, (3) axial noise is added, (4) disparity is rounded, and (5) the range is limited.
-Functions have the same arguments and results as in ``corruptions/depth.py``, and treat invalid
-pixels in the same way.
+The models of cameras come from publications and datasheets. At severity 0.5, a frame has the errors
+that the source reports. At other severities, the errors are multiplied by 2 * severity. A profile
+has up to five errors, which are applied in this order: (1) pixels take the depth of a neighbour
+(lateral noise), (2) depth has a wrong offset and scale in the whole episode, (3) axial noise is
+added, (4) disparity is rounded, and (5) the range is limited. Functions have the same arguments and
+results as in ``corruptions/depth.py``, and treat invalid pixels in the same way.
 """
 
 from __future__ import annotations
