@@ -334,19 +334,19 @@ class Scores:
             common: mask of the episodes to use [N].
         """
         key = (line, common.tobytes())
-        if key not in self._kept:
+        if key not in self._scores_of_curves:
             curve = self.curve(*line)
             table = np.stack([values[common] for values in curve.values()])
             draws = resampled_means(table, units=self.grid.units[common])
             means = np.concatenate([table.mean(axis=1)[None], draws])
-            self._kept[key] = {
+            self._scores_of_curves[key] = {
                 loss: area([*curve], means) if loss is None else crossing([*curve], means, loss)
                 for loss in self.measures
             }
-        return self._kept[key]
+        return self._scores_of_curves[key]
 
     @cached_property
-    def _kept(self) -> dict[tuple, dict[float | None, np.ndarray]]:
+    def _scores_of_curves(self) -> dict[tuple, dict[float | None, np.ndarray]]:
         """Measures of curves, because several comparisons and groups need the same curve."""
         return {}
 
