@@ -140,7 +140,7 @@ def measured(
     return out
 
 
-STRONGER = 5.0  # under this noise, our frontier agent loses as much as those of the paper
+STRONGER = 5.0  # under this noise, our frontier agent loses about as much as those of the paper
 
 
 def strong_gaussian_noise(

@@ -58,14 +58,7 @@ class DatasetFrames:
         check_options(size, held_out)
         self.size, self.held_out = size, held_out
         self.dataset = open_dataset(Path(path))
-        cameras = self.dataset.choose_cameras(sensor, camera and [camera])
-        if len(cameras) != 1:
-            names = ", ".join(c.name for c in self.dataset.cameras.values()) or "none"
-            raise ValueError(
-                f"env.camera must name one of the {sensor} cameras of {path}, because "
-                f"{len(cameras)} cameras match. All cameras: {names}."
-            )
-        self.camera = cameras[0]
+        self.camera = self.dataset.choose_camera(sensor, camera, "env.camera")
         frames: dict[str, list[tuple[Episode, int]]] = {}
         self._times: dict[int, np.ndarray] = {}
         for episode, rows, _ in rows_of(self.dataset, self.dataset.choose_episodes(episodes)):

@@ -1,12 +1,12 @@
-"""Compute intervals for SR, SPL, PRS and PRS differences by a paired bootstrap over episodes.
+"""Compute intervals for SR, SPL, PRS and PRS differences by a paired bootstrap over scenes or
+episodes.
 
 Values have the shape ``[..., N]``, with one column per episode. All conditions and agents use the
-same resamples of the episodes, so that the difficulty of an episode cancels in differences. If an
-episode was run with several seeds, the caller must average over the seeds, because episodes are the
-units that are resampled. Episodes in one scene are similar, so intervals that also hold for new
-scenes are wider. For such intervals, ``units`` [N] contains the number of each episode's scene, and
-the episodes of a scene are resampled together (cluster bootstrap: Davison and Hinkley 1997, section
-3.8).
+same resamples, so that the difficulty of an episode cancels in differences. If an episode was run
+with several seeds, the caller must average over the seeds. Episodes in one scene are similar, so
+intervals that also hold for new scenes are wider. For such intervals, ``units`` [N] contains the
+number of each episode's scene, and the episodes of a scene are resampled together (cluster
+bootstrap: Davison and Hinkley 1997, section 3.8). Without ``units``, each episode is resampled.
 """
 
 from __future__ import annotations

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.bootstrap import LEVEL, ROUNDING, Estimate, resampled_means
-from mitigate.evaluation.grid import COVERAGE, DRAWN, METRICS, Grid, grids
+from mitigate.evaluation.grid import COVERAGE, METRICS, Grid, grids
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import references
 from mitigate.worlds.seeded import RETURN
@@ -334,19 +334,19 @@ class Scores:
             common: mask of the episodes to use [N].
         """
         key = (line, common.tobytes())
-        if key not in self._kept:
+        if key not in self._scores_of_curves:
             curve = self.curve(*line)
             table = np.stack([values[common] for values in curve.values()])
             draws = resampled_means(table, units=self.grid.units[common])
             means = np.concatenate([table.mean(axis=1)[None], draws])
-            self._kept[key] = {
+            self._scores_of_curves[key] = {
                 loss: area([*curve], means) if loss is None else crossing([*curve], means, loss)
                 for loss in self.measures
             }
-        return self._kept[key]
+        return self._scores_of_curves[key]
 
     @cached_property
-    def _kept(self) -> dict[tuple, dict[float | None, np.ndarray]]:
+    def _scores_of_curves(self) -> dict[tuple, dict[float | None, np.ndarray]]:
         """Measures of curves, because several comparisons and groups need the same curve."""
         return {}
 
@@ -367,7 +367,7 @@ def scores(
     rows: Iterable[Row],
     losses: Sequence[float],
     against: str | None = None,
-    drawn: str = DRAWN[0],
+    drawn: str | None = None,
 ) -> list[Scores]:
     """Return one Scores object per split, episode list, suite version and success rule in ``rows``.
 
@@ -377,7 +377,7 @@ def scores(
         losses: fractions of the clean success.
         against: the column with which the other columns are compared. The default is the column
             "base" or "before" if it exists, and otherwise the first column.
-        drawn: unit that the bootstrap resamples, "episode" or "scene".
+        drawn: unit that the bootstrap resamples, as in :func:`grids`.
 
     Raises:
         ValueError: If a loss or ``against`` is invalid, or no column has results at severity 1.

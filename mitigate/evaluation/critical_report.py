@@ -54,8 +54,8 @@ def markdown(part: Scores) -> str:
         f"N = {_episodes(part)}, seed{'s' * (len(seeds) > 1)} "
         f"{', '.join(map(str, sorted(seeds)))}, "
         f"corruption suite {markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Brackets: "
-        f"{100 * LEVEL:.0f} % paired bootstrap over {grid.drawn}s, {RESAMPLES:,} resamples, each "
-        "with its own decreasing fit."
+        f"{100 * LEVEL:.0f} % paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples, "
+        "each with its own decreasing fit."
     )
     texts = [f"## {markdown_of(grid.heading)}, critical severities\n\n{about}"]
     for loss in part.measures:

@@ -14,6 +14,7 @@ from itertools import chain, count
 
 import numpy as np
 
+from mitigate.core.names import counted
 from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.record import FAMILIES
 from mitigate.corruptions.registry import (
@@ -124,7 +125,9 @@ def label_columns(
 COVERAGE = 0.9
 METRICS = {"SR": "success", "SPL": "spl"}
 STEPS = "steps"  # number of steps, which the HTML page shows
-DRAWN = ("episode", "scene")  # units that the bootstrap can resample
+# With fewer scenes, intervals from resampled scenes are too narrow (Cameron, Gelbach and Miller
+# 2008), so episodes are resampled. The limit is heuristic.
+LEAST_SCENES = 10
 _Run = dict[tuple[str, float, str], np.ndarray]  # maps (corruption, severity, metric) to values [N]
 
 
@@ -183,7 +186,7 @@ class Grid:
             value is the mean over ``seeds``, or NaN if a row is missing. Each severity has its own
             clean cell, because the seeds may differ between severities.
         runs: ``runs[label][seed]`` holds the cells of a seed by (corruption, severity, metric).
-        drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
+        drawn: unit that the bootstrap resamples, "scene" or "episode".
         units: for each episode, the number of its unit. The episodes of a unit are resampled
             together.
         cut: for each label, a text that states how many episodes were ended by a step limit. Labels
@@ -206,6 +209,15 @@ class Grid:
     units: np.ndarray
     cut: dict[str, str]
     begins: str = ""
+
+    @property
+    def resampled(self) -> str:
+        """A text that names what the bootstrap resamples, such as "30 scenes with their
+        episodes".
+        """
+        if self.drawn == "episode":
+            return "episodes"
+        return f"{counted(len(np.unique(self.units)), self.drawn)} with their episodes"
 
     @property
     def heading(self) -> str:
@@ -327,16 +339,17 @@ class Grid:
         ]
 
 
-def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
+def grids(rows: Iterable[Row], drawn: str | None = None) -> list[Grid]:
     """Return the grids of ``rows``, ordered by split, suite, success rule and episode list.
 
     Args:
         rows: result rows.
-        drawn: unit that the bootstrap resamples, one of :data:`DRAWN`.
+        drawn: unit that the bootstrap resamples, "scene" or "episode". If None, it is "scene" for a
+            grid with at least ``LEAST_SCENES`` scenes, and otherwise "episode".
 
     Raises:
-        ValueError: If there are no rows, or if the bootstrap resamples scenes but rows do not name
-            their scene.
+        ValueError: If there are no rows, or if ``drawn`` is "scene" but rows do not name their
+            scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
     for row in upsert(rows):
@@ -354,7 +367,7 @@ def grids(rows: Iterable[Row], drawn: str = DRAWN[0]) -> list[Grid]:
     return results
 
 
-def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
+def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str | None) -> Grid:
     columns = label_columns((row["name"], row["agent"], row["seed"]) for row in rows)
     labels = {(name, agent): x for x, (name, agents) in columns.items() for agent in agents}
     episodes = tuple(sorted({row["episode_id"] for row in rows}, key=_natural))
@@ -375,13 +388,28 @@ def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str) -> Grid:
             seeds[spot], unfinished[spot] = _complete_seeds(measured, severity)
             pooled = _pooled([measured[seed] for seed in seeds[spot]], severity)
             cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
-    units = np.arange(len(episodes))
-    if drawn != DRAWN[0]:
-        scenes = {row["episode_id"]: scene_of(row) for row in rows}
-        units = np.unique([scenes[episode] for episode in episodes], return_inverse=True)[1]
+    unit, units = _units(rows, episodes, drawn)
     texts = {label: cuts(chain.from_iterable(runs.values())) for label, runs in grouped.items()}
     cut = {label: text for label, text in texts.items() if text}
-    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, drawn, units, cut)
+    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, unit, units, cut)
+
+
+def _units(rows: list[Row], episodes: tuple[str, ...], drawn: str | None) -> tuple[str, np.ndarray]:
+    """Return the unit that the bootstrap resamples, and the number of each episode's unit."""
+    each = "episode", np.arange(len(episodes))
+    if drawn == "episode":
+        return each
+    row_of = {row["episode_id"]: row for row in rows}
+    try:
+        scenes = [scene_of(row_of[episode]) for episode in episodes]
+    except ValueError:
+        if drawn is None:
+            return each
+        raise
+    units = np.unique(scenes, return_inverse=True)[1]
+    if drawn is None and units.max() + 1 < LEAST_SCENES:
+        return each
+    return "scene", units
 
 
 def _cells(rows: list[Row], place: dict[str, int]) -> _Run:

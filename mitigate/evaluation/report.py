@@ -10,13 +10,11 @@ import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-import numpy as np
-
 from mitigate.core.files import atomic_text, make_folder
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
-from mitigate.evaluation.grid import DRAWN, METRICS, PROMPT_ONLY, Grid, expected_corruptions
+from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, expected_corruptions
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
@@ -61,7 +59,7 @@ def write(
     first: str | None = None,
     least: int = 1,
     against: str | None = None,
-    drawn: str = DRAWN[0],
+    drawn: str | None = None,
     intervals: bool = False,
 ) -> list[Path]:
     """Write ``table.md``, ``heatmap.png`` and ``severity.png`` to ``folder``; return their paths.
@@ -130,15 +128,8 @@ def _heading(section: Section, several_rules: bool) -> str:
         f"{markdown_of(grid.suite)}. Success: {markdown_of(grid.rule)}. Agents: {agents}.\n"
         f"SR in %. PRS is the agent's SR (SPL), averaged over the block's corruptions and divided "
         f"by its clean SR (SPL). Brackets: {100 * LEVEL:.0f} % paired bootstrap over "
-        f"{_drawn(grid)}, {RESAMPLES:,} resamples; where all or none succeed, Wilson's."
+        f"{grid.resampled}, {RESAMPLES:,} resamples; where all or none succeed, Wilson's."
     )
-
-
-def _drawn(grid: Grid) -> str:
-    """Return a text that names the unit that the bootstrap resamples, and the number of scenes."""
-    if grid.drawn == DRAWN[0]:
-        return "episodes"
-    return f"{counted(len(np.unique(grid.units)), grid.drawn)} with their episodes"
 
 
 def _table(section: Section, intervals: bool) -> str:
@@ -246,8 +237,8 @@ def _notes(section: Section) -> str:
     if section.by_seed:
         notes.append(
             "Several seeds: the value of an episode is their mean, and two columns are compared "
-            "over the seeds that both have. Intervals are over episodes; the values seed by seed "
-            "show the differences between training runs."
+            f"over the seeds that both have. Intervals are over {section.grid.drawn}s; the values "
+            "seed by seed show the differences between training runs."
         )
     notes += section.notes(markdown_of)
     if section.gaps:

@@ -15,7 +15,6 @@ from mitigate.corruptions.registry import HALVES, UNSEEN, title
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import (
-    DRAWN,
     METRICS,
     SUITE,
     Gap,
@@ -290,7 +289,7 @@ def references(rows: Iterable[Row], against: str | None) -> Sequence[str]:
 
 
 def sections(
-    rows: Iterable[Row], against: str | None = None, drawn: str = DRAWN[0]
+    rows: Iterable[Row], against: str | None = None, drawn: str | None = None
 ) -> list[Section]:
     """Return one section for each kind of corruption, split, suite, rule and severity in ``rows``.
 

@@ -1,8 +1,8 @@
 """Join result rows into one table: ``mitigate table RUNS... [--seed N] [--against NAME]``.
 
-With ``--draw scene``, the intervals describe the variation between scenes, and not only between
-episodes of the same scenes. With ``--critical 0.1,0.5``, the table compares the severities at which
-10 % and 50 % of the clean success are lost.
+Intervals describe new scenes if the rows have at least 10 scenes. With ``--draw episode``, they
+describe new episodes in the same scenes, and are often narrower. With ``--critical 0.1,0.5``, the
+table compares the severities at which 10 % and 50 % of the clean success are lost.
 
 The command accepts row files, and folders of runs or sweeps, which may be incomplete. The command
 prints the table and writes ``table.md``, ``heatmap.png`` and ``severity.png``. With ``--critical``,
@@ -32,7 +32,7 @@ def run(
     out: Path | str | None = OUT,
     seeds: Sequence[int] | None = None,
     against: str | None = None,
-    drawn: str = "episode",
+    drawn: str | None = None,
     critical: Sequence[float] | None = None,
     intervals: bool = False,
 ) -> str:
@@ -46,7 +46,8 @@ def run(
         seeds: the seeds to use, or None for all.
         against: the column with which the other columns are compared. The default is the column
             "base" or "before" if it exists, and otherwise the first column.
-        drawn: unit that the bootstrap resamples, "episode" or "scene".
+        drawn: unit that the bootstrap resamples, "scene" or "episode". The default is "scene" if
+            there are at least 10 scenes, and otherwise "episode".
         critical: fractions of the clean success. If they are given, the report consists of critical
             severities and areas under the retention curve (``critical.py``).
         intervals: whether the table shows, for each corruption, an interval and the differences
@@ -122,9 +123,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument(
         "--draw",
         dest="drawn",
-        choices=("episode", "scene"),
-        default="episode",
-        help="unit that the bootstrap resamples for the intervals (default episode)",
+        choices=("scene", "episode"),
+        help="unit that the bootstrap resamples for the intervals (default: scene if there are at "
+        "least 10 scenes, otherwise episode)",
     )
     parser.add_argument(
         "--critical",

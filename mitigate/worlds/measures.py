@@ -164,7 +164,7 @@ def of_episode(
         left: Distance in metres from the agent to the goal.
         stopped: Whether the agent took STOP.
     """
-    length = path_length(path)
+    length, start = round(path_length(path), 4), round(start, 4)  # the row can confirm its SPL
     succeeded = rule.met(left, stopped)
     shortest = spl(succeeded, start, length) if math.isfinite(start) else 0.0
     measures = {"success": int(succeeded), "spl": round(shortest, 6)}

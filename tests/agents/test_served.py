@@ -204,7 +204,8 @@ def test_action_can_be_changed_by_the_conversion(server):
 
 def test_server_that_stops_reading_is_an_error(server):
     """The frame is larger than the buffers of the sockets."""
-    server.reply = lambda number, payload: time.sleep(30)
+    tested = threading.Event()
+    server.reply = lambda number, payload: tested.wait(30)
     agent = policy(server, timeout=0.5)
     agent.reset("go")
     large = np.zeros((2000, 2000, 3), np.uint8)
@@ -213,6 +214,7 @@ def test_server_that_stops_reading_is_an_error(server):
         with pytest.raises(ConnectionError, match="timeout="):
             agent.act({"rgb": large})
     assert time.monotonic() - began < 10
+    tested.set()
 
 
 def test_redirect_is_an_error(monkeypatch):

@@ -74,8 +74,18 @@ def test_intervals_may_be_of_scenes(says):
     output = [placed(row) for row in column(5, ALL)]
     assert {rows.scene_of(row) for row in output} == {"0", "1"}
     text, plain = markdown(sections(output, drawn="scene")), markdown(sections(output))
+    # two scenes are too few for the default
     assert "bootstrap over 2 scenes with their episodes" in text and "over episodes" in plain
     assert "| 50.0 [0.0, 100.0] |" in text and "| 50.0 [20.0, 80.0] |" in plain
+
+
+def test_intervals_are_of_scenes_if_there_are_ten():
+    output = [row | {"scene": row["episode_id"][-1]} for row in column(5, ALL)]
+    several = [row | {"episode_id": f"1{row['episode_id']}"} for row in output]
+    text = markdown(sections(output + several))
+    assert "bootstrap over 10 scenes with their episodes" in text
+    assert "bootstrap over episodes" in markdown(sections(output + several, drawn="episode"))
+    assert "bootstrap over episodes" in markdown(sections(column(5, ALL)))  # unknown scenes
 
 
 def test_scene_bootstrap_requires_scenes_in_rows():

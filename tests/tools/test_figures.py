@@ -70,11 +70,11 @@ def test_page_is_recomputed_from_its_rows(tmp_path, monkeypatch, capsys):
     file = tmp_path / "page.md"
     monkeypatch.setattr(sys, "argv", ["figures", str(file)])
     command = f"    mitigate table {rows} --against harden"
-    file.write_text(page("89.0 [83.0, 95.0]", command))
+    file.write_text(page("89.0 [81.7, 95.2]", command))
     assert figures.main() == 0
-    file.write_text(page("89.0 [83.0, 94.0]", command))
+    file.write_text(page("89.0 [81.7, 94.0]", command))
     assert figures.main() == 1
-    assert "wrong: 89.0 [83.0, 94.0]" in capsys.readouterr().out
-    file.write_text(page("89.0 [83.0, 95.0]", f"    mitigate table {rows} --against nobody"))
+    assert "wrong: 89.0 [81.7, 94.0]" in capsys.readouterr().out
+    file.write_text(page("89.0 [81.7, 95.2]", f"    mitigate table {rows} --against nobody"))
     with pytest.raises(SystemExit, match="no column 'nobody'"):
         figures.main()

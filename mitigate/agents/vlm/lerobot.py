@@ -70,7 +70,7 @@ def write_lerobot_conversations(
     if size < 1:
         raise ValueError(f"size must be >= 1, got {size}.")
     opened = open_dataset(dataset)
-    chosen = _choose_camera(opened, camera)
+    chosen = opened.choose_camera(RGB, camera, "camera")
     drives = _read_drives(opened, actions or _check_integers(opened))
     if not any(STOP in drive.actions for drive in drives.values()):
         warnings.warn(
@@ -153,18 +153,6 @@ class _RecordedWorld(World, Expert):
         self._action, images = step
         frame = images[self.camera.name]
         return Observation({}, lambda: {RGB: _square(frame, self.size)}, (RGB,))
-
-
-def _choose_camera(dataset: Dataset, name: str | None) -> Camera:
-    """Return the RGB camera with this name, or the only RGB camera if ``name`` is None."""
-    cameras = dataset.choose_cameras(RGB, name and [name])
-    if len(cameras) != 1:
-        names = ", ".join(camera.name for camera in dataset.choose_cameras(RGB)) or "none"
-        raise ValueError(
-            f"camera must name one RGB camera of {dataset.path}, got {name}. Its RGB cameras: "
-            f"{names}."
-        )
-    return cameras[0]
 
 
 def _check_integers(dataset: Dataset) -> Convert:

@@ -109,6 +109,20 @@ class Dataset:
         chosen = [c for c in self.cameras.values() if c.kind == kind]
         return [c for c in chosen if not names or c.name in names]
 
+    def choose_camera(self, kind: str, name: str | None, option: str) -> Camera:
+        """Return the camera called ``name``, or the only camera of a kind if ``name`` is None.
+
+        Raises:
+            ValueError: If not exactly one camera matches; the message names ``option``.
+        """
+        cameras = self.choose_cameras(kind, name and [name])
+        if len(cameras) != 1:
+            raise ValueError(
+                f"{option} must name one of the {kind} cameras of {self.path}, because "
+                f"{len(cameras)} cameras match. All cameras: {', '.join(self.cameras) or 'none'}."
+            )
+        return cameras[0]
+
     def choose_episodes(self, numbers: Sequence[int] | None) -> list[Episode]:
         """Return the episodes with these numbers, or all episodes if ``numbers`` is None. Raise
         ValueError for an unknown number.

@@ -117,7 +117,10 @@ def _facts(section: Section) -> list[list[str]]:
         ["Success", grid.rule],
         ["Corruption suite", grid.suite],
         ["Severity", f"{section.severity:g}" if section.blocks else "clean only"],
-        ["Intervals", f"{LEVEL:.0%}, paired bootstrap over episodes, {RESAMPLES:,} resamples"],
+        [
+            "Intervals",
+            f"{LEVEL:.0%}, paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples",
+        ],
     ]
 
 

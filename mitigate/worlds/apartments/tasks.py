@@ -32,7 +32,8 @@ from mitigate.worlds.episodes import (
 # R2R-CE uses 3.0 m for paths of 10 m.
 # This value is smaller, because paths in apartments are shorter (docs/base-agent.md).
 SUCCESS_METRES = 2.0
-SHORTEST, LONGEST = 4.0, 12.0  # limits of the geodesic distance from start to goal, in metres
+# limits of the distance from start to goal on the grid with eight directions, in metres
+SHORTEST, LONGEST = 4.0, 12.0
 TASKS = ("vln", "ogn")
 # This is the version of the episode lists and texts, which is part of every episode id.
 # Results of different versions are therefore never mixed.
@@ -76,7 +77,7 @@ def make_episode(apartment: Apartment, task: str, index: int, seed: int = 0) -> 
     else:
         text = find(apartment, category, rng)
     thinned = np.concatenate([path[:-1:5], path[-1:]])
-    metres = round(float(field[start]), 4)
+    metres = round(apartment.space.shortest_length(path[0], goals), 4)
     return Episode(
         episode_id=f"{apartment.seed:06d}-{task}{EDITION}-{index}" + (f"-{seed}" if seed else ""),
         trajectory_id=f"{apartment.seed:06d}-{index}",
@@ -165,20 +166,17 @@ def landmarks(episode: Episode) -> list[int]:
     return [i for i, piece in enumerate(furniture) if piece.category == episode.info["category"]]
 
 
-def view_field(episode: Episode) -> np.ndarray:
-    """Return the distance in metres from every free cell to the nearest view point of the goal
-    object.
-
-    View points are the free cells next to the goal object, as for the object goals of VLN-CE.
+def view_points(episode: Episode) -> list[int]:
+    """Return the view points of the goal object: the free cells next to it, as for the object goals
+    of VLN-CE.
     """
-    return _view_field(episode.scene_id, tuple(landmarks(episode)))
+    return list(_view_points(episode.scene_id, tuple(landmarks(episode))))
 
 
 @lru_cache(maxsize=64)
-def _view_field(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
+def _view_points(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
     apartment = apartment_of(scene_id)
-    near = np.unique(np.concatenate([view_cells(apartment, thing) for thing in things]))
-    return apartment.space.distances(list(near))
+    return np.unique(np.concatenate([view_cells(apartment, thing) for thing in things]))
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:

@@ -23,16 +23,17 @@ from mitigate.worlds.apartments.drawing import draw_plan
 from mitigate.worlds.apartments.labels import ahead, column_labels, free_directions, view_labels
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import LEVEL, shared_renderer
-from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator
-from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_field
+from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator, goal_field
+from mitigate.worlds.apartments.tasks import SUCCESS_METRES, landmarks, view_points
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import World
 
 MEMORY_BYTES = 1 << 26  # maximum bytes of rendered frames that ``remembering`` caches (heuristic)
 LARGEST = 2048  # maximum size of a view in pixels (heuristic)
 # A warning is logged if the recorded and the measured distance differ by more than this.
-# The limit is in metres and is heuristic.
-MAX_DIFFERENCE = 0.5
+# The limit is in metres and is heuristic. Lists of older versions hold the lengths of paths in
+# eight directions, which are up to 1 m longer.
+MAX_DIFFERENCE = 1.0
 RULES = {"apartments": measures.Rule("vln", SUCCESS_METRES), **measures.RULES}
 
 
@@ -64,9 +65,11 @@ class ApartmentsWorld(World):
         self.views = views
         self._rule = rule
         self.rule = str(RULES[rule])
-        # older rows hold distances to the goal itself, so the rule text of new rows must differ
+        # older rows have distances to the goal itself and the SPL of paths in eight directions, so
+        # the rule text of new rows must differ
         if RULES[rule].view_points:
             self.rule += ", as are all distances"
+        self.rule += "; SPL of any-angle paths"
         self.sensors = cameras(size, views)
         self.simulator = Simulator(size)
         self._memory = Memory(0)
@@ -108,7 +111,7 @@ class ApartmentsWorld(World):
     def reset(self, episode: Episode) -> Observation:
         """Start an episode. Raises ValueError if the scene of the episode is not an apartment."""
         self.simulator.reset(episode)
-        self._shortest = self._shortest_way(episode)
+        self._shortest = self._shortest_length(episode)
         return self._observation()
 
     def step(self, action: int) -> Observation:
@@ -124,10 +127,11 @@ class ApartmentsWorld(World):
         """Return the measures of the episode.
 
         The measures are success, spl, ndtw, collisions, steps, path_length, geodesic_distance and
-        distance_to_goal. The last three are in metres. geodesic_distance is the distance from the
-        start of the episode to the target of the success rule. distance_to_goal is the distance
-        from the agent to this target. ndtw compares the agent's path with the reference path. Its
-        threshold is ``path_metres`` of the success rule.
+        distance_to_goal. The last three are in metres. geodesic_distance is the length of the
+        shortest path from the start of the episode to the target of the success rule.
+        distance_to_goal is the length of the path on the 10 cm grid, in eight directions, from the
+        agent to this target; success depends on it. ndtw compares the agent's path with the
+        reference path. Its threshold is ``path_metres`` of the success rule.
         """
         simulator = self.simulator
         values = measures.of_episode(
@@ -147,22 +151,26 @@ class ApartmentsWorld(World):
         """Return the distance in metres from each free cell to the target of the success rule,
         which is the goal or its view points.
         """
-        points = RULES[self._rule].view_points
-        return view_field(self.simulator.episode) if points else self.simulator.field
+        episode = self.simulator.episode
+        if not RULES[self._rule].view_points:
+            return self.simulator.field
+        return goal_field(episode.scene_id, tuple(view_points(episode)))
 
     def _left(self) -> float:
         """Return the distance in metres from the agent to the target of the success rule."""
         return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
 
-    def _shortest_way(self, episode: Episode) -> float:
-        """Return the distance in metres from the start to the target of the success rule.
+    def _shortest_length(self, episode: Episode) -> float:
+        """Return the length in metres of the shortest path from the start to the target of the
+        success rule.
 
-        If the file hides the goals, return the distance that the file records. If the recorded
-        distance differs from the measured distance, a warning is issued once per world.
+        If the file hides the goals, return the length that the file records. If the recorded
+        length differs from the measured length, a warning is issued once per world.
         """
-        recorded, measured = episode.geodesic_distance, self.simulator.distance_to_goal()
+        recorded, simulator = episode.geodesic_distance, self.simulator
         if recorded is not None and not episode.goals:
             return recorded
+        measured = simulator.space.shortest_length(simulator.xy, simulator.goal_cells)
         differs = recorded is not None and abs(recorded - measured) > MAX_DIFFERENCE
         if differs and not self._warned:
             self._warned = True
@@ -172,7 +180,9 @@ class ApartmentsWorld(World):
                 "the measured distance. Check that the list is for these apartments, in metres.",
                 stacklevel=3,
             )
-        return round(self._left(), 4)
+        if RULES[self._rule].view_points:
+            measured = simulator.space.shortest_length(simulator.xy, view_points(episode))
+        return round(measured, 4)
 
     def truth(self) -> Mapping[str, np.ndarray]:
         """Return the labels of the current pose.

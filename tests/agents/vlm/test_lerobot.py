@@ -176,10 +176,10 @@ def test_write_rejects_invalid_arguments(film, tmp_path, options, message):
 
 def test_write_needs_one_rgb_camera(continuous, tmp_path):
     for camera in (None, DEPTH):
-        with pytest.raises(ValueError, match=f"camera must name one RGB .*, got {camera}.*{FRONT}"):
+        with pytest.raises(ValueError, match=f"camera must name one of the rgb cameras.*{FRONT}"):
             write_lerobot_conversations(continuous, tmp_path / "out", camera=camera)
     only_depth = write_dataset(tmp_path / "depth", cameras=(), with_depth=True)
-    with pytest.raises(ValueError, match="Its RGB cameras: none"):
+    with pytest.raises(ValueError, match="because 0 cameras match. All cameras: observation.depth"):
         write_lerobot_conversations(only_depth, tmp_path / "out")
 
 
