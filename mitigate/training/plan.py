@@ -109,7 +109,7 @@ def check(config: TrainConfig) -> None:
         raise ValueError(
             f"The recipe {name} has no stage {other!r}; its stages are {', '.join(complete)}. "
             "Remove options of other stages (experiment=frozen fits only imitation and da_*, "
-            "experiment=camera only harden, ts_distill, stacked and self_distill)."
+            "experiment=camera only ts_distill, stacked and self_distill; harden includes it)."
         )
     listed = config.report == REPORT or env.episodes
     # check this before training starts, so that mistakes are found early
@@ -149,6 +149,7 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
         )
     warn_unused_schedule(config)
     leave_out_stages(config, agent)
+    keep_cameras(config)
     warn_warmup(config)
     drop_unread_corruptions(config, agent)
     stages = plan_stages(config, agent, folder)
@@ -254,6 +255,22 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
         if cause:
             config.stages[name] = None
             say(f"{name}: left out, {cause} (docs/bring-your-own.md)")
+
+
+def keep_cameras(config: TrainConfig) -> None:
+    """Set ``camera_share`` to 0 in stages whose world cannot render a displaced camera, and print
+    their names.
+    """
+    for name, stage in config.active_stages.items():
+        if not stage.recipe.get("camera_share"):
+            continue
+        world = maker(stage.recipe["world"])()
+        if isinstance(world, Placeable) and "mount" not in signature(world.put).parameters:
+            stage.recipe["camera_share"] = 0.0
+            say(
+                f"{name}: without displaced cameras, {type(world).__name__}.put has no argument "
+                "mount (docs/faults.md)"
+            )
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:

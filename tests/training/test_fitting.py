@@ -30,6 +30,7 @@ from mitigate.training import plan, stages, train
 from mitigate.training.config import StageConfig, TrainConfig, read
 from mitigate.training.objective import Objective, ObjectiveSpec
 from mitigate.training.ranks import Ranks
+from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.tiny import TinyAgent, TinyRecipe
 
 OFF = "evaluation.enabled=false"
@@ -183,6 +184,22 @@ def test_plan_drops_view_stages_without_random_poses(monkeypatch, capsys):
     monkeypatch.setattr(plan, "maker", lambda node: Walker)
     plan.leave_out_stages(cfg, TopologicalAgent(16))
     assert left(cfg) == ["imitation"] and "no random poses" in capsys.readouterr().out
+
+
+def test_plan_keeps_the_camera_in_worlds_that_cannot_displace_it(monkeypatch, capsys):
+    class Fixed(ApartmentsWorld):
+        def put(self, xy, heading, *, views=None, rgb=True):
+            return super().put(xy, heading, views=views, rgb=rgb)
+
+    cfg = load("recipe=harden")
+    plan.keep_cameras(cfg)
+    shares = [stage.recipe["camera_share"] for stage in cfg.active_stages.values()]
+    assert shares == [0.4, 0.4] and not capsys.readouterr().out
+    monkeypatch.setattr(plan, "maker", lambda node: Fixed)
+    plan.keep_cameras(cfg)
+    shares = [stage.recipe["camera_share"] for stage in cfg.active_stages.values()]
+    assert shares == [0.0, 0.0]
+    assert "views_depth: without displaced cameras, Fixed.put" in capsys.readouterr().out
 
 
 @pytest.mark.parametrize("recipe", ["conv_adapter", "harden"])
