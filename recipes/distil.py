@@ -22,7 +22,7 @@ import torch
 from torch import Tensor
 
 from mitigate.core import checkpoint
-from mitigate.recipes.imitate import decide, loss_weights, masked
+from mitigate.recipes.imitate import decide, loss_weights
 from mitigate.recipes.pretrain import views_to_learn
 from mitigate.training.objective import check_weights
 from mitigate.training.parts import load_teacher, refuse_gates, train_only
@@ -87,18 +87,12 @@ class Distil(OnEpisodes):
     def identity(self) -> dict[str, str]:
         return {**self.rollouts.identity(), "teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
-    def train(self, mode: bool = True) -> Any:
-        super().train(mode)
-        self.teacher.eval()
-        return self
-
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
         out, values = decide(self.agent, decisions, self.losses)
         with torch.no_grad():
             target = self.teacher.decide(decisions, clean=True)
-        student, teacher = (masked(x.logits, out.mask) for x in (out, target))
-        values["kl"] = policy_kl(student, teacher, self.temperature)
+        values["kl"] = policy_kl(out.logits, target.logits, self.temperature)
         loss = self.w_il * values["loss"]
         if self.w_kl:
             loss = loss + self.w_kl * self.temperature**2 * values["kl"]
@@ -165,11 +159,6 @@ class DistilViews(OnViews):
 
     def identity(self) -> dict[str, str]:
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
-
-    def train(self, mode: bool = True) -> Any:
-        super().train(mode)
-        self.teacher.eval()
-        return self
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         out = self.agent.see(self.modality, batch["frames"], batch["targets"])

@@ -74,7 +74,7 @@ def imitation(out: Output, decisions: Decisions, weights: Mapping[str, float]) -
         A dict with the entry "loss" and with values that are logged.
     """
     assert out.logits is not None, "decide() gave no logits"
-    logits, target = masked(out.logits, out.mask), decisions.target
+    logits, target = out.logits, decisions.target
     if logits.shape != target.shape or decisions.weight.shape != target.shape[:1]:
         raise ValueError(
             "decide() and join() must give logits [B, n], targets [B, n] and weights [B] for all "
@@ -98,11 +98,6 @@ def falling_share(step: int, steps: int, least: float) -> float:
     The fraction falls from 1 to ``least`` during the first ``DECAY`` of ``steps``.
     """
     return least + max(0.0, 1 - step / (DECAY * steps)) * (1 - least)
-
-
-def masked(logits: Tensor, mask: Tensor | None) -> Tensor:
-    """Return logits with minus infinity where ``mask`` is False."""
-    return logits if mask is None else logits.masked_fill(~mask, float("-inf"))
 
 
 def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, float]:

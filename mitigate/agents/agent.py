@@ -231,14 +231,13 @@ class Output:
 
     Attributes:
         logits: [B, n], one logit per candidate of each decision, or None if there are no decisions.
-        mask: bool [B, n], True for candidates that may be chosen; None allows all candidates.
+            Candidates that must not be chosen have -inf.
         features: features by name, which distillation compares between student and teacher.
         losses: auxiliary losses of the agent, as scalars by name.
         figures: additional scalars to log, by name.
     """
 
     logits: Tensor | None = None
-    mask: Tensor | None = None
     features: dict[str, Tensor] = field(default_factory=dict)
     losses: dict[str, Tensor] = field(default_factory=dict)
     figures: dict[str, Tensor] = field(default_factory=dict)

@@ -28,7 +28,7 @@ from mitigate.corruptions.registry import (
 )
 from mitigate.evaluation import metrics
 from mitigate.evaluation.episode_lists import by_list
-from mitigate.evaluation.rows import Row, cuts, scene_of, upsert
+from mitigate.evaluation.rows import Row, cuts, scene_of, unique
 
 BLOCKS = {  # the blocks contain only this project's corruptions, not corruptions of other packages
     "RGB": names("rgb"),
@@ -352,7 +352,7 @@ def grids(rows: Iterable[Row], drawn: str | None = None) -> list[Grid]:
             scene.
     """
     groups: dict[tuple[str, str, str], list[Row]] = defaultdict(list)
-    for row in upsert(rows):
+    for row in unique(rows):
         groups[row["split"], row["suite"], row["rule"]].append(row)
     if not groups:
         raise ValueError(

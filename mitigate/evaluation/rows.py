@@ -189,14 +189,6 @@ def write(path: Path | str, rows: Iterable[Row], *, fewer: bool = False) -> None
         file.writelines(_line(row) for row in rows)
 
 
-def upsert(*parts: Iterable[Row]) -> list[Row]:
-    """Return the rows of all ``parts``, with one row per identity.
-
-    If several rows have the same identity, the last one takes the position of the first.
-    """
-    return list({identity(row): row for row in chain(*parts)}.values())
-
-
 def cuts(rows: Iterable[Row]) -> str:
     """State how many episodes were cut off by the world's ``limit=``; return "" if none were."""
     rows = list(rows)

@@ -396,7 +396,9 @@ def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str])
     rows come from several such agents, only the agent in ``run_rows`` is used. Raises ValueError if
     this agent is not unique.
     """
-    rows = [row for row in result_rows.upsert(run_rows, other_rows) if weights_of(row) in weights]
+    rows = [
+        row for row in result_rows.unique([*run_rows, *other_rows]) if weights_of(row) in weights
+    ]
     for sha in weights:
         mine = [row for row in rows if weights_of(row) == sha]
         agents = {row["agent"] for row in mine}

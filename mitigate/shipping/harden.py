@@ -217,19 +217,14 @@ def harden(
     objective = METHODS[method](**arguments, **settings)
     identity: dict[str, Any] = {
         "policy": before.version,
-        "losses": 2,  # version of the losses; version 1 had no imitation loss
         "settings_of_policy": before.settings(),
         "names": list(names),
         "broad_share": broad_share,
         "tune": tune,
         "settings": {name: str(value) for name, value in settings.items()},
+        "method": method,
+        "schedule": schedule,
     }
-    if method == "self_distil":
-        identity["rounds"] = 2  # version of the rollouts; version 1 had fewer short episodes
-    else:
-        identity["method"] = method
-    if schedule != "per_episode":
-        identity["schedule"] = schedule
     label = ""
     if version is not None:
         identity["version"] = version

@@ -63,12 +63,14 @@ class Objective(nn.Module):
         return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
-        """Set the mode, but keep the statistics of frozen normalisation layers constant.
-
-        See ``hold_statistics``.
+        """Set the mode, but keep the statistics of frozen normalisation layers constant
+        (``hold_statistics``), and keep the submodule ``teacher`` in eval mode.
         """
         super().train(mode)
         hold_statistics(self)
+        teacher = self._modules.get("teacher")
+        if teacher is not None:
+            teacher.eval()
         return self
 
     def start(self) -> None:

@@ -21,7 +21,7 @@ from mitigate.core.checkpoint import unwritten
 
 FORMAT = 1
 OTHER_FOLDER = "Choose another folder (folder=...), or delete this one."
-REQUIRED = ("format", "step", "model", "optimizer", "scheduler", "rng", "config")
+REQUIRED = ("format", "step", "finished", "model", "optimizer", "scheduler", "rng", "config")
 _NAME = re.compile(r"step-(\d{8})\.pt")
 
 

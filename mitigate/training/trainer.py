@@ -311,6 +311,6 @@ class Trainer:
             ) from error
         self.scheduler.load_state_dict(state["scheduler"])
         seeding.set_global_state(state["rng"])
-        self._saved = int(state["step"])  # checkpoints of older versions have no "finished"
-        self._finished = self._saved >= self.steps and bool(state.get("finished", True))
+        self._saved = int(state["step"])
+        self._finished = self._saved >= self.steps and bool(state["finished"])
         return self._saved

@@ -20,6 +20,7 @@ from mitigate.training import states
 
 STATE = {
     "step": 3,
+    "finished": True,
     "model": {"w": torch.arange(100.0)},
     "optimizer": {},
     "scheduler": {},

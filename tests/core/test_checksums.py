@@ -14,6 +14,7 @@ from mitigate.training import states
 
 FLIPS = 50
 STATE = {
+    "finished": True,
     "model": {"w": torch.arange(300.0), "deep": {"b": torch.ones(7)}},
     "optimizer": {"state": {0: {"exp_avg": torch.zeros(300)}}},
     "scheduler": {},

@@ -89,11 +89,12 @@ def test_rows_that_json_cannot_hold_are_not_written(tmp_path):
     assert not path.exists()
 
 
-def test_upsert_keeps_the_last_row():
+@pytest.mark.filterwarnings("ignore:.*differ")
+def test_unique_keeps_the_last_row():
     old, new = cell(0, 3), [row(1, True), row(1, True, seed=1), row(1, True, suite="1.1")]
-    joined = rows.upsert(old, new)
+    joined = rows.unique([*old, *new])
     assert joined == [row(0, 0), row(1, True), row(2, 0), *new[1:]]
-    assert rows.upsert([row(1, 0, severity=0)], [row(1, 1, severity=0.0)]) == [row(1, 1)]
+    assert rows.unique([row(1, 0, severity=0), row(1, 1, severity=0.0)]) == [row(1, 1)]
 
 
 def test_files_and_folders_are_gathered(tmp_path):

@@ -13,7 +13,6 @@ import pytest
 import torch
 
 from mitigate.core.signals import Ended, delay_signals, uninterrupted
-from mitigate.training import states
 from mitigate.training.objective import Objective
 from mitigate.training.ranks import Ranks
 from mitigate.training.trainer import Trainer
@@ -166,15 +165,6 @@ def test_kill_while_finishing_loses_no_step(tmp_path, capsys):
     again = Trainer(Calibrated(tmp_path, before), folder=tmp_path / "run", **settings).fit()
     assert torch.equal(again.threshold, whole.threshold)
     assert "already trained for 6 steps" in capsys.readouterr().out
-
-
-def test_older_checkpoint_counts_as_finished(tmp_path, capsys):
-    settings = {"steps": 2, "precision": "fp32", "folder": tmp_path / "run"}
-    Trainer(Slow(tmp_path, 0), **settings).fit()
-    state = states.load(states.checkpoints(tmp_path / "run")[-1])
-    states.save(tmp_path / "run", {k: v for k, v in state.items() if k != "finished"})
-    Trainer(Slow(tmp_path, 0), **settings).fit()
-    assert "already trained for 2 steps" in capsys.readouterr().out
 
 
 def test_interrupted_evaluation_loses_no_step(tmp_path):

@@ -259,7 +259,8 @@ class RecurrentAgent(SideBySide, nn.Module):
         if "goal" in seen:
             losses["grounding"] = presence_loss(out["grounding"], seen["goal"])
         figures = stop_figures(out["logits"], decisions.target)
-        return Output(out["logits"], None, {"views": views, "state": out["state"]}, losses, figures)
+        features = {"views": views, "state": out["state"]}
+        return Output(out["logits"], features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return view features of a sensor's frames (``agents/agent.py``)."""

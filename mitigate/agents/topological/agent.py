@@ -289,7 +289,7 @@ class TopologicalAgent(Agent, nn.Module):
         features = {"views": views, "nodes": out["nodes"][valid]}
         figures |= stop_figures(out["logits"], decisions.target)
         losses = {**planner_losses, **losses}
-        return Output(out["logits"], decisions.allowed, features, losses, figures)
+        return Output(out["logits"], features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
         """Return the view features of one sensor's frames (``agents/agent.py``).

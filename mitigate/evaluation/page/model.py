@@ -132,7 +132,6 @@ def _column(section: Section, column: str) -> dict[str, Any]:
         "place": list(section.grid.columns).index(column),
         "agents": list(agents),
         "seeds": list(seeds),
-        "details": [["hash", ", ".join(agents)], ["seeds", ", ".join(map(str, seeds))]],
     }
 
 

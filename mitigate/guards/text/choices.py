@@ -13,10 +13,10 @@ from mitigate.core.addresses import check_choice, is_plain
 from mitigate.core.checksums import DIGITS
 from mitigate.core.files import find, sha256
 from mitigate.core.names import unknown
-from mitigate.guards.text.classifier import CONFIG, SHIPPED, WEIGHTS
+from mitigate.guards.text.classifier import CONFIG, WEIGHTS
 
 CHOICES = ("none", "classifier", "prompted", "lora", "http://host/v1@model")
-CLASSIFIER, ADAPTER = SHIPPED, "checkpoints/safeguard"
+CLASSIFIER, ADAPTER = "checkpoints/safeguard_classifier", "checkpoints/safeguard"
 # file names of an adapter in PEFT's format
 ADAPTER_CONFIG, ADAPTER_WEIGHTS = "adapter_config.json", "adapter_model.safetensors"
 EARLIER = "rules"  # name of the classifier in earlier versions

@@ -21,7 +21,6 @@ from safetensors import SafetensorError
 from safetensors.numpy import load_file
 
 from mitigate.core import folders
-from mitigate.core.files import find
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.guards.text.decode import Decoded, decode
@@ -30,7 +29,6 @@ from mitigate.guards.text.segmenter import NAMES, Segmenter, features
 
 BITS = 18
 SIZE = 1 << BITS  # length of the weight arrays; terms are hashed to indices below this number
-SHIPPED = "checkpoints/safeguard_classifier"
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
 EMPTY = 1e-3  # if the sum of squared TF-IDF values is below this, the text contains no known term
 ARRAYS = ("idf", "alone", "style")
@@ -198,11 +196,7 @@ def load(folder: str | Path) -> Classifier:
     folders.check(folder, again=_AGAIN)
     try:
         config, arrays = read_json(config_file, _AGAIN), load_file(file)
-        # folders of earlier versions contain no networks, so use the shipped ones
-        if NAMES[0] not in arrays:
-            shipped = load_file(find(SHIPPED) / WEIGHTS)
-            arrays |= {name: shipped[name] for name in NAMES}
-        classifier = Classifier(config, arrays)
+        classifier = Classifier(config, {name: arrays[name] for name in (*ARRAYS, *NAMES)})
         if all(classifier.arrays[name].shape == (SIZE,) for name in ARRAYS):
             return classifier
         problem = "has arrays of another shape"

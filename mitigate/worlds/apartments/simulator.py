@@ -118,12 +118,6 @@ class Simulator:
         self.heading += np.radians(degrees)
         self.steps += 1
 
-    def distance_to_goal(self, xy: np.ndarray | None = None) -> float:
-        """Return the geodesic distance in metres from ``xy`` (default: the agent) to the nearest
-        goal.
-        """
-        return float(self.field[self.space.cell_of(self.xy if xy is None else xy)])
-
 
 class GeodesicExpert(Expert):
     """Expert that greedily reduces the geodesic distances in ``field``.

@@ -64,12 +64,8 @@ class ApartmentsWorld(World):
         self.layouts = layouts
         self.views = views
         self._rule = rule
-        self.rule = str(RULES[rule])
-        # older rows have distances to the goal itself and the SPL of paths in eight directions, so
-        # the rule text of new rows must differ
-        if RULES[rule].view_points:
-            self.rule += ", as are all distances"
-        self.rule += "; SPL of any-angle paths"
+        # older rows have the SPL of paths in eight directions, so the text of new rows must differ
+        self.rule = f"{RULES[rule]}; SPL of any-angle paths"
         self.sensors = cameras(size, views)
         self.simulator = Simulator(size)
         self._memory = Memory(0)

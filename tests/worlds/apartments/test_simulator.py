@@ -150,10 +150,10 @@ def test_episode_ends_at_stop_or_the_limit(simulator, episodes):
 
 
 def test_distance_to_goal_matches_the_episode(simulator, episodes):
-    shortest = episodes[0].geodesic_distance
-    assert shortest < simulator.distance_to_goal() < 1.09 * shortest
+    shortest, space = episodes[0].geodesic_distance, simulator.space
+    assert shortest < simulator.field[space.cell_of(simulator.xy)] < 1.09 * shortest
     goal = from_vlnce(episodes[0].goals[0].position)
-    assert simulator.distance_to_goal(goal) == 0.0 and SUCCESS_METRES == 2.0
+    assert simulator.field[space.cell_of(goal)] == 0.0 and SUCCESS_METRES == 2.0
 
 
 def start_at(episode, xy):

@@ -1,4 +1,4 @@
-// What the file holds: the numbers as JSON, the episodes of cells packed, see episodes.py.
+// What the file holds: the numbers as JSON, the episodes of cells packed, see page/model.py.
 
 const DATA = JSON.parse(document.getElementById("data").textContent);
 const MISSING = 65535, SCALE = 1000;
@@ -39,7 +39,7 @@ function cellKey(one, column, k, seed) {
 }
 
 // Whether the episodes of a cell are in the file, of all its seeds.
-const opens = (one, column, k) => one.grid !== null && one.columns[column].seeds.every(
+const opens = (one, column, k) => one.columns[column].seeds.every(
   (seed) => DATA.grids[one.grid].cells[cellKey(one, column, k, seed)] !== undefined);
 
 // The episodes of a cell: {seed, index, id, success, spl, steps}; null if they are not in the file.

@@ -1,7 +1,7 @@
 // Agents against corruptions. A cell opens the list of its episodes; arrow keys go between cells.
 
 function heatmap(one) {
-  const readout = el("p", { class: "readout", "aria-live": "polite" }, hint(one));
+  const readout = el("p", { class: "readout", "aria-live": "polite" }, HINT);
   const names = one.columns.map((column, c) => el("th", { scope: "col", class: c === state.baseline ? "base" : null },
     el("span", {}, breakable(column.label))));
   const lines = [];
@@ -21,9 +21,7 @@ function heatmap(one) {
   return [heatControls(one), el("div", { class: "scroll" }, table), readout, legend()];
 }
 
-const hint = (one) => (one.grid === null
-  ? "Point at a cell to read its interval."
-  : "Click a cell, or press Enter on it, to list its episodes. Arrow keys go from cell to cell.");
+const HINT = "Click a cell, or press Enter on it, to list its episodes. Arrow keys go from cell to cell.";
 
 function heatControls(one) {
   const shows = [["value", "values"], ["kept", "share of own clean"]];

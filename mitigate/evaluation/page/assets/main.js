@@ -43,11 +43,11 @@ function notes(one) {
 function draw() {
   const main = document.getElementById("main");
   const one = section();
-  redraw(main, () => (one ? [
+  redraw(main, () => [
     el("section", { class: "card", "aria-label": "Results" }, chooser(), facts(one), summaryTable(one), notes(one)),
     one.corruptions.length > 1 && el("section", { class: "card", "aria-label": "Heatmap" }, el("h2", {}, "By corruption"), heatmap(one)),
-    one.grid === null && detailsPart(one), curvesPart(), walksPart(),
-  ].flat() : [el("p", {}, "There is nothing to show yet.")]));
+    curvesPart(), walksPart(),
+  ].flat());
 }
 
 // Shows what the address names, and the cell if it names one.

