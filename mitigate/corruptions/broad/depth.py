@@ -120,11 +120,14 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """With probability 0.5 * strength, set all pixels of a view to no reading or to the maximum
-    range.
+    """Set all pixels of some views, or of all views, to no reading or to the maximum range.
+
+    All views are lost with probability 0.6 * strength; otherwise, each view is lost with
+    probability 0.5 * strength.
     """
+    share = 1.0 if rng.random() < 0.6 * strength else 0.5 * strength
     out = views.copy()
-    out[now.random(len(views)) < 0.5 * strength] = rng.choice((np.nan, np.nan, 1.0))
+    out[now.random(len(views)) < share] = rng.choice((np.nan, np.nan, 1.0))
     return out
 
 
