@@ -118,8 +118,6 @@ class Cell:
 
     Attributes:
         name: Name of the condition and of its folder.
-        corruption: The corruption.
-        repeat: Number of the repetition for a repeated clean run, else 0.
         config: The options of the run.
         command: The user's command and its arguments.
         folder: Folder for the events and the output of the command.
@@ -134,8 +132,6 @@ class Cell:
     """
 
     name: str
-    corruption: Corruption
-    repeat: int
     config: RunConfig
     command: tuple[str, ...]
     folder: Path
@@ -145,6 +141,15 @@ class Cell:
     environment: dict[str, str]
     clean: Path | None = None
     recording: Path | None = None
+
+    @property
+    def corruption(self) -> Corruption:
+        return self.condition.corruption
+
+    @property
+    def repeat(self) -> int:
+        """The number of the repetition for a repeated clean run, else 0."""
+        return self.condition.repeat
 
     @property
     def log(self) -> Path:

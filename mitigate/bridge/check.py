@@ -85,7 +85,7 @@ def check(config: RunConfig, command: Sequence[str]) -> Path | None:
     cell.folder = out / "check"
     file.unlink(missing_ok=True)
     # FirstFrames replaces the recording, which ``mitigate run --check`` does not need
-    cell.condition.observers[:] = [FirstFrames(file)]
+    cell.condition.observer = FirstFrames(file)
     print(f"check: started, its output is in {cell.log}", flush=True)
     attempt = Attempt(cell)
     try:

@@ -44,7 +44,7 @@ NO_TOKENIZER = (
 
 
 class Observer:
-    """Base class of observers: objects that receive messages and frames before the corruption."""
+    """Receives messages and frames before the corruption. This base class ignores them."""
 
     kinds: ClassVar[tuple[str, ...]] = ()  # kinds of cameras ("rgb", "depth") whose frames it needs
 
@@ -77,8 +77,7 @@ class Condition:
         turn: Direction of increasing yaw, "left" or "right".
         chosen: Chooses the episodes, or None to keep all.
         guards: Guards that change instructions and frames after the corruption.
-        observers: Objects that receive every episode and frame before the corruption
-            (``recording.py``).
+        observer: Receives every episode and frame before the corruption (``recording.py``).
     """
 
     corruption: Corruption
@@ -89,7 +88,7 @@ class Condition:
     turn: str = "left"
     chosen: Subset | None = None
     guards: Guards = NO_GUARDS
-    observers: list[Observer] = field(default_factory=list)
+    observer: Observer = field(default_factory=Observer)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
         """Return the key for random numbers: the seed, the scene file with the episode id, and the

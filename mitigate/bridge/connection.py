@@ -191,8 +191,7 @@ class Connection:
         if self.calls > (0 if self.loop else 1):
             fields = {"scene": self.scene, "episode": self.episode, "fault": fault}
             write_event(self.folder, event="dropped", **fields)
-        for observer in self.condition.observers:
-            observer.leave()
+        self.condition.observer.leave()
         self.open = False
 
     def _greet(self) -> bool:
@@ -216,7 +215,7 @@ class Connection:
         condition = self.condition
         self.rig = Rig(message["cameras"], condition.missing, condition.turn, self.streams)
         kinds = {*condition.corruption.modalities, *condition.guards.frames}
-        self.offsets, size = self.rig.lay_out(kinds.union(*(o.kinds for o in condition.observers)))
+        self.offsets, size = self.rig.lay_out(kinds.union(condition.observer.kinds))
         if message["cameras"] not in self.described:  # RGB and depth may come in separate calls
             self.described.append(message["cameras"])
             unread = [_one_line(text) for text in message.get("unread") or ()]
@@ -239,8 +238,7 @@ class Connection:
         words = self.condition.words.corrupt(
             message, self.condition.corruption, key, self.condition.guards
         )
-        for observer in self.condition.observers:
-            observer.episode(message)
+        self.condition.observer.episode(message)
         fields = {n: message.get(n) for n in ("text", "category", "language")}
         fields |= {"scene": self.scene, "episode": self.episode, "heard": words.get("text")}
         write_event(
@@ -274,8 +272,7 @@ class Connection:
                 camera.check_depth(float(median))
         self.kinds |= {camera.kind for camera in self.rig.cameras}
         began = time.perf_counter()
-        for observer in self.condition.observers:
-            observer.frame(message, self.rig, self.shared.map, self.offsets)
+        self.condition.observer.frame(message, self.rig, self.shared.map, self.offsets)
         heading = message.get("heading")
         changed = self.rig.corrupt(
             self.shared.map,
@@ -307,8 +304,7 @@ class Connection:
             )
         if not failed:
             self._check_kinds()
-        for observer in self.condition.observers:
-            observer.end(message)
+        self.condition.observer.end(message)
         fields = {"scene": self.scene, "episode": self.episode, "loop": self.loop, **end}
         write_event(self.folder, event="end", seconds=round(self.seconds, 4), **fields)
         self.open = False

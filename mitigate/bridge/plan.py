@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.bridge.cell import Cell, folder_name
-from mitigate.bridge.condition import Condition, Subset, Words, load_tokenizer
+from mitigate.bridge.condition import Condition, Observer, Subset, Words, load_tokenizer
 from mitigate.bridge.config import RunConfig, check_options, command_name
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.bridge.recording import Recorder, path_part
@@ -81,13 +81,11 @@ def make_cells(plan: Plan) -> list[Cell]:
         recording = None if config.record is None else Path(config.record) / name
         condition = Condition(
             *(corruption, config.seed, words, repeat, config.missing, config.turn, chosen, guards),
-            observers=[] if recording is None else [Recorder(recording)],
+            observer=Observer() if recording is None else Recorder(recording),
         )
         cells.append(
             Cell(
                 name,
-                corruption,
-                repeat,
                 config,
                 plan.command,
                 out / "conditions" / name,

@@ -167,9 +167,8 @@ def _read_cell(clean: Cell, file: Path) -> Cell | None:
     return replace(
         clean,
         name=folder.name,
-        corruption=corruption,
-        repeat=entries["repeat"],
         folder=folder,
+        condition=replace(clean.condition, corruption=corruption, repeat=entries["repeat"]),
         settings=clean.settings | corruption_settings(corruption),
         clean=clean.folder,
     )

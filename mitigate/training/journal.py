@@ -14,6 +14,9 @@ import numpy as np
 from mitigate.core import output, progress
 from mitigate.core.files import make_folder
 
+# name of the scalar that holds the CPU seconds per step, summed over the threads of this process
+CPU = "cpu_s_per_step"
+
 
 class Journal:
     """Context manager that logs one run over ``total`` steps, beginning at ``start``.
@@ -35,6 +38,7 @@ class Journal:
         self._writer = SummaryWriter(str(folder), purge_step=start + 1)
         self._name = name
         self._progress = progress.Progress(name, total, start=start)
+        self._measured = start, time.process_time()
         # lists can differ in length, because some batches do not report every value
         self._values: dict[str, list[float]] = defaultdict(list)
         self._since = start, time.monotonic()
@@ -85,6 +89,10 @@ class Journal:
             self._writer.add_scalar(name, value, step)
         if not line:
             return
+        before, then = self._measured
+        self._measured = self._progress.done, time.process_time()
+        steps = max(1, self._progress.done - before)
+        self._writer.add_scalar(CPU, (self._measured[1] - then) / steps, step)
         texts = [f"{name} {value:.4g}" for name, value in values.items()]
         self._progress.advance(0, note=texts[0])
         if not sys.stdout.isatty():

@@ -119,7 +119,7 @@ def test_connection_names_a_write_error_of_the_run(tmp_path):
     from mitigate.bridge.recording import Recorder
 
     (tmp_path / "recorded").write_text("")
-    met = condition(observers=[Recorder(tmp_path / "recorded")])
+    met = condition(observer=Recorder(tmp_path / "recorded"))
     with Listener(met, tmp_path / "told") as listener:
         python(listener, "import mitigate_hook; mitigate_hook.connect('a')")
     problem = read(tmp_path / "told").problems[0]

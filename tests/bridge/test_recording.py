@@ -23,7 +23,7 @@ from .conftest import AGENT, condition
 @pytest.mark.slow
 def test_recorder_writes_clean_frames_poses_actions_and_measures(command, tmp_path):
     folder = tmp_path / "recording"
-    met = condition("low_light", observers=[Recorder(folder)])
+    met = condition("low_light", observer=Recorder(folder))
     seen = command(met, "--cameras", 2, "--steps", 3).seen()
     clean = command(condition(), "--cameras", 2, "--steps", 3).seen()
     assert seen["0", 1]["frames"]["rgb"] != clean["0", 1]["frames"]["rgb"]
