@@ -68,7 +68,7 @@ class Distil(OnEpisodes):
         super().__init__()
         check_weights(w_il=w_il, w_kl=w_kl, w_feat=w_feat)
         if not temperature > 0:
-            raise ValueError(f"recipe.temperature must be above 0, such as 2, got {temperature:g}.")
+            raise ValueError(f"temperature must be above 0, such as 2, got {temperature:g}.")
         if not (w_il or w_kl or w_feat):
             raise ValueError(
                 "No weight would be trained: w_il, w_kl and w_feat are 0. Set one of them above 0."

@@ -99,8 +99,8 @@ class HardenEncoder(Objective):
         super().__init__()
         if not 1 <= micro_batch <= batch or frames < 1:
             raise ValueError(
-                f"recipe.micro_batch must be from 1 to recipe.batch ({batch}), got {micro_batch}; "
-                f"recipe.frames must be >= 1, got {frames}."
+                f"micro_batch must be from 1 to batch ({batch}), got {micro_batch}; "
+                f"frames must be >= 1, got {frames}."
             )
         check_weights(w_feat=w_feat, w_gate=w_gate)
         success.refuse(schedule)

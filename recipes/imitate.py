@@ -108,8 +108,7 @@ def loss_weights(agent: Any, weights: Mapping[str, float] | None) -> dict[str, f
     """
     if not isinstance(weights or {}, Mapping):
         raise ValueError(
-            "recipe.losses must map names of losses to weights, such as {distance: 0.3}, got "
-            f"{weights}."
+            f"losses must map names of losses to weights, such as {{distance: 0.3}}, got {weights}."
         )
     check_weights(**{f"losses.{name}": value for name, value in (weights or {}).items()})
     return {**as_agent(agent).loss_weights, **(weights or {})}
@@ -121,6 +120,6 @@ def check_losses(agent: Any, weights: Mapping[str, float], out: Output) -> None:
     for name in weights:
         if name not in known:
             raise ValueError(
-                f"recipe.losses has a weight for {name!r}, but decide() of {type(agent).__name__} "
+                f"losses has a weight for {name!r}, but decide() of {type(agent).__name__} "
                 f"returns no such loss. Its losses are {', '.join(known) or 'none'}."
             )

@@ -100,8 +100,8 @@ class RestoreGate(Objective):
         super().__init__()
         if not (0 <= single <= 1 and 0 < touched < 1 and min(instants, held, batch) >= 1):
             raise ValueError(
-                "recipe.single and recipe.touched must be fractions from 0 to 1, got "
-                f"{single} and {touched}; recipe.instants, held and batch must be >= 1, got "
+                "single and touched must be fractions from 0 to 1, got "
+                f"{single} and {touched}; instants, held and batch must be >= 1, got "
                 f"{instants}, {held} and {batch}."
             )
         self.modality = pairs.sensor

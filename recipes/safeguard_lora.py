@@ -53,9 +53,7 @@ class SafeguardLora(Objective):
     ) -> None:
         super().__init__()
         if not 1 <= micro_batch <= pairs:
-            raise ValueError(
-                f"recipe.micro_batch must be from 1 to recipe.pairs ({pairs}), got {micro_batch}."
-            )
+            raise ValueError(f"micro_batch must be from 1 to pairs ({pairs}), got {micro_batch}.")
         self.agent = agent
         self.pairs = pairs
         self.micro_batch = micro_batch

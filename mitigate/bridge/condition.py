@@ -20,7 +20,9 @@ from mitigate.bridge.results import Reports
 from mitigate.core import output
 from mitigate.core.files import write_json
 from mitigate.core.json_files import read_object
+from mitigate.core.names import counted
 from mitigate.core.output import open_output
+from mitigate.core.progress import say
 from mitigate.corruptions import Corruption, Key, corrupt_instruction
 from mitigate.corruptions.keying import digest, uniform
 from mitigate.corruptions.language.text import is_english
@@ -292,6 +294,9 @@ class Subset:
                 bound = hashes[min(self.count, len(hashes)) - 1]
                 choice = {"bound": bound, "episodes": self.count, "of": len(hashes)}
                 write_json(self.folder / "episodes.json", choice)
+                if self.count > len(hashes):
+                    only = f"the program names only {counted(len(hashes), 'episode')}"
+                    say(f"episodes={self.count}, but {only}: it counts as complete with these")
         return choice
 
 

@@ -297,10 +297,15 @@ class Connection:
         # a program may report a failure without a frame if the agent crashed before its first step
         failed = self.loop and not end.get("metrics", {}).get("success")
         if self.calls == 0 and not failed:
+            cause = (
+                "Call episode.corrupt() at each step"
+                if self.loop
+                else "The program takes frames in a way that the bridge does not intercept, or no "
+                "sensor has the sensor_type SensorTypes.COLOR or SensorTypes.DEPTH"
+            )
             raise ValueError(
-                f"episode {self.episode} ended, but the bridge received none of its frames. The "
-                "program takes frames in a way that the bridge does not intercept, or no sensor "
-                "has the sensor_type SensorTypes.COLOR or SensorTypes.DEPTH (docs/bridge.md)."
+                f"episode {self.episode} ended, but the bridge received none of its frames. "
+                f"{cause} (docs/bridge.md)."
             )
         if not failed:
             self._check_kinds()

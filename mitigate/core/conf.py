@@ -212,7 +212,13 @@ def explain(error: Exception, primary: str, options: Sequence[str] = ()) -> str:
     text = f"{error}\n{error.__cause__ or ''}"
     if isinstance(error, MissingConfigException) and error.options is not None:
         group, _, name = (error.missing_cfg_file or "").rpartition("/")
-        return unknown(group, name, [o for o in error.options if not o.endswith("_schema")])
+        problem = unknown(group, name, [o for o in error.options if not o.endswith("_schema")])
+        if group != "suite":
+            return problem
+        return (
+            f"{problem} To choose single corruptions, write conditions=[spatter,flare], or in "
+            'Python suite=["spatter", "flare"].'
+        )
     if isinstance(error, OverrideParseException):
         return (
             f"Cannot read the option {error.override!r}: write key=value, such as severity=0.6. A "

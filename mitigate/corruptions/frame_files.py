@@ -40,6 +40,8 @@ MAX_COUNT = 65534  # maximum depth value in a 16-bit PNG
 # pixel value that, like 0, means "no reading"
 # The 7-Scenes data set uses this value, and it also marks saturated pixels.
 NO_READING = 65535
+# in metres (heuristic); if all readings are below, the unit is probably wrong
+CLOSEST = 0.05
 SCALE_FILES = 16  # maximum number of files that ``check_scale`` reads (heuristic)
 SCALE_PIXELS = 8192  # maximum number of pixels that ``check_scale`` uses per file (heuristic)
 
@@ -159,8 +161,9 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
         z_max: Maximum depth of the camera in metres.
 
     Raises:
-        ValueError: If most PNG depth values are at least ``z_max`` (the unit is probably wrong), or
-            all NPY depth values are at most 1 (they are probably normalised).
+        ValueError: If most PNG depth values are at least ``z_max``, or all are less than
+            ``CLOSEST`` (the unit is probably wrong), or if all NPY depth values are at most 1 (they
+            are probably normalised).
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
@@ -177,6 +180,12 @@ def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
             f"NPY depth must be in metres, but no reading exceeds {metres.max():.3g}, so it may be "
             "normalised to 0-1. Multiply it by the range of the sensor, or set unit=m if it is in "
             "metres."
+        )
+    if len(counts) and counts.max() * unit < CLOSEST:
+        raise ValueError(
+            f"The unit of depth seems wrong: with {unit:g} metres per count, the largest reading "
+            f"is {counts.max() * unit:.3g} m. Set unit= to the metres per count (m if the counts "
+            f"are metres), or to {unit:g} if that is right."
         )
     far = float((counts * unit >= z_max).mean()) if len(counts) else 0.0
     if far > 0.5:

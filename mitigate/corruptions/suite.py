@@ -7,6 +7,7 @@ Both are pure functions of (frame, name, severity, key, heading).
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -289,8 +290,8 @@ def corrupt(
         frame: For RGB corruptions, uint8 [H, W, 3] or [V, H, W, 3]. For depth corruptions,
             float32 metres [H, W], [H, W, 1], [V, H, W] (W is not 3) or [V, H, W, 1]. V is the
             number of views of one time step (at most 36), which share one mask. View number k has a
-            yaw of -30 * k degrees and no pitch. Corrupt the time steps of a batch separately,
-            because each has its own key.
+            yaw of -30 * k degrees and no pitch. Corrupt the images of a batch separately, because
+            each has its own key; V > 1 without a heading gives a warning.
         name: One of NAMES, or any other registered frame corruption.
         severity: Severity in [0, 1]; 0 returns a bit-exact copy.
         key: Key of the random numbers. An int sets only the seed, and a str sets only the episode.
@@ -307,6 +308,33 @@ def corrupt(
         ValueError: If an argument is invalid, the corruption depends on earlier frames, or nearly
             all depth values are far beyond the sensor's z_max (they are probably in millimetres).
     """
+    shape = np.shape(frame)
+    several = len(shape) == 4 or (len(shape) == 3 and shape[-1] not in (1, 3))
+    if heading is None and several and shape[0] > 1:
+        warnings.warn(
+            f"The frame {list(shape)} counts as one panorama of {shape[0]} views, which share one "
+            "mask. If it is a batch of unrelated images, corrupt each image by itself, with its "
+            "own key.",
+            stacklevel=2,
+        )
+    return corrupt_views(frame, name, severity, key, heading, sensor, hfov)
+
+
+def corrupt_views(
+    frame: np.ndarray,
+    name: str,
+    severity: float,
+    key: Key | int | str,
+    heading: float | None,
+    sensor: DepthSensor,
+    hfov: float | None = None,
+) -> np.ndarray:
+    """Corrupt a frame like :func:`corrupt`, without the warning about several views."""
+    if not isinstance(name, str):
+        raise ValueError(
+            f"The name of a corruption must be a string, got {type(name).__name__}. Call "
+            "corrupt(frame, name, severity, key=...)."
+        )
     if name not in registry.FAULTS:
         check_name(name)
     severity = check_severity(severity)
@@ -419,14 +447,9 @@ def corrupt_observation(
     result = dict(obs)
     for part in parts:
         for entry in changed_entries(obs, part):
-            result[entry] = corrupt(
-                result[entry],
-                part.name,
-                part.severity,
-                key=key,
-                heading=heading,
-                sensor=sensor,
-                hfov=(hfov or {}).get(entry),
+            degrees = (hfov or {}).get(entry)
+            result[entry] = corrupt_views(
+                result[entry], part.name, part.severity, key, heading, sensor, degrees
             )
     return result
 

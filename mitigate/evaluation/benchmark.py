@@ -168,7 +168,7 @@ def benchmark(
     known = Known(agent, first, guards.fingerprint(), version).check(file, name)
     measure = partial(evaluate, world=make_world, episodes=chosen, out=file, split=split, seed=seed)
     with known:
-        _print_estimate(agent, make_world, chosen, met, workers)
+        _print_estimate(agent, first, make_world, chosen, met, workers)
         with FolderLock(file.parent) as lock:
             lock.expect(file, provenance.keep(file.parent, first, made_by, split, chosen))
             under = partial(measure, agent, name=name, known=known, workers=workers, guards=guards)
@@ -333,6 +333,7 @@ def seconds_per_episode(agent: Any, world: World, episodes: Sequence[Episode]) -
 
 def _print_estimate(
     agent: Any,
+    world: World,
     make_world: Callable[[], World],
     episodes: Sequence[Episode],
     conditions: Sequence[Corruption],
@@ -343,7 +344,6 @@ def _print_estimate(
     processes = min(count(LOCAL, workers, total, WORTH), len(episodes))
     if processes > 1:  # checked here, so that an error is raised before the timed episodes
         packed((agent, make_world), "The agent or its world", ALONE)
-    world = make_world()
     for condition in conditions:  # this compiles the corruptions
         dict(Corrupted(world, condition, 0).reset(episodes[0]))
     each = seconds_per_episode(agent, world, episodes)

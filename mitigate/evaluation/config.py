@@ -140,8 +140,9 @@ class EvaluateConfig:
 
     @property
     def condition_names(self) -> list[str]:
-        """The names of the conditions to evaluate."""
-        return list(self.suite.conditions if self.conditions is None else self.conditions)
+        """The names of the conditions to evaluate: "clean" and those that the options name."""
+        named = self.suite.conditions if self.conditions is None else self.conditions
+        return list(dict.fromkeys(["clean", *named])) if named else []
 
 
 conf.register("evaluate", EvaluateConfig)

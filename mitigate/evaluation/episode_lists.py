@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core.files import find
 from mitigate.core.names import counted, unknown
+from mitigate.core.progress import say
 from mitigate.core.seeding import generator
 from mitigate.evaluation.rows import Row
 
@@ -88,6 +89,8 @@ def spread(listed: Sequence[Episode], count: int | None) -> list[Episode]:
     subset of a larger one, so an evaluation of 100 episodes can reuse the rows of an earlier
     evaluation of 40.
     """
+    if count is not None and count > len(listed):
+        say(f"episodes={count}, but the list holds only {len(listed)}: all of them run")
     chosen = sorted(range(len(listed)), key=lambda i: i * GOLDEN % 1)[:count]
     return [listed[i] for i in sorted(chosen)]
 

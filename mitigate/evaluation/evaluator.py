@@ -193,7 +193,7 @@ def evaluate(
     label = label_of(known.hash, name, split, seed, first)
     if isinstance(agent, torch.nn.Module):
         label["weights"] = weights_sha(agent)
-    task = EpisodeTask(agent, world, guards, classes=known.classes)
+    task = EpisodeTask(agent, world, guards, world=first, classes=known.classes)
     jobs = jobs_of(episodes, conditions, label)
     with known:
         results = run_missing(task, first, jobs, out, f"{name}, {split}", workers, launcher)

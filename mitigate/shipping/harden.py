@@ -134,6 +134,7 @@ def harden(
         policy: a trained policy of stable-baselines3 or torchrl, or an ``nn.Module``
             (``agents/policies/``). The policy is not changed.
         world: function that constructs a world, such as ``lambda: GymWorld(gymnasium.make(...))``.
+            It is called several times. Environments are not closed.
         forward: function that calls an ``nn.Module``
             (:class:`~mitigate.agents.policies.module.ModulePolicy`).
         recurrent: whether ``policy`` is an ``nn.Module`` that keeps state between steps.
@@ -190,7 +191,8 @@ def harden(
     parameters = signature(METHODS[method]).parameters
     known = [name for name in parameters if name not in OWN]
     if others := sorted(set(settings) - set(known)):
-        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], known))
+        own = [name for name in signature(harden).parameters if name != "settings"]
+        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], own + known))
     first, made_by = checked_world(world, [], version)
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
@@ -224,6 +226,10 @@ def harden(
         "settings": {name: str(value) for name, value in settings.items()},
         "method": method,
         "schedule": schedule,
+        "training": episodes.name,
+        # validation compares the weights at this severity
+        "severity": severity,
+        "validation": validation,
     }
     label = ""
     if version is not None:
@@ -248,7 +254,7 @@ def harden(
                 folder, recorded, trainer.config, "Or choose another folder (out=...)."
             )
         provenance.keep(folder, first, made_by, SPLIT, compared)
-        each = seconds_per_episode(before, world(), compared)
+        each = seconds_per_episode(before, first, compared)
         count = len(compared) * len(conditions)
         say(
             f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}),"
@@ -317,6 +323,14 @@ class _Training:
             )
         if self.listed == []:
             raise ValueError("training must hold at least one episode, or be None.")
+
+    @property
+    def name(self) -> str:
+        """Name of this source, which differs between lists of different episodes."""
+        if self.listed is None:
+            return "generated seeds"
+        number = digest("training", *(episode.episode_id for episode in self.listed))
+        return f"{counted(len(self.listed), 'episode')} ({number:032x})"
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
         if self.listed is None:

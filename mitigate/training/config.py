@@ -230,7 +230,8 @@ def check_limits(settings: Mapping[str, Any]) -> None:
         if value is not None and not in_range(value, low, high):
             raise ValueError(
                 f"trainer.{name} must be a number from {low:g} to {high:g}, got "
-                f"{number_text(value)}. Set it on the command line, e.g. trainer.lr=1e-3."
+                f"{number_text(value)}. Set it on the command line, e.g. trainer.lr=1e-3, or as an "
+                "argument of a Python function, e.g. lr=1e-3."
             )
 
 

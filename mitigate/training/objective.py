@@ -60,7 +60,7 @@ class Objective(nn.Module):
         The method is called before the first stage, when a run is planned.
         """
         absent = missing_members(agent, cls.needs)
-        return f"it has no {', '.join(absent)}. {cls.otherwise}" if absent else ""
+        return f"it does not define {', '.join(absent)}. {cls.otherwise}" if absent else ""
 
     def train(self, mode: bool = True) -> Any:
         """Set the mode, but keep the statistics of frozen normalisation layers constant
@@ -410,7 +410,7 @@ def check_weights(**weights: float) -> None:
     for name, value in weights.items():
         if not in_range(value, 0, WEIGHT):
             raise ValueError(
-                f"recipe.{name} must be a number from 0 to {WEIGHT:g}, got {number_text(value)}. "
+                f"{name} must be a number from 0 to {WEIGHT:g}, got {number_text(value)}. "
                 "It is the weight of a loss; 0 disables the loss."
             )
 
@@ -418,8 +418,8 @@ def check_weights(**weights: float) -> None:
 def check_counts(**counts: int) -> None:
     """Raise ValueError for a count below 1."""
     for name, value in counts.items():
-        if value < 1:
-            raise ValueError(f"{name} must be a whole number >= 1, got {value}.")
+        if type(value) is not int or value < 1:
+            raise ValueError(f"{name} must be a whole number >= 1, got {value!r:.80}.")
 
 
 def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
@@ -435,5 +435,5 @@ def check_share(name: str, value: float) -> None:
     """Raise ValueError unless ``value`` is a fraction from 0 to 1."""
     if not in_range(value, 0, 1):
         raise ValueError(
-            f"recipe.{name} must be a fraction from 0 to 1, such as 0.5, got {number_text(value)}."
+            f"{name} must be a fraction from 0 to 1, such as 0.5, got {number_text(value)}."
         )

@@ -53,7 +53,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)
         raise ValueError(
-            f"{type(agent).__name__} cannot be trained on episodes: it has no "
+            f"{type(agent).__name__} cannot be trained on episodes: it does not define "
             f"{', '.join(absent)} (mitigate/agents/agent.py, docs/bring-your-own.md)."
         )
     modules = agent.parts()

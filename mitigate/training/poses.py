@@ -27,9 +27,9 @@ from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
 PIECE = 6  # number of panoramas that one job renders (heuristic)
 VIEWS_ALONE = (
-    f"This stage trains encoders on single views. {OWN} The recipes imitation, da_per_frame, "
-    "da_per_episode, da_success and ts_distill train on episodes instead; so does your own recipe "
-    "with recipes/adapt.py (Adapt)."
+    f"This stage trains encoders on single views. {OWN} A policy can train on episodes instead, "
+    "in a recipe with a stage imitation or with recipes/adapt.py (Adapt). Restorers, safeguards "
+    "and encoders have their own recipes (recipes/README.md)."
 )
 
 

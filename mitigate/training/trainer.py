@@ -228,14 +228,22 @@ class Trainer:
         return {name: float(value) for name, value in {**values, "grad_norm": norm}.items()}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
-        episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16])) or "none named"
+        episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16]))
         saved = states.checkpoints(self.folder)
+        check = f", or check the episodes of that batch: {episodes}" if episodes else ""
         return (
             f"Training stopped at step {step} of {self.name} ({type(self.objective).__name__}): "
             f"the loss is {loss.item():g} and its gradient norm {norm.item():g}, which must be "
-            f"finite. Episodes of that batch: {episodes}. The last good checkpoint is "
-            f"{saved[-1] if saved else 'none'}. Lower trainer.lr, use trainer.precision=fp32, or "
-            "check those episodes."
+            f"finite. The last good checkpoint is {saved[-1] if saved else 'none'}. "
+            f"{self._advice()}{check}."
+        )
+
+    def _advice(self) -> str:
+        """Say how to avoid values that are not finite."""
+        exact = "" if self.precision == "fp32" else ", or compute in fp32 (trainer.precision=fp32)"
+        return (
+            f"Lower the learning rate, {self._lr():g} now (trainer.lr; in Python lr, if the "
+            f"function has it){exact}"
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
@@ -266,8 +274,8 @@ class Trainer:
         if bad:
             raise LossNotFinite(
                 f"Training stopped: after step {done} of {self.name} the weights are not finite "
-                f"({', '.join(bad[:3])}), so that step was not saved. Lower trainer.lr "
-                f"({self._lr():g} now), or use trainer.precision=fp32."
+                f"({', '.join(bad[:3])}), so that step was not saved. "
+                f"{self._advice()}."
             )
         state = {
             "step": done,

@@ -328,6 +328,15 @@ def test_divergence_is_zero_only_for_equal_answers(make):
     assert float(divergence(make(0.0), make(1.0))) > 0.1
 
 
+def test_divergence_of_certain_answers_is_finite():
+    teacher = [Categorical(logits=torch.tensor([[0.0, 90.0]]))]
+    same = [Categorical(logits=torch.tensor([[0.0, 200.0]], requires_grad=True))]
+    other = [Categorical(logits=torch.tensor([[200.0, 0.0]]))]
+    assert divergence(teacher, same).item() == pytest.approx(0)
+    assert float(divergence(teacher, other)) == pytest.approx(200)
+    divergence(teacher, same).backward()
+
+
 def test_imitation_matters_where_the_teacher_is_undecided():
     teacher = [Categorical(probs=torch.tensor([[0.51, 0.49]]))]
     same = [Categorical(probs=torch.tensor([[0.51, 0.49]]))]

@@ -462,3 +462,10 @@ def test_corrupt_rejects_a_fifo_in_place_of_a_frame(run, walk):
     (walk / "out/a/frame3.png").unlink()
     os.mkfifo(walk / "out/a/frame3.png")
     assert "frame3.png must be a regular file, got a FIFO" in complaint(run(*SPATTER))
+
+
+def test_depth_that_is_too_close_is_reported(run, tmp_path):
+    save(tmp_path / "in/0.png", np.full((24, 32), 3, np.uint16))
+    status, _, err = run("corruption=missing_data", "severity=0.5")
+    assert status == 2 and "the largest reading is 0.003 m. Set unit=" in err
+    assert run("corruption=missing_data", "severity=0.5", "unit=m")[0] == 0

@@ -1,5 +1,7 @@
 """What every corruption promises."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -195,6 +197,21 @@ def test_batch_is_not_a_panorama(frame):
     with pytest.raises(ValueError, match="at most 36 views.*share one mask.*one at a time"):
         corrupt(frame, name, 0.5, key=KEY)
     assert corrupt(frame[:36], name, 0.5, key=KEY).shape == frame[:36].shape
+
+
+def test_several_views_without_a_heading_give_a_warning(panorama):
+    with pytest.warns(UserWarning, match="one panorama of 12 views.*batch of unrelated images"):
+        corrupt(panorama[0], "spatter", 0.6, key=KEY)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        corrupt(panorama[0], "spatter", 0.6, key=KEY, heading=0.0)
+        corrupt(panorama[0][0], "spatter", 0.6, key=KEY)
+        corrupt(panorama[1][0], "missing_data", 0.6, key=KEY)
+
+
+def test_swapped_arguments_are_rejected(panorama):
+    with pytest.raises(ValueError, match=r"must be a string, got ndarray.*frame, name, severity"):
+        corrupt("spatter", panorama[0], 0.6, key=KEY)
 
 
 @pytest.mark.parametrize("key", [None, 1.5, True, (0, "a")])

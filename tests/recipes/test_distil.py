@@ -416,8 +416,8 @@ def test_run_is_not_resumed_under_another_teacher(tmp_path):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"temperature": 0.0}, "recipe.temperature must be above 0, such as 2, got 0"),
-        ({"w_kl": -1.0}, "recipe.w_kl must be a number from 0 to 1e.09, got -1"),
+        ({"temperature": 0.0}, "temperature must be above 0, such as 2, got 0"),
+        ({"w_kl": -1.0}, "w_kl must be a number from 0 to 1e.09, got -1"),
         (
             {"w_il": 0.0, "w_kl": 0.0, "w_feat": 0.0},
             "would be trained: w_il, w_kl and w_feat are 0",
@@ -432,7 +432,7 @@ def test_invalid_weights_are_rejected_by_name(options, words):
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"w_feat": -1.0}, "recipe.w_feat must be .* got -1"),
+        ({"w_feat": -1.0}, "w_feat must be .* got -1"),
         ({"panoramas": 0}, "panoramas must be a whole number >= 1, got 0"),
     ],
 )

@@ -47,10 +47,10 @@ def test_unknown_part_is_rejected():
 @pytest.mark.parametrize(
     ("options", "words"),
     [
-        ({"losses": {"waypoints": -1.0}}, r"recipe.losses.waypoints must be a number from 0"),
-        ({"losses": {"waypoints": float("nan")}}, "recipe.losses.waypoints must be .* got nan"),
-        ({"follow_oracle": 1.5}, "recipe.follow_oracle must be a fraction from 0 to 1"),
-        ({"follow_oracle": -0.1}, "recipe.follow_oracle must be .* got -0.1"),
+        ({"losses": {"waypoints": -1.0}}, r"losses.waypoints must be a number from 0"),
+        ({"losses": {"waypoints": float("nan")}}, "losses.waypoints must be .* got nan"),
+        ({"follow_oracle": 1.5}, "follow_oracle must be a fraction from 0 to 1"),
+        ({"follow_oracle": -0.1}, "follow_oracle must be .* got -0.1"),
     ],
 )
 def test_weights_and_shares_that_make_no_sense_are_refused(options, words):

@@ -255,10 +255,12 @@ def test_harden_stops_before_training_without_skill(tmp_path, continuous):
     ("options", "message"),
     [
         ({"steps": 0}, "steps must be"),
-        ({"stepz": 3}, "stepz"),
+        ({"stepz": 3}, "Did you mean steps"),
         ({"tune": "adapter"}, "all, adapters"),
         ({"suite": ["spater"]}, "spatter"),
         ({"suite": "fulll"}, "full"),
+        ({"suite": "flare"}, r'suite=\["spatter", "flare"\]'),
+        ({"batch": "a"}, "batch must be a whole number"),
         ({"world": GymWorld(Lights())}, "must be a function"),
         ({"world": Lights}, "not a world"),
         ({"training": seeded_episodes([2, 3, 9])}, "share 2 episodes"),
@@ -315,6 +317,9 @@ def test_harden_rejects_another_policy_in_the_folder(tmp_path):
     rows = (tmp_path / "rows.jsonl").read_bytes()
     with pytest.raises(ValueError, match=r"other settings \(policy: .*out="):
         mitigate.harden(other, world, listed=FEW, out=tmp_path, **SHORT)
+    for changed in ({"training": seeded_episodes([90])}, {"severity": 0.9}, {"validation": 3}):
+        with pytest.raises(ValueError, match=rf"other settings \({next(iter(changed))}: .*out="):
+            mitigate.harden(trained(), world, listed=FEW, out=tmp_path, **SHORT | changed)
     assert (tmp_path / "rows.jsonl").read_bytes() == rows
 
 
@@ -364,6 +369,20 @@ def test_benchmark_takes_a_policy_of_another_library(tmp_path):
     entry = mitigate.benchmark(trained(), world=world, listed=FEW, suite=["spatter"], out=tmp_path)
     assert entry.name == "Net"
     assert entry.SR["clean"][0] == 1.0
+    assert "PRS-SR (RGB): 1.00 [–]" in str(entry)  # no resample differs
+
+
+def test_benchmark_says_that_the_list_is_short_and_constructs_few_worlds(tmp_path, capsys):
+    made = []
+
+    def counting():
+        made.append(world())
+        return made[-1]
+
+    options = {"world": counting, "listed": FEW, "suite": ["spatter"], "out": tmp_path}
+    mitigate.benchmark(trained(), episodes=10, **options)
+    assert f"episodes=10, but the list holds only {len(FEW)}" in capsys.readouterr().out
+    assert len(made) == 2  # some simulators allow only a few at once
 
 
 def test_benchmark_calls_the_network_with_forward(tmp_path):

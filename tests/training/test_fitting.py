@@ -81,7 +81,7 @@ def test_recipe_for_other_agents_names_them(tmp_path, recipe, agent, words):
 )
 def test_recipe_names_what_the_agent_lacks(recipe):
     message = recipe.misfit(TinyAgent())
-    assert message.startswith("it has no ") and len(message.split(". ")) > 1
+    assert message.startswith("it does not define ") and len(message.split(". ")) > 1
     assert not TinyRecipe.misfit(TinyAgent())
 
 
@@ -206,7 +206,7 @@ def test_plan_keeps_the_camera_in_worlds_that_cannot_displace_it(monkeypatch, ca
 def test_plan_names_missing_members_for_recipes_on_views(recipe, tmp_path):
     cfg = load(f"recipe={recipe}")
     plan.leave_out_stages(cfg, Walker())
-    with pytest.raises(ValueError, match=r"Walker .*no encoders, labels, see\..*da_per_episode"):
+    with pytest.raises(ValueError, match=r"Walker .*not define encoders, labels, see\..*Adapt"):
         plan.plan_stages(cfg, Walker(), tmp_path)
 
 

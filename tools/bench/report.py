@@ -83,7 +83,34 @@ def _corruptions(costs: dict[str, dict[str, Cost]]) -> list[str]:
             "",
             markdown_table(COLUMNS, (_row(name, cost) for name, cost in rows.items())),
         ]
-    return [*lines, ""]
+    return [*lines, "", *_libraries(costs)]
+
+
+def _libraries(costs: dict[str, dict[str, Cost]]) -> list[str]:
+    """Return the table of each library's times relative to this project's, over corruptions."""
+    libraries = {name for rows in costs.values() for cost in rows.values() for name in cost.peers}
+    cells = [
+        [library, label, str(len(both)), _range(both, "steady"), _range(both, "per_frame")]
+        for library in sorted(libraries)
+        for label, rows in costs.items()
+        if (
+            both := [(cost, cost.peers[library]) for cost in rows.values() if library in cost.peers]
+        )
+    ]
+    head = ("library", "frame", "corruptions", "its time / steady", "its time / per frame")
+    return [
+        "### Each library",
+        "",
+        "Smallest and greatest factor over the corruptions that the library also has:",
+        "",
+        markdown_table(head, cells, words=3),
+        "",
+    ]
+
+
+def _range(both: list[tuple[Cost, float]], kind: str) -> str:
+    factors = [theirs / getattr(cost, kind) for cost, theirs in both]
+    return f"{min(factors):.1f} to {max(factors):.1f}"
 
 
 def _row(name: str, cost: Cost) -> list[str]:

@@ -17,13 +17,14 @@ from torch.distributions import (
     kl_divergence,
 )
 
+DISCRETE = (Categorical, OneHotCategorical)
 # one distribution per part of the action, or a tensor [B, ...] of actions or of action values
 Answer = Sequence[Distribution] | Tensor
 
 
 def mode(distribution: Any) -> Tensor:
     """Return the most probable value of a distribution, [B, ...]."""
-    if isinstance(distribution, (Categorical, OneHotCategorical)):
+    if isinstance(distribution, DISCRETE):
         return distribution.logits.argmax(-1)
     if isinstance(distribution, Independent):
         return mode(distribution.base_dist)
@@ -49,7 +50,7 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
     total = torch.zeros((), device=student[0].sample().device)
     for one, other in zip(teacher, student, strict=True):
         try:
-            kl = kl_divergence(_base(one), _base(other))
+            kl = _divergence(_base(one), _base(other))
         except NotImplementedError:
             # raised, for example, if a fixed action is represented as a distribution
             return divergence(
@@ -74,12 +75,23 @@ def imitation(teacher: Answer, student: Answer) -> Tensor:
     losses = []
     for one, other in zip(teacher, student, strict=True):
         action = mode(one)
-        if isinstance(other, (Categorical, OneHotCategorical)):
+        if isinstance(other, DISCRETE):
             loss = F.cross_entropy(other.logits.flatten(0, -2), action.flatten())
         else:
             loss = divergence(action, mode(other))
         losses.append(loss)
     return torch.stack(losses).sum()
+
+
+def _divergence(one: Distribution, other: Distribution) -> Tensor:
+    """Return KL(one || other), [B, ...].
+
+    torch's function gives infinity for discrete actions if a probability is rounded to 0.
+    """
+    if isinstance(one, DISCRETE) and isinstance(other, DISCRETE):
+        each = one.probs * (one.logits - other.logits)
+        return torch.where(one.probs == 0, 0.0, each).sum(-1)
+    return kl_divergence(one, other)
 
 
 def _base(distribution: Any) -> Distribution:

@@ -22,7 +22,7 @@ from mitigate.corruptions.suite import (
     check_heading,
     check_name,
     check_severity,
-    corrupt,
+    corrupt_views,
 )
 from mitigate.corruptions.tensors import depth, rgb, unseen_depth, unseen_rgb
 from mitigate.corruptions.tensors.draws import Rows
@@ -107,9 +107,7 @@ def _corrupt_on_host(frames: Tensor, name: str, rows: Rows) -> Tensor:
     out = torch.empty_like(host, memory_format=torch.contiguous_format)
     each = zip(host, rows.severities, rows.keys, rows.headings, strict=True)
     for row, (views, severity, key, heading) in enumerate(each):
-        changed = corrupt(
-            views.numpy(), name, severity, key=key, heading=heading, sensor=rows.sensor
-        )
+        changed = corrupt_views(views.numpy(), name, severity, key, heading, rows.sensor)
         out[row] = torch.from_numpy(changed)
     return out.to(frames.device)
 

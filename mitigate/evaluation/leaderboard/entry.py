@@ -20,6 +20,7 @@ from mitigate.core import output
 from mitigate.core.files import atomic_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import counted, short
+from mitigate.evaluation.bootstrap import NO_INTERVAL
 from mitigate.evaluation.page.model import Numbers
 
 FORMAT = 2  # 2: with ``listed``
@@ -161,7 +162,11 @@ class LeaderboardEntry:
             is_rate = title.endswith(" SR") or title in rates
             scale, digits, unit = (100, 1, " %") if is_rate else (1, 2, "")
             texts = ["–" if x is None else f"{scale * x:.{digits}f}" for x in numbers or ()]
-            text = f"{texts[0]} [{texts[1]}, {texts[2]}]{unit}" if texts else "undefined"
+            text = "undefined"
+            if numbers:
+                same = numbers[1] == numbers[2]
+                width = NO_INTERVAL if same else f"[{texts[1]}, {texts[2]}]"
+                text = f"{texts[0]} {width}{unit}"
             lines.append(f"  {title}: {text}")
         return "\n".join(lines)
 
