@@ -14,6 +14,7 @@ import numpy as np
 
 from mitigate.agents.agent import as_agent
 from mitigate.agents.text import MAX_WORDS, UNKNOWN, Vocabulary
+from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
 # Depth is rejected if most values exceed FARTHEST metres (heuristic).
@@ -45,6 +46,12 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
             raise ValueError(
                 f"{type(agent).__name__} reads {name}, which the world {world} does not have: it "
                 f"has {', '.join(sensors)}. Choose another agent, or another world (env=...)."
+            )
+    for name in read:
+        if name not in (*sensors, POSE):
+            raise ValueError(
+                f"{type(agent).__name__}.sensors: {unknown('sensor', name, sensors)} These are the "
+                f"sensors of the world {world}."
             )
     expected = contract.views
     if expected not in (1, VIEWS):
