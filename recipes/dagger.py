@@ -123,12 +123,11 @@ class Dagger(Imitate):
 
     def _keep(self, step: int, number: int, piece: Any) -> None:
         """Store the rollouts of one job, with floating-point tensors as float16."""
-        if not _is_plain(piece):
+        if other := _not_plain(piece):
             raise ValueError(
                 f"{type(self.rollouts.agent).__name__}.collect must return plain data (dicts, "
-                f"lists, texts, numbers and tensors), got {type(piece).__name__}. Files of "
-                "rollouts cannot store other objects. Return plain data, or choose "
-                "recipe=imitation."
+                f"lists, texts, numbers and torch tensors), got {other}. Files of rollouts cannot "
+                "store other objects. Return plain data, or choose recipe=imitation."
             )
         buffer = io.BytesIO()
         torch.save(_floats(piece, torch.float16), buffer)
@@ -147,12 +146,17 @@ def _read(file: Path) -> Any:
         ) from error
 
 
-def _is_plain(data: Any) -> bool:
-    if isinstance(data, dict):
-        return all(isinstance(n, str) and _is_plain(value) for n, value in data.items())
-    if isinstance(data, list):
-        return all(map(_is_plain, data))
-    return isinstance(data, str | int | float | torch.Tensor)
+def _not_plain(data: Any, place: str = "the result") -> str:
+    """Describe the first part of ``data`` that is not plain data; return "" if there is none."""
+    if isinstance(data, dict) and all(isinstance(name, str) for name in data):
+        parts = [_not_plain(value, f"{place}[{name!r}]") for name, value in data.items()]
+    elif isinstance(data, list):
+        parts = [_not_plain(value, f"{place}[{number}]") for number, value in enumerate(data)]
+    elif isinstance(data, str | int | float | torch.Tensor):
+        return ""
+    else:
+        return f"{type(data).__name__} in {place}"
+    return next(filter(None, parts), "")
 
 
 def _floats(data: Any, dtype: torch.dtype) -> Any:

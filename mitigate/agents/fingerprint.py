@@ -390,12 +390,12 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
     return hashlib.sha256(text.encode()).hexdigest()[:DIGITS]
 
 
-def code_sha(objective: nn.Module) -> str:
-    """Return the hash of the user's code in an objective and its agent, or "" if there is no user
-    code.
+def code_sha(objective: nn.Module, *others: type) -> str:
+    """Return the hash of the user's code in an objective, its agent and ``others``, or "" if there
+    is no user code.
     """
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
-    code = "\n".join(code_of(type(objective), *kinds).parts.get("code", ()))
+    code = "\n".join(code_of(type(objective), *kinds, *others).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]
 
 

@@ -77,7 +77,7 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
     place = find(folder)
     if (place / CARD).is_file():
         return load_hardened(place, agent=agent)
-    folders.check(place if place.is_dir() else place.parent)
+    manifest = folders.check(place if place.is_dir() else place.parent)
     reject_other_models(place)
     if (place / "agent").is_dir():
         raise ValueError(f"{folder} is the folder of a run. Name its agent, {place / 'agent'}.")
@@ -88,6 +88,10 @@ def load(folder: str | Path, *, agent: Any = None) -> Any:
         )
     lora = place / PEFT_WEIGHTS
     weights = lora if lora.is_file() else checkpoint.weights_file(place)
+    if manifest is not None and weights.name not in manifest.files:
+        raise ValueError(
+            f"{weights} is not listed in {folders.MANIFEST}, so it cannot be checked. {_AGAIN}"
+        )
     with torch.random.fork_rng(devices=[]):  # this keeps the caller's random state unchanged
         filled = _agent_to_fill(agent, config, weights, _RUN)
         checkpoint.load_agent(filled, place)
@@ -115,7 +119,7 @@ def load_hardened(folder: str | Path, *, base: str | Path | None = None, agent: 
         FileNotFoundError, ValueError: If the folder is incomplete, or differs from its card.
         TypeError: If ``folder`` is not a path, or ``agent`` has no weights.
     """
-    folder = Path(folder)
+    folder = find(folder)
     card = check_hardened(folder)
     weights = _weights_of(folder, card, base)
     with torch.random.fork_rng(devices=[]):

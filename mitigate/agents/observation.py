@@ -13,10 +13,11 @@ from typing import Any
 import numpy as np
 
 from mitigate.agents.agent import as_agent
-from mitigate.agents.text import UNKNOWN, Vocabulary
+from mitigate.agents.text import MAX_WORDS, UNKNOWN, Vocabulary
+from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# Depth is rejected if every value exceeds FARTHEST metres (heuristic).
+# Depth is rejected if most values exceed FARTHEST metres (heuristic).
 # Indoors, at least the floor is always nearer than that.
 FARTHEST = 50.0
 # A panorama causes a warning if its depth never exceeds NEAREST metres (heuristic).
@@ -45,6 +46,12 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
             raise ValueError(
                 f"{type(agent).__name__} reads {name}, which the world {world} does not have: it "
                 f"has {', '.join(sensors)}. Choose another agent, or another world (env=...)."
+            )
+    for name in read:
+        if name not in (*sensors, POSE):
+            raise ValueError(
+                f"{type(agent).__name__}.sensors: {unknown('sensor', name, sensors)} These are the "
+                f"sensors of the world {world}."
             )
     expected = contract.views
     if expected not in (1, VIEWS):
@@ -126,7 +133,7 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
 
 
 def instruction(text: str, vocabulary: Vocabulary) -> str:
-    """Return ``text``, and warn if it contains no word of ``vocabulary``.
+    """Return ``text``, and warn if it contains no word of ``vocabulary``, or too many words.
 
     Raises:
         TypeError: If ``text`` is not a string.
@@ -136,6 +143,12 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
     if set(vocabulary.encode(text)) == {UNKNOWN}:
         warnings.warn(
             f"The agent knows no word of the instruction {text[:60]!r}: it knows English routes.",
+            stacklevel=3,
+        )
+    if len(text.split()) > MAX_WORDS:
+        warnings.warn(
+            f"An instruction has more than {MAX_WORDS} words. The agent reads only the first "
+            f"{MAX_WORDS}.",
             stacklevel=3,
         )
     return text
@@ -153,14 +166,12 @@ def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:
 
 def _check_unit(depth: np.ndarray, views: int) -> None:
     """Raise ValueError if depth is in millimetres; warn if depth looks normalised."""
-    if ((depth > NEAREST) & (depth <= FARTHEST)).any():
-        return
     valid = depth[np.isfinite(depth) & (depth > 0)]
     if not len(valid):
         return
-    if valid.min() > FARTHEST:
+    if np.count_nonzero(valid > FARTHEST) > len(valid) / 2:
         raise ValueError(
-            f"depth must be in metres, but its smallest value is {valid.min():g}. If these are "
+            f"depth must be in metres, but its median is {np.median(valid):g}. If these are "
             "millimetres, divide by 1000."
         )
     if valid.max() <= NEAREST and views > 1:  # a single camera may face a wall

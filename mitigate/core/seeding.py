@@ -9,6 +9,8 @@ from __future__ import annotations
 
 import hashlib
 import random
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -56,6 +58,17 @@ def seed_everything(*key: Key) -> None:
     random.seed(number)
     np.random.seed(number & (2**32 - 1))
     torch.manual_seed(number & (2**63 - 1))
+
+
+@contextmanager
+def seeded(*key: Key) -> Iterator[None]:
+    """Set the global generators of Python, numpy and torch from ``key`` inside the context."""
+    before = global_state()
+    seed_everything(*key)
+    try:
+        yield
+    finally:
+        set_global_state(before)
 
 
 def global_state() -> dict:

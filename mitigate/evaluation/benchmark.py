@@ -269,7 +269,17 @@ def checked_world(
             f"world=lambda: GymWorld({kind}(...), success=...) for a gymnasium environment "
             "(mitigate.worlds.gym), or EnvWorld for a torchrl one (mitigate.worlds.tensordict)."
         )
-    evaluation.check_sensors(met, world.sensors, type(world).__name__)
+    cls = type(world)
+    lacking = [
+        name
+        for name in ("reset", "step", "measures")
+        if getattr(cls, name, getattr(world, name, None)) in (None, getattr(World, name))
+    ]
+    if lacking := lacking + ["rule"] * (not hasattr(world, "rule")):
+        raise ValueError(
+            f"{cls.__name__} must define {', '.join(lacking)} (docs/bring-your-own.md)."
+        )
+    evaluation.check_sensors(met, world.sensors, cls.__name__)
     return world, made_by
 
 

@@ -11,6 +11,7 @@ from typing import Any
 from mitigate.agents.agent import Agent, as_agent
 from mitigate.core.contracts import missing_members
 from mitigate.core.errors import error_message, own_place
+from mitigate.core.seeding import seeded
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions import (
     Corruption,
@@ -41,14 +42,16 @@ def run_episode(
 ) -> dict[str, Any]:
     """Run one episode with ``guards`` and return its measures.
 
-    The measure ``decisions`` is the number of observations that the agent read.
+    The measure ``decisions`` is the number of observations that the agent read. The global random
+    generators are set from the seed and the episode id, so an agent or a world that uses them gives
+    the same measures in any process, and under every corruption it draws the same numbers.
 
     Raises:
         ValueError: If a step failed, if an action is not an integer, or if the agent or the world
             raised SystemExit. The message names the episode, the condition and the step.
     """
     run = episode, corruption, seed
-    with _no_exit(_name(run)):
+    with _no_exit(_name(run)), seeded(seed, "episode", episode.episode_id):
         rollout = _Rollout(world, run, guards)
         with instructed(agent, *run, guards), rollout.errors_named():
             while not rollout.done:
@@ -179,6 +182,11 @@ class _Rollout:
         # NumPy scalars and arrays have the method ``item``, which returns a plain number.
         plain = {n: v if missing_members(v, ("item",)) else v.item() for n, v in values.items()}
         values = {n: int(v) if isinstance(v, bool) else v for n, v in plain.items()}
+        if values.get("success", 0) not in (0, 1):
+            raise ValueError(
+                f"{self.name}: measures() of the world must return success 0 or 1, got "
+                f"{values['success']!r:.40}."
+            )
         return {name: values.pop(name) for name in MEASURES if name in values} | values
 
 

@@ -180,6 +180,7 @@ def add_programs(folder: Path) -> Path:
         ValueError: If the folder is damaged, if it was exported without programs, or if the outputs
             differ.
     """
+    folder = find(folder)
     folders.repair_folder(folder.resolve())
     card = loading.check_hardened(folder)
     if not card.get("program", True):

@@ -10,6 +10,7 @@ from torch import nn
 
 from mitigate.agents.fingerprint import code_sha
 from mitigate.core import checkpoint, seeding
+from mitigate.core.build import locate
 from mitigate.core.files import write_json, write_text
 from mitigate.core.progress import say
 from mitigate.evaluation.evaluate import load
@@ -57,7 +58,9 @@ def train_stage(
     start = checkpoint.weights_sha(agent)
     objective = stage.objective.build(agent)
     objective.workers = plan.config.workers
-    known_code = {"code_sha256": code} if (code := code_sha(objective)) else {}
+    world = locate((plan.config.env.world or {}).get("_target_", "builtins.object"))
+    code = code_sha(objective, *([world] if isinstance(world, type) else []))
+    known_code = {"code_sha256": code} if code else {}
     identity = {"start": start, **stage.identity, **known_code, **objective.identity()}
     # if there are checkpoints, the trainer compares their recorded identity with this one
     if ranks.first and not states.checkpoints(stage.folder):

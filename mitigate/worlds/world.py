@@ -83,7 +83,7 @@ class World:
         action_space: Actions of the world (``core/spaces.py``). If None, actions are integers, and
             0 is STOP.
         native: Function that converts a dict of frames to the environment's own observation format,
-            or None.
+            or None. Its attribute ``entries`` maps "rgb" and "depth" to names in that format.
         draw: Function that draws a floor plan on Matplotlib axes, or None if there is no plan.
     """
 

@@ -60,6 +60,18 @@ def test_frame_warns_of_normalised_depth(agent, recwarn):
         agent.act(seen(depth=seen()["depth"] / 10))
 
 
+def test_frame_rejects_millimetres_with_a_small_reading(agent):
+    depth = seen()["depth"] * 1000
+    depth[0, 0, 0] = 30
+    with pytest.raises(ValueError, match="must be in metres, but its median"):
+        agent.act(seen(depth=depth))
+
+
+def test_reset_warns_about_words_that_are_not_read(agent):
+    with pytest.warns(UserWarning, match="reads only the first 80"):
+        agent.reset("walk on " * 41)
+
+
 def test_frame_accepts_depth_without_readings(agent):
     assert agent.act(seen(depth=np.full((12, 64, 64, 1), np.nan, np.float32))) is not None
 

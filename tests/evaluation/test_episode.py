@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import random
 from pathlib import Path
 
 import numpy as np
@@ -90,6 +91,33 @@ def test_run_episode_rejects_invalid_actions(answer):
         run_episode(Answers(1, answer), Cell(), EPISODE, CLEAN, 0)
     with pytest.raises(ValueError, match=words):
         list(run_side_by_side(Answers(1, answer), [Cell()], [(EPISODE, CLEAN, 0)]))
+
+
+def test_global_random_numbers_depend_on_seed_and_episode_only():
+    def episode(seed, condition=CLEAN):
+        drawn = []
+
+        def draw():
+            drawn.extend([random.random(), np.random.rand(), torch.rand(()).item()])
+            return 0
+
+        run_episode(Answers(draw), Cell(), EPISODE, condition, seed)
+        return drawn
+
+    first = episode(0)
+    np.random.seed(3)
+    expected = np.random.rand(2)
+    np.random.seed(3)
+    between = [np.random.rand()]
+    assert episode(0) == first != episode(1)
+    assert [*between, np.random.rand()] == expected.tolist()  # the caller's numbers continue
+
+
+def test_measures_rejects_a_success_between_0_and_1():
+    cell = Cell()
+    cell.measures = lambda: {"success": 0.5, "spl": 0.5}
+    with pytest.raises(ValueError, match=r"clean: measures\(\) .* success 0 or 1, got 0.5"):
+        run_episode(Answers(0), cell, EPISODE, CLEAN, 0)
 
 
 def test_measures_may_be_numbers_of_numpy_or_torch(tmp_path):

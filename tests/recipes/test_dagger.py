@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from functools import partial
 
+import numpy as np
 import pytest
 import torch
 
@@ -95,8 +96,10 @@ def test_only_the_policy_trains(tmp_path):
 
 def test_walks_that_are_no_plain_data_are_refused(tmp_path):
     objective = recipe(tmp_path)
-    with pytest.raises(ValueError, match=r"recipe=imitation"):
+    with pytest.raises(ValueError, match=r"got object in the result.*recipe=imitation"):
         objective.collate(0, [(object(), None)])
+    with pytest.raises(ValueError, match=r"got ndarray in the result\[0\]\['rgb'\]"):
+        objective.collate(0, [([{"rgb": np.zeros(2)}], None)])
 
 
 def test_schedule_by_success_is_rejected(tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
@@ -13,6 +14,7 @@ import mitigate
 from mitigate.agents.building import agent_option, stored_settings
 from mitigate.core import checkpoint, conf
 from mitigate.evaluation import evaluate
+from mitigate.guards.text.guard import open_safeguard
 from mitigate.worlds.apartments import simulator
 
 ROOT = Path(__file__).parents[2]
@@ -33,6 +35,20 @@ def test_own_agent_loads_from_its_folder_only(folder, tmp_path, monkeypatch):
     assert type(agent).__name__ == SHIPPED[folder] and not agent.training
     assert torch.equal(state, torch.random.get_rng_state())
     agent.reset("walk past the red sofa")
+
+
+def test_shipped_folders_are_found_from_anywhere(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mitigate.load_hardened("checkpoints/hardened/harden")
+    assert open_safeguard("checkpoints/safeguard_classifier").canonicalise("Turn left.").text
+
+
+def test_load_rejects_weights_that_the_manifest_does_not_list(tmp_path):
+    folder = Path(shutil.copytree(ROOT / "checkpoints/recurrent_rgb/base", tmp_path / "base"))
+    manifest = json.loads((folder / "manifest.json").read_text())
+    (folder / "manifest.json").write_text(json.dumps({**manifest, "files": {}}))
+    with pytest.raises(ValueError, match=r"model\.safetensors is not listed in manifest\.json"):
+        mitigate.load(folder)
 
 
 def test_load_suggests_the_nearest_shipped_weights():

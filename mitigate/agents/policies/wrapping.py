@@ -57,6 +57,12 @@ def as_policy(
             f"{type(world).__name__} must have action_space and native (the conversion of frames "
             "to the policy's observation), as GymWorld and EnvWorld have."
         )
+    if missing_members(world.native, ("entries",)):
+        raise ValueError(
+            f"native of {type(world).__name__} must have the attribute entries, which maps rgb and "
+            "depth to names in the environment's observation. Wrap the environment in GymWorld or "
+            "EnvWorld, or the policy in an agent with reset and act (docs/bring-your-own.md)."
+        )
     for name in (name for name in (RGB, DEPTH) if name in world.sensors):
         if len(world.sensors[name].shape) == 4:
             raise ValueError(

@@ -97,7 +97,7 @@ def render(entries: Sequence[LeaderboardEntry]) -> str:
     files: dict[str, list[Row]] = {}
     rows: list[Row] = []
     notes = []
-    for entry in sorted(entries, key=lambda one: one.scores.get("Mean SR") or [-1], reverse=True):
+    for entry in sorted(entries, key=_mean_sr, reverse=True):
         file = entry.rows["file"]
         files[file] = files.get(file) or rows_of(entry)
         rows += _rows_behind(entry, files[file])
@@ -107,6 +107,11 @@ def render(entries: Sequence[LeaderboardEntry]) -> str:
             f"{entry.training_data or 'not stated'}; sensors {sensors}; {entry.link}"
         )
     return document.report(rows, title="Leaderboard", notes=notes)
+
+
+def _mean_sr(entry: LeaderboardEntry) -> float:
+    value = (entry.scores.get("Mean SR") or [None])[0]
+    return -1.0 if value is None else value
 
 
 def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:

@@ -192,6 +192,11 @@ class SensorRestorer(nn.Module):
             return False, frames
         y = self._composed(x, valid, maps, outside, len(frames))
         if self.sensor == DEPTH and _share((y - x).abs() > MOVED, valid) > 0.5:
+            warnings.warn(
+                "Restoring a depth frame would change most readings by more than "
+                f"{MOVED * self.far:g} m: such frames are not changed (docs/restoration.md).",
+                stacklevel=3,
+            )
             return False, frames
         return True, self.unscaled(y)
 

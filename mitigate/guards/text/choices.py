@@ -26,7 +26,7 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the repair rules; increase it whenever the repair of any text changes
-VERSION = "14"
+VERSION = "15"
 ANSWERS = "3"  # version of the rules for accepting answers of a language model
 
 
@@ -46,7 +46,7 @@ def check(choice: object) -> None:
     check_choice(text)
     if is_endpoint(text) or text in (*CHOICES, EARLIER):
         return
-    if not text or not Path(text).is_dir():
+    if not text or not find(text).is_dir():
         cause = (
             "This value is not the name of an existing safeguard. Choose one of: "
             f"{', '.join(CHOICES)}."
@@ -71,7 +71,7 @@ def kind(folder: str | Path) -> str | None:
 
     Raises ValueError if the folder contains both.
     """
-    folder = Path(folder)
+    folder = find(folder)
     classifier = (folder / CONFIG).is_file()
     adapter = any((folder / name).is_file() for name in (ADAPTER_WEIGHTS, ADAPTER_CONFIG))
     if classifier and adapter:
@@ -119,5 +119,5 @@ def identity(choice: str) -> str:
 def weights_in(folder: str | Path) -> Path | None:
     """Return the path of the weights in a safeguard's folder, or None for any other folder."""
     name = {"classifier": WEIGHTS, "adapter": ADAPTER_WEIGHTS}.get(kind(folder) or "")
-    file = Path(folder) / name if name else None
+    file = find(folder) / name if name else None
     return file if file and file.is_file() else None

@@ -197,12 +197,23 @@ def load(folder: str | Path) -> Classifier:
     try:
         config, arrays = read_json(config_file, _AGAIN), load_file(file)
         classifier = Classifier(config, {name: arrays[name] for name in (*ARRAYS, *NAMES)})
-        if all(classifier.arrays[name].shape == (SIZE,) for name in ARRAYS):
-            return classifier
-        problem = "has arrays of another shape"
-    except (ValueError, KeyError, TypeError, IndexError, SafetensorError) as error:
+        numbers = [*classifier.arrays.values(), classifier.bias, classifier.style_bias]
+        if any(classifier.arrays[name].shape != (SIZE,) for name in ARRAYS):
+            problem = "has arrays of another shape"
+        elif not all(np.isfinite(np.asarray(number)).all() for number in numbers):
+            problem = "has values that are not finite"
+        else:
+            clauses = classifier.clauses(_TRIAL)  # fails if arrays of the networks do not fit
+            if math.isfinite(classifier.attack(_TRIAL, clauses, 0.0)[0]):
+                return classifier
+            problem = "gives scores that are not finite"
+    except (
+        *(ValueError, KeyError, TypeError, IndexError, OverflowError),
+        SafetensorError,
+    ) as error:
         problem = f"cannot be read ({short(str(error), 120)})"
     raise ValueError(f"The classifier in {folder} is damaged: {file.name} {problem}. {_AGAIN}")
 
 
+_TRIAL = "Turn left at the lamp. Stop."
 _AGAIN = "Fetch the folder again, or train a classifier with `python -m mitigate.guards.text.fit`."

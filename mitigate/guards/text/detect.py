@@ -35,7 +35,7 @@ ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 # In a text with non-Latin parts, an English attack is removed if it has at least this many words.
 SHORTEST = 3
-READ = 60_000  # maximum number of characters of a text that are analysed
+READ = 20_000  # maximum number of characters of a text that are read
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
@@ -70,7 +70,7 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
     non-Latin parts if more than the fraction ``FOREIGN`` of the letters is not Latin, or if the log
     odds of an attack in the Latin parts are above ``ROUTE``.
     """
-    clauses = classifier.clauses(text[:READ])
+    clauses = classifier.clauses(text)
     english = [clause for clause in clauses if clause.script != "other"]
     other = sum(clause.letters for clause in clauses if clause.script == "other")
     much = other > FOREIGN * sum(clause.letters for clause in clauses)

@@ -122,11 +122,11 @@ class Safeguard:
         each = (time.monotonic() - began) / max(1, len(fresh))
         decided = [draft.decision(each) for draft in drafts]
         known.update((decision.original, decision) for decision in decided)
+        if self.log is not None and decided:
+            _append(self.log, decided)  # before the decisions are remembered, in case it fails
         self._known.update(known)
         for text in list(self._known)[: max(0, len(self._known) - REMEMBERED)]:
-            del self._known[text]
-        if self.log is not None and decided:
-            _append(self.log, decided)
+            self._known.pop(text, None)  # another thread may have deleted it
         return [known[text] for text in texts]
 
 
@@ -145,7 +145,8 @@ class _Draft:
             self.reasons.append("marks of how words look taken out")
             text = plain
         if len(text) > READ:
-            self.reasons.append(f"only the first {READ:,} characters were read")
+            text = _beginning(text)
+            self.reasons.append(f"longer than {READ:,} characters: only the beginning is kept")
         text, removed, refusals = take_out(text, classifier)
         self.reasons += refusals
         if removed:
@@ -191,9 +192,21 @@ class _Draft:
                 self.reasons.append("masks filled by rule")
                 text = filled
         route = "model" if self.accepted else "fallback" if self.requested else "classifier"
-        if text == self.original and not self.requested and len(text) <= READ:
+        if text == self.original and not self.requested:
             route = "clean"
         return Decision(self.original, text, route, tuple(self.reasons), seconds)
+
+
+def _beginning(text: str) -> str:
+    """Return the first ``READ`` characters of a text without repeated spaces, up to the end of a
+    sentence or, if there is none, of a word.
+    """
+    text = re.sub(r"(\s)\s+", r"\1", text)
+    if len(text) <= READ:
+        return text
+    start = text[:READ]
+    last = max(start.rfind(mark) for mark in ".!?\n")
+    return start[: last + 1] if last > 0 else start.rsplit(None, 1)[0]
 
 
 def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | None:
@@ -227,12 +240,12 @@ def _opened(name: str, log: str | Path | None) -> Safeguard:
         url, _, model = name.rpartition("@")
         return Safeguard(ChatEndpoint(url, model, cache=CACHE), seconds=ENDPOINT_SECONDS, log=log)
     if name not in choices.CHOICES and choices.kind(name) == "classifier":
-        return Safeguard(classifier=load(name), log=log)
+        return Safeguard(classifier=load(find(name)), log=log)
     from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
 
     if name == "prompted":
         return Safeguard(LanguageModel(prompt="prompted").eval(), log=log)
-    return Safeguard(open_adapter(find(choices.ADAPTER) if name == "lora" else name), log=log)
+    return Safeguard(open_adapter(find(choices.ADAPTER if name == "lora" else name)), log=log)
 
 
 def passages(text: str) -> list[str]:

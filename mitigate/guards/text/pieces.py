@@ -97,16 +97,21 @@ def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
+    before = (
+        ""  # script of the last clause; joining keeps it, and the joined text is not read again
+    )
     opened = False  # whether the last clause is one capitalised word that begins a new sentence
     for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
         first = text[piece.start]
         short = len(piece.of(text).split()) < MIN_WORDS and first not in "([{<"
         joined = opened or short and not first.isupper()
         opened = short and first.isupper() and bool(clauses)
-        if clauses and joined and script(piece.of(text)) == script(clauses[-1].of(text)):
+        here = script(piece.of(text))
+        if clauses and joined and here == before:
             clauses[-1] = Piece(clauses[-1].start, piece.end)
         else:
             clauses.append(piece)
+            before = here
     return clauses
 
 
@@ -178,9 +183,10 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 def script(text: str) -> str:
     """Return "latin" if at least half of the letters are Latin, otherwise "other".
 
-    For a text without letters, return "".
+    Fullwidth letters and those of mathematical alphabets count as Latin. For a text without
+    letters, return "".
     """
-    letters = LETTERS.findall(text)
+    letters = LETTERS.findall(unicodedata.normalize("NFKC", text))
     if not letters:
         return ""
     latin = sum(c.isascii() or unicodedata.name(c, "").startswith("LATIN") for c in letters)

@@ -254,6 +254,9 @@ def _read_poses(file: Path) -> np.ndarray:
     if rows and rows[0][1] == ["x", "y", "heading"]:
         rows = rows[1:]
     poses = np.array([[number(word, file, line) for word in row] for line, row in rows])
+    if len(poses) and np.abs(poses).max() > MAX_NUMBER:
+        line = rows[int(np.abs(poses).max(1).argmax())][0]
+        raise ValueError(f"{file}, line {line}: numbers must be at most {MAX_NUMBER:g}.")
     return _check_radians(poses.reshape(-1, 3), file)
 
 
@@ -270,10 +273,17 @@ def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
 def _list_frames(folder: Path) -> list[Path]:
     """Return the frame files of a folder, sorted by name. Digits in names are compared as
     numbers.
+
+    Raises:
+        ValueError: If a file is a link to a place outside of the parent of the folder.
     """
     if not folder.is_dir():
         return []
     files = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.name[0] != "."]
+    drive = folder.parent.resolve()
+    for file in files:
+        if drive not in file.resolve().parents:
+            raise ValueError(f"{file} is a link to a place outside of {drive}. Copy the file.")
     return sorted(files, key=lambda file: natural(file.name))
 
 

@@ -194,6 +194,10 @@ def test_show_ranks_entries_by_mean_sr(tmp_path, monkeypatch, capsys):
     assert text.count("<script") == 3
     assert [[c["label"] for c in s["columns"]] for s in data["sections"]] == [[evil, "low"]]
     assert sum("trained on halls" in note for note in data["notes"]) == 2
+    unknown = json.loads(Path("entries/a.json").read_text())
+    unknown["scores"]["Mean SR"] = [0.2, None, None]
+    Path("entries/a.json").write_text(json.dumps(unknown))
+    assert command.main(["show", "entries", "--out", "page.html"]) == 0
     Path("rows.jsonl").unlink()
     assert command.main(["show", "entries", "--out", "page.html"]) == 2
     assert "not available" in capsys.readouterr().err

@@ -29,6 +29,7 @@ from mitigate.evaluation.sections import sections
 from mitigate.worlds.episodes import Episode, Goal, Instruction, write_episodes
 from mitigate.worlds.gym import GymWorld
 from mitigate.worlds.seeded import seeded_episodes
+from mitigate.worlds.world import World
 
 
 class Corridor(gymnasium.Env):
@@ -116,6 +117,21 @@ def test_benchmark_requires_episodes_of_a_custom_world(walk):
     output = walk(Holder(weight(1)), lambda: GymWorld(Corridor(), success="won"), out="others")
     assert output.split == "Corridor"
     assert walk(Holder(weight(1)), split="mine", out="third").split == "mine"
+
+
+def test_benchmark_names_what_a_world_or_an_agent_lacks(walk):
+    class Bare(World):
+        sensors = CorridorWorld().sensors
+
+        def reset(self, episode):
+            return {}
+
+    with pytest.raises(ValueError, match="Bare must define step, measures, rule"):
+        walk(Holder(weight(1)), Bare)
+    agent = Holder(weight(1))
+    agent.sensors = ("rbg",)
+    with pytest.raises(ValueError, match="There is no sensor 'rbg'. Did you mean rgb"):
+        walk(agent)
 
 
 def test_benchmark_reads_episodes_from_a_file(walk):

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import shutil
 
+import numpy as np
 import pytest
-from safetensors.numpy import save_file
+from safetensors.numpy import load_file, save_file
 
 from mitigate.core import folders
 from mitigate.core.files import ROOT, find
@@ -89,6 +91,25 @@ def test_load_explains_missing_and_damaged_folders(tmp_path):
     (tmp_path / "b/classifier.safetensors").write_bytes(b"0" * 30)
     with pytest.raises(ValueError, match=r"is damaged.*text\.fit"):
         classifier.load(tmp_path / "b")
+
+
+@pytest.mark.parametrize(
+    ("name", "change", "message"),
+    [
+        ("alone", lambda array: array * np.nan, "values that are not finite"),
+        ("net_clause", lambda array: array * np.nan, "not finite"),
+        ("net_clause", lambda array: array[:-1], "is damaged"),
+    ],
+)
+def test_load_rejects_weights_that_give_no_scores(tmp_path, name, change, message):
+    shipped = find("checkpoints/safeguard_classifier")
+    shutil.copy(shipped / "classifier.json", tmp_path)
+    arrays = load_file(shipped / "classifier.safetensors")
+    assert name in arrays
+    arrays[name] = np.ascontiguousarray(change(arrays[name]))
+    save_file(arrays, tmp_path / "classifier.safetensors")
+    with pytest.raises(ValueError, match=message):
+        classifier.load(tmp_path)
 
 
 def test_fit_explains_missing_data(tmp_path):

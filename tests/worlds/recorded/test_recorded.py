@@ -469,6 +469,17 @@ def test_open_recording_reads_a_folder_of_drives(tmp_path):
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n\n0,0\n"), "line 3, must have"),
         (lambda f: (f / "poses.csv").write_text("x,y,heading\n0,0,a\n"), "line 2: .* got 'a'"),
         (lambda f: (f / "poses.csv").write_text("0,0,nan\n" * 6), "must be a finite number"),
+        (
+            lambda f: (f / "poses.csv").write_text("0,0,0\n" * 5 + "1e300,0,0\n"),
+            "line 6: numbers must be at most",
+        ),
+        (
+            lambda f: (
+                (f / "rgb" / "000001.png").replace(f.parent / "a.png")
+                and (f / "rgb" / "000001.png").symlink_to(f.parent / "a.png")
+            ),
+            "000001.png is a link to a place outside",
+        ),
         (lambda f: (f / "rgb" / "000002.png").write_bytes(b"\x89PNG cut"), "000002.png"),
         (lambda f: (f / "rgb" / "000002.png").unlink(), "number of frames and poses"),
         (lambda f: (f / "depth" / "000001.png").replace(f / "rgb" / "000001.png"), "same number"),
