@@ -60,6 +60,11 @@ def decide(
 ) -> tuple[Any, dict[str, Tensor]]:
     """Return the agent's output for ``decisions``, and the result of :func:`imitation`."""
     out = agent.decide(decisions)
+    if not all(hasattr(out, name) for name in ("logits", "losses", "figures")):
+        raise ValueError(
+            f"decide() of {type(agent).__name__} must return an Output (mitigate/agents/agent.py), "
+            f"got {type(out).__name__}."
+        )
     check_losses(agent, weights, out)
     return out, imitation(out, decisions, weights)
 

@@ -188,7 +188,13 @@ class StepwiseAgent(Agent, nn.Module):
         """Return the logits [actions] of one step."""
         frames = {name: np.array(observation[name])[None] for name in self.needs}
         tensors = {name: torch.from_numpy(f).to(self.device) for name, f in frames.items()}
-        return self(Frames(tensors), [text])[0][0]
+        answer = self(Frames(tensors), [text])
+        if not isinstance(answer, tuple) or len(answer) != 2:
+            raise ValueError(
+                f"forward() of {type(self).__name__} must return two values, logits [B, actions] "
+                f"and a dict of features, got {type(answer).__name__}."
+            )
+        return answer[0][0]
 
 
 def _stacked(frames: Sequence[Mapping[str, np.ndarray]]) -> Frames:

@@ -141,4 +141,10 @@ class OnEpisodes(OnSource):
 
 def batch_of(decisions: Decisions) -> dict[str, Any]:
     """Put decisions into a batch for the trainer."""
+    needed = ("episode_ids", "target", "weight")
+    if absent := [name for name in needed if not hasattr(decisions, name)]:
+        raise ValueError(
+            f"join() of the agent must return an object with {', '.join(absent)} (Decisions in "
+            f"mitigate/agents/agent.py), got {type(decisions).__name__}."
+        )
     return {"decisions": decisions, "episode_ids": [str(name) for name in decisions.episode_ids]}

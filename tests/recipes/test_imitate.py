@@ -15,8 +15,8 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil import policy_kl
-from mitigate.recipes.imitate import Imitate, check_losses, imitation
-from mitigate.training.rollouts import Rollouts
+from mitigate.recipes.imitate import Imitate, check_losses, decide, imitation
+from mitigate.training.rollouts import Rollouts, batch_of
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -162,3 +162,11 @@ def test_every_step_and_piece_draws_other_episodes_and_keys():
     first = [*keys]
     output.work(output.jobs(0)[0])
     assert keys[len(first) :] == first[: len(keys) - len(first)]
+
+
+def test_results_of_other_types_are_named():
+    agent = SimpleNamespace(decide=lambda decisions: torch.zeros(2, 4))
+    with pytest.raises(ValueError, match=r"decide\(\) of SimpleNamespace must .* got Tensor"):
+        decide(agent, None, {})
+    with pytest.raises(ValueError, match=r"join\(\) .* with episode_ids, target, weight .* dict"):
+        batch_of({"target": torch.zeros(2, 4)})
