@@ -68,7 +68,7 @@ def refusal(folder, *options: str) -> str:
         ("dagger", "topological", ["stage policy", "not plain data", "recipe=imitation"]),
         ("encoder", "recurrent", ["stage encoder", "agent=efficientnet_lite0"]),
         ("restore", "frontier", ["stage rgb", "agent=restorer"]),
-        ("da_per_episode", "restorer", ["stage perception_rgb", "no labels, see"]),
+        ("da_per_episode", "restorer", ["stage perception_rgb", "not define labels, see"]),
     ],
 )
 def test_recipe_for_other_agents_names_them(tmp_path, recipe, agent, words):
