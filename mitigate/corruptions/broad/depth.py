@@ -9,13 +9,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from mitigate.corruptions.broad.composition import (
-    composed,
-    displaced,
-    field,
-    log_uniform,
-    shapes,
-)
+from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor
 from mitigate.corruptions.keying import Key
 

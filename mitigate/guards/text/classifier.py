@@ -207,13 +207,11 @@ def load(folder: str | Path) -> Classifier:
             if math.isfinite(classifier.attack(_TRIAL, clauses, 0.0)[0]):
                 return classifier
             problem = "gives scores that are not finite"
-    except (
-        *(ValueError, KeyError, TypeError, IndexError, OverflowError),
-        SafetensorError,
-    ) as error:
+    except (*_INVALID, SafetensorError) as error:
         problem = f"cannot be read ({short(str(error), 120)})"
     raise ValueError(f"The classifier in {folder} is damaged: {file.name} {problem}. {_AGAIN}")
 
 
-_TRIAL = "Turn left at the lamp. Stop."
+_TRIAL = "Turn left at the lamp. Stop."  # a classifier is tried on this text when it is loaded
+_INVALID = (ValueError, KeyError, TypeError, IndexError, OverflowError)
 _AGAIN = "Fetch the folder again, or train a classifier with `python -m mitigate.guards.text.fit`."

@@ -97,9 +97,7 @@ def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
-    before = (
-        ""  # script of the last clause; joining keeps it, and the joined text is not read again
-    )
+    before = ""  # script of the last clause, which is not computed again for joined clauses
     opened = False  # whether the last clause is one capitalised word that begins a new sentence
     for piece in _cut(text, sentence.start, sentence.end, _clause_cuts):
         first = text[piece.start]
