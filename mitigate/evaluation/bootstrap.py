@@ -164,12 +164,14 @@ def wilson(value: float, count: int) -> tuple[float, float]:
     return max(0.0, middle - half), min(1.0, middle + half)
 
 
-def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Estimate | None]:
+def means(
+    table: ArrayLike, *, units: np.ndarray | None = None, shares: bool = False, **options: Any
+) -> list[Estimate | None]:
     """Return, for each row of ``table`` [K, N], the mean with its interval, or None if all entries
     are NaN.
 
     Entries that are NaN are left out. The mean is computed with :func:`mean`, or with :func:`share`
-    if ``shares`` is true. Rows with the same episodes use the same resamples.
+    if ``shares`` is true. Rows with the same episodes use the same resamples of ``units`` [N].
     """
     values = np.asarray(table, float)
     groups: dict[bytes, list[int]] = {}
@@ -177,9 +179,11 @@ def means(table: ArrayLike, *, shares: bool = False, **options: Any) -> list[Est
         groups.setdefault(known.tobytes(), []).append(place)
     estimates: list[Estimate | None] = [None] * len(values)
     for places in groups.values():
-        group = values[np.ix_(places, ~np.isnan(values[places[0]]))]
+        known = ~np.isnan(values[places[0]])
+        group = values[np.ix_(places, known)]
         if not group.size:
             continue
+        options["units"] = None if units is None else units[known]
         low, high = np.quantile(resampled_means(group, **options), _BOUNDS, axis=0)
         for k, place in enumerate(places):
             constant = shares and group[k].min() == group[k].max() and group[k, 0] in (0, 1)

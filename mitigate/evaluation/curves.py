@@ -59,7 +59,8 @@ def _curve(grid: Grid, column: str, name: str, least: int) -> Curve | None:
     common = ~np.isnan(values).any(axis=0)
     if not common.any():
         return None
-    options = {"resamples": RESAMPLES, "units": grid.units[common]}
-    estimates = bootstrap.means(values[:, common], shares=True, **options)
+    estimates = bootstrap.means(
+        values[:, common], units=grid.units[common], shares=True, resamples=RESAMPLES
+    )
     points = [estimate for estimate in estimates if estimate is not None]
     return Curve(column, int(common.sum()), severities, points)

@@ -146,7 +146,8 @@ def _figures(parts: Sequence[Section]) -> dict[str, dict[str, Numbers]]:
         for metric, key in METRICS.items():
             scores.setdefault(f"Clean {metric}", numbers(part.clean.get((column, metric))))
             cells = [part.grid.cell(column, name, part.severity, key) for name in names]
-            for name, estimate in zip(names, bootstrap.means(cells, shares=True), strict=True):
+            estimates = bootstrap.means(cells, units=part.grid.units, shares=True)
+            for name, estimate in zip(names, estimates, strict=True):
                 figures[metric].setdefault(name, numbers(estimate))
         if part.kind == SUITE and column in part.corrupted:
             scores["Mean SR"] = _mean_sr(part, column)

@@ -183,7 +183,10 @@ def _marked(section: Section, retained: Retained | None, *blocks: str) -> Number
 def _cells(section: Section, column: str, names: Sequence[str]) -> list[list[Any]]:
     grid, at = section.grid, section.severity
     tables = {m: [grid.cell(column, n, at, key) for n in names] for m, key in METRICS.items()}
-    estimates = {metric: bootstrap.means(table, shares=True) for metric, table in tables.items()}
+    estimates = {
+        metric: bootstrap.means(table, units=grid.units, shares=True)
+        for metric, table in tables.items()
+    }
     return [
         [
             *(numbers(estimates[metric][k]) for metric in METRICS),
@@ -224,7 +227,10 @@ def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> di
         metric: [both.cell(first, n, at, key) - both.cell(second, n, at, key) for n in names]
         for metric, key in METRICS.items()
     }
-    cells = {m: [*map(numbers, bootstrap.means(change))] for m, change in changes.items()}
+    cells = {
+        metric: [*map(numbers, bootstrap.means(change, units=both.units))]
+        for metric, change in changes.items()
+    }
     compared = section.compare(first, second)
     clean = [cells[metric][0] for metric in METRICS]
     return {"measures": _in_order(section, clean, compared.corrupted, compared.retained), **cells}

@@ -41,6 +41,23 @@ def rows() -> list[dict]:
     return base + column(6, {"spatter": 6, "missing_data": 5}, name="hard", agent="ba9876543210")
 
 
+def test_intervals_of_cells_resample_scenes():
+    """Two episodes per scene have equal results, so intervals over episodes would be narrower."""
+    output = []
+    for name, agent, wins in (("base", "0" * 12, 8), ("hard", "1" * 12, 5)):
+        for k in range(24):
+            for met in ({}, {"corruption": "spatter", "severity": 0.6}):
+                ids = {"episode_id": f"{k // 2}-vln2-{k}", "scene": f"{k // 2}"}
+                output.append(row(k, k // 2 % 9 < wins, name=name, agent=agent) | met | ids)
+    (part,) = sections(output)
+    (displayed,) = page_data(report(output))[0]["sections"]
+    assert "12 scenes" in dict(displayed["facts"])["Intervals"]
+    change, clean = part.compare("hard", "base").clean, part.clean["hard", "SR"]
+    pair, value = displayed["pairs"]["1-0"]["measures"][0], displayed["cells"][1][0][0]
+    assert pair[1:3] == [shortened(change.low), shortened(change.high)]
+    assert value[1:3] == [shortened(clean.low), shortened(clean.high)]
+
+
 def test_values_and_differences_are_those_of_the_table(rows):
     (part,) = sections(rows)
     data, _ = page_data(report(rows))
