@@ -83,6 +83,9 @@ def times(cost: float, factor: float | None) -> float | None:
 OmegaConf.register_new_resolver("times", times, replace=True)
 
 
+USUAL = "s0.6"  # the severity of conf/train.yaml, as in the name of a run's folder
+
+
 @dataclass
 class EnvConfig:
     """Options in a file of ``conf/env``. Undeclared options become attributes too."""
@@ -192,13 +195,15 @@ def changed(overrides: Sequence[str]) -> list[str]:
 def column_of(name: str, seed: int, folder: Path) -> str:
     """Return the column name of a training run.
 
-    It has ``name`` and the options that appear in the name of the run's folder.
+    It has ``name``, the severity if it is not ``USUAL``, and the options that appear in the name of
+    the run's folder.
 
-    Without the options, runs with different settings would be treated as different seeds of one
-    column.
+    Without them, runs with different settings would be treated as different seeds of one column.
     """
-    options = folder.name.partition(f"-seed{seed}-")[2]
-    return f"{name}+{options}" if options else name
+    before, _, options = folder.name.partition(f"-seed{seed}")
+    severity = before.removeprefix(f"{name}-") if before.startswith(f"{name}-s") else ""
+    parts = ["" if severity == USUAL else severity, options.removeprefix("-")]
+    return "+".join([name, *filter(None, parts)])
 
 
 def default_folder(config: EvaluateConfig, name: str) -> str:

@@ -216,6 +216,9 @@ def test_column_name_contains_training_options():
     )
     assert column_of(cfg.name, cfg.seed, plain) == "da_success"
     assert column_of(cfg.name, cfg.seed, other) == "da_success+trainer.lr-1e-5"
+    weak = Path("runs/da_success-s0.3-d0.5-seed0-trainer.lr-1e-5")
+    assert column_of("da_success", 0, weak) == "da_success+s0.3-d0.5+trainer.lr-1e-5"
+    assert column_of("da_success", 0, Path("runs/mine")) == "da_success"
 
 
 @pytest.mark.parametrize("option", ["evaluation.episodes=null", "trainer.figure_every=7"])
