@@ -21,7 +21,15 @@ from mitigate.corruptions.depth_sensor import DepthSensor, check_unit
 from mitigate.corruptions.faults.camera import NARROWEST, WIDEST, Mount, warp
 from mitigate.corruptions.faults.temporal import GATE
 from mitigate.corruptions.keying import Key, as_key
-from mitigate.corruptions.record import CAMERA, FRAMES, MODALITIES, MOTION, OF_NO_FRAME, TEMPORAL
+from mitigate.corruptions.record import (
+    CAMERA,
+    FRAMES,
+    MODALITIES,
+    MOTION,
+    OF_NO_FRAME,
+    TEMPORAL,
+    Record,
+)
 
 # This is the maximum number of views per time step.
 # R2R's discrete panoramas have 12 views at each of 3 elevations, and VLN-CE has 12 views.
@@ -95,6 +103,7 @@ NAMES = RGB + DEPTH
 # instruction.py applies these corruptions before an episode starts
 INSTRUCTION = registry.names("instruction")
 SENSOR = DepthSensor()
+_TRIED: list[Record] = []  # records of plugins whose function gave equal results twice
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
@@ -385,6 +394,14 @@ def corrupt_views(
             f"The function of corruption {name!r} must return an array of the same shape and dtype "
             f"as its input, got {actual} for {views.dtype} {views.shape}."
         )
+    if record not in _TRIED:  # the first call is repeated
+        if not np.array_equal(result, record.apply(views.copy(), *arguments), equal_nan=True):
+            raise ValueError(
+                f"The function of corruption {name!r} must give the same pixels for the same key, "
+                "but two calls differ. Derive its random numbers from the key only "
+                "(docs/bring-your-own.md)."
+            )
+        _TRIED.append(record)
     return result.reshape(frame.shape)
 
 

@@ -11,10 +11,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from mitigate.core import conf
-from mitigate.corruptions import INSTRUCTION, NAMES, Record, Schedule, registry
+from mitigate.corruptions import INSTRUCTION, NAMES, Record, Schedule, corrupt, registry
 from mitigate.evaluation import evaluate
 from mitigate.worlds.apartments import simulator
 from tools.pages.descriptions import DESCRIPTIONS
@@ -124,6 +125,18 @@ def test_external_corruption_joins_a_suite_and_a_schedule(
     assert len((tmp_path / "out/rows.jsonl").read_text().splitlines()) == 4
     drawn, _ = Schedule.always("rain", 0.5).draw(0, "e", 1)
     assert (drawn.name, drawn.modality) == ("rain", "rgb") and "rain" not in NAMES
+
+
+def test_external_corruption_must_repeat_its_pixels(add_to_path, tmp_path):
+    frame = np.zeros((16, 16, 3), np.uint8)
+    assert corrupt(frame, "rain", 0.9, key=1).any()
+    code = (tmp_path / "rain.py").read_text()
+    impure = code.replace('generator(key.seed, "rain", key.episode, key.frame)', "np.random")
+    assert impure != code
+    (tmp_path / "rain.py").write_text(impure.replace("rng.random(", "rng.random_sample("))
+    add_to_path()
+    with pytest.raises(ValueError, match="'rain' must give the same pixels for the same key"):
+        corrupt(frame, "rain", 0.9, key=1)
 
 
 def test_external_corruption_is_listed_in_another_process(installed, tmp_path):
