@@ -82,7 +82,7 @@ def compile_kernels(share: int, workers: int) -> None:
     }
     names = [*NAMES, *unseen_names(*frames)]
     for name in names[share::workers]:
-        corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"))
+        corrupt(frames[modality(name)], name, 0.6, key=Key(0, "compile"), heading=0.0)
 
 
 @pytest.hookimpl(tryfirst=True)  # runs before a pytest-xdist worker sends its list of tests
