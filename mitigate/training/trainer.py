@@ -242,8 +242,8 @@ class Trainer:
         """Say how to avoid values that are not finite."""
         exact = "" if self.precision == "fp32" else ", or compute in fp32 (trainer.precision=fp32)"
         return (
-            f"Lower the learning rate, {self._lr():g} now (trainer.lr; in Python lr, if the "
-            f"function has it){exact}"
+            f"Lower the learning rate ({self._lr():g} now; trainer.lr on the command line, lr= in "
+            f"Python){exact}"
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
