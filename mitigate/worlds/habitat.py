@@ -113,9 +113,7 @@ def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
 
 
 def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]:
-    """Return the view number of each camera of a modality, as defined in
-    ``mitigate.core.observation``.
-    """
+    """Return the view number (``mitigate.core.observation``) of each camera of a modality."""
     views: dict[str, int] = {}
     for entry in obs:
         camera = _CAMERA.fullmatch(entry)
@@ -139,11 +137,7 @@ def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """Return the frames as one array [V, ...].
-
-    The index on the first axis is the view number. V is the largest view number plus 1. Views
-    without a camera are 0.
-    """
+    """Return the frames as one array [V, ...] in the order of views. Missing views are 0."""
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))
     for entry, frame in frames.items():

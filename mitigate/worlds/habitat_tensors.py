@@ -80,11 +80,7 @@ def corrupt_habitat_tensors(
 
 
 def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
-    """Return the frames as one tensor [B, V, H, W, C].
-
-    The index on the second axis is the view number. V is the largest view number plus 1. Views
-    without a camera are filled with zeros.
-    """
+    """Return the frames as one tensor [B, V, H, W, C] in the order of views, missing views as 0."""
     first = observations[next(iter(views))]
     for entry in views:
         frames = observations[entry]

@@ -204,11 +204,7 @@ OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space
 
 
 def as_world(world: Any) -> World:
-    """Return ``world`` as a :class:`World`.
-
-    An object of another class is wrapped, which adds the missing defaults. The object itself is not
-    changed.
-    """
+    """Return ``world``, or a view of it with the missing defaults of :class:`World`."""
     return world if isinstance(world, World) else _WorldView(world)
 
 
@@ -276,9 +272,7 @@ class _WorldView(World):
         take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
 
     def __getattr__(self, name: str) -> Any:
-        """Read other attributes from the object at each access, because they may change during an
-        episode.
-        """
+        """Read other attributes at each access, because they may change during an episode."""
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self._world, name)
@@ -357,10 +351,7 @@ class Corrupted(WorldWrapper):
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
     def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
-        """Return the observation as rendered with the camera fault.
-
-        Return None if there is no camera fault or if the world cannot render it.
-        """
+        """Return the frames of a displaced camera, or None without one or if not rendered."""
         mount = mount_of(self.by, key) if isinstance(self.by, Corruption) else None
         frames = None if mount is None else self._inner.displaced(mount)
         return None if frames is None else {**clean.ready, **frames}

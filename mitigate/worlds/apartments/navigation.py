@@ -62,19 +62,13 @@ class FreeSpace:
         return int(self.nearest[self._place(xy)])
 
     def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
-        """Return the index (i, j) of the grid cell that contains a plan position, or of the nearest
-        cell if the position is outside the grid.
-        """
+        """Return the index (i, j) of the grid cell nearest to a plan position."""
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return i, j
 
     def stand(self, xy: np.ndarray) -> np.ndarray:
-        """Return a position where an agent can stand, float [2] in metres.
-
-        The position is ``xy`` if the cell of ``xy`` is free, and otherwise the centre of the
-        nearest free cell.
-        """
+        """Return ``xy`` if its cell is free, and otherwise the centre of the nearest free cell."""
         return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
     def centre(self, cell: int) -> np.ndarray:
@@ -82,9 +76,7 @@ class FreeSpace:
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
-        """Return the geodesic distance in metres from every free cell to the nearest target cell,
-        as float32 [n].
-        """
+        """Return the metres from every free cell to the nearest target cell, float32 [n]."""
         return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
@@ -155,9 +147,7 @@ def _graph_of(space: FreeSpace) -> csr_matrix:
 
 @lru_cache(maxsize=GRAPHS)
 def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners at which a path can bend, float [n, 2] (x, y), and the lengths of the free
-    straight lines between them, float [n, n] (inf: no free line). The unit is one cell.
-    """
+    """Return the corners at which paths bend [n, 2], and their free distances [n, n], in cells."""
     free, corners = space.free, []
     rows, columns = np.arange(1, free.shape[0] - 1), np.arange(1, free.shape[1] - 1)
     for di in (-1, 1):
@@ -175,9 +165,7 @@ def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
 
 @njit(cache=True)
 def _visible_lengths(free, starts, ends):
-    """Return the lengths of the straight lines from ``starts`` [n, 2] to ``ends`` [m, 2] through
-    free cells, float [n, m] in cells (inf: the line is not free).
-    """
+    """Return the lengths of the lines from ``starts`` to ``ends`` [n, m] (inf: not free)."""
     lengths = np.full((len(starts), len(ends)), np.inf)
     for a in range(len(starts)):
         for b in range(len(ends)):
@@ -190,9 +178,7 @@ def _visible_lengths(free, starts, ends):
 
 @njit(cache=True)
 def _line_is_free(free, x, y, dx, dy):
-    """Return whether the line from (x, y) to (x + dx, y + dy) crosses free cells only (Amanatides
-    and Woo, 1987). It may touch the corners of blocked cells.
-    """
+    """Return whether a line crosses free cells only (Amanatides and Woo, 1987)."""
     i, j = int(np.floor(y)), int(np.floor(x))
     last_i, last_j = int(np.floor(y + dy)), int(np.floor(x + dx))
     step_i, step_j = (1 if dy > 0 else -1), (1 if dx > 0 else -1)
@@ -215,9 +201,7 @@ def _line_is_free(free, x, y, dx, dy):
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Return the free distance in metres from (x, y) in the direction (dx, dy), at most
-    ``length``.
-    """
+    """Return the free distance in metres from (x, y) towards (dx, dy), at most ``length``."""
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length

@@ -23,16 +23,12 @@ NEAR = 0.5
 # number of cached distance fields; a field takes 20 kB, and half a millisecond to compute
 @lru_cache(maxsize=256)
 def goal_field(scene_id: str, goal_cells: tuple[int, ...]) -> np.ndarray:
-    """Return the geodesic distance in metres from every free cell of a scene to the nearest goal
-    cell.
-    """
+    """Return the metres from every free cell of a scene to the nearest goal cell."""
     return apartment_of(scene_id).space.distances(list(goal_cells))
 
 
 class Simulator:
-    """Simulator of one agent in one apartment. The actions and the step limit are the same as in
-    VLN-CE (``core/observation.py``).
-    """
+    """Simulator of one agent in one apartment, with the actions and step limit of VLN-CE."""
 
     def __init__(self, size: int = 64) -> None:
         self.size = size
@@ -120,11 +116,7 @@ class Simulator:
 
 
 class GeodesicExpert(Expert):
-    """Expert that greedily reduces the geodesic distances in ``field``.
-
-    The expert turns to the heading in which the next step forward reduces the distance most. It
-    stops at the distance that ``rule`` defines.
-    """
+    """Expert that turns to the heading in which a step reduces the distances of ``field`` most."""
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:
         self.simulator, self.rule, self.field = simulator, rule, field

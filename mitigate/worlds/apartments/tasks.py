@@ -167,9 +167,7 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def view_points(episode: Episode) -> list[int]:
-    """Return the view points of the goal object: the free cells next to it, as for the object goals
-    of VLN-CE.
-    """
+    """Return the free cells next to the goal object, as for the object goals of VLN-CE."""
     return list(_view_points(episode.scene_id, tuple(landmarks(episode))))
 
 
@@ -190,9 +188,7 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
 
 @lru_cache(maxsize=100_000)
 def _pooled(seed: int, task: str, index: int) -> bytes:
-    """Return a pickled training episode. A cache of unpickled episodes would need ten times the
-    memory.
-    """
+    """Return a pickled training episode, because cached objects would need ten times the memory."""
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 

@@ -166,7 +166,6 @@ class Bag(Source):
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        """Open a reader."""
         try:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
@@ -245,9 +244,7 @@ class Bag(Source):
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
-        """Return the times of the images, the poses as (time, x, y, heading), and the lenses of the
-        cameras.
-        """
+        """Return the times of the images, the poses as (time, x, y, heading), and the lenses."""
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
         poses: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
@@ -310,10 +307,9 @@ def _repair_advice(path: Path) -> str:
 
 
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
-    """Open a reader of ``rosbags`` that parses only the definitions of the supported message types.
+    """Open a reader that parses only the definitions of the supported message types.
 
-    Otherwise, one definition that ``rosbags`` cannot parse, such as a service event, would make the
-    whole bag unreadable.
+    One definition that ``rosbags`` cannot parse would make the whole bag unreadable.
     """
     from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
 

@@ -73,7 +73,7 @@ class Frames(Source):
 
 
 def assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
-    """Return a lens with the field of view that the user set, or with a default field of view."""
+    """Return a lens with the field of view that the user set, or with a default."""
     return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
 
 
@@ -82,7 +82,7 @@ def read_rows(
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the words of each line that is not a comment.
 
-    A line may have more than ``columns`` words, but not if ``separator`` is set.
+    A line may have more than ``columns`` words if ``separator`` is None.
     """
     if not file.is_file():
         return
@@ -102,11 +102,7 @@ def read_rows(
 
 
 def number(word: str, file: Path, line: int) -> float:
-    """Parse a finite number.
-
-    Raises:
-        ValueError: If the word is not a finite number. The message contains the file and the line.
-    """
+    """Parse a finite number. Raise ValueError with the file and the line if it is invalid."""
     try:
         value = float(word)
     except ValueError:

@@ -46,25 +46,19 @@ def encoding_of(message: Any) -> str:
 
 
 def kind_of(encoding: str) -> str | None:
-    """Return "rgb" or "depth" for an encoding. Return None if both kinds of images may use the
-    encoding.
-    """
+    """Return "rgb" or "depth", or None if both kinds of images may use the encoding."""
     if "compressedDepth" in encoding or encoding.startswith(("16UC1", "32FC1")):
         return DEPTH
     return RGB if "jpeg" in encoding or encoding.startswith(tuple(_COLOURS)) else None
 
 
 def depth_unit(encoding: str) -> float:
-    """Return the depth unit in metres that REP 118 prescribes: 1 for 32FC1, and 0.001 for
-    integers.
-    """
+    """Return the metres per count of REP 118: 1 for 32FC1, and 0.001 for integers."""
     return 1.0 if encoding == "32FC1" else 0.001
 
 
 def read_pose(message: Any) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of a message. The heading is NaN if the rotation is
-    invalid.
-    """
+    """Return the plan pose (x, y, heading). The heading is NaN if the rotation is invalid."""
     while (inner := _field(message, "pose")) is not None:
         message = inner
     position, turn = message.position, message.orientation
@@ -73,10 +67,7 @@ def read_pose(message: Any) -> tuple[float, float, float]:
 
 
 def _field(message: Any, *names: str) -> Any:
-    """Return the value of the first of ``names`` that is a field of the message, or None.
-
-    Several names are needed because ROS 1 and ROS 2 name some fields differently.
-    """
+    """Return the first existing field of ``names``, which differ between ROS 1 and 2, or None."""
     return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
 
@@ -95,18 +86,12 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
 
 
 def camera_matrix(message: Any) -> np.ndarray:
-    """Return the flattened 3x3 camera matrix of a CameraInfo. The field is called ``K`` in ROS 1
-    and ``k`` in ROS 2.
-    """
+    """Return the flattened 3x3 camera matrix of a CameraInfo."""
     return np.asarray(_field(message, "k", "K")).reshape(-1)
 
 
 def read_lens(kind: str, message: Any, path: Path) -> Lens:
-    """Return the lens that a CameraInfo describes.
-
-    Raises:
-        ValueError: If focal lengths or sizes are invalid, or the lens is a fisheye lens.
-    """
+    """Return the lens of a CameraInfo. Raise ValueError if it is invalid or a fisheye lens."""
     matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
         raise ValueError(
@@ -201,9 +186,7 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
 
 
 def _is_image(data: np.ndarray) -> bool:
-    """Return whether the bytes begin like a PNG or JPEG image of an allowed size. The image is not
-    decoded.
-    """
+    """Return whether the bytes begin like a PNG or JPEG of an allowed size, without decoding."""
     try:
         with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as opened:
             return max(opened.size) <= MAX_SIDE

@@ -83,7 +83,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels for an image of this size.
 
         Raises:
-            ValueError: If the aspect ratio of the image differs from the aspect ratio of ``size``.
+            ValueError: If its aspect ratio differs from that of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
@@ -192,11 +192,7 @@ def plan_pose(
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the element of ``others`` that is nearest to each element of ``times``.
-
-    Args:
-        times: float64 [N], seconds.
-        others: float64 [M], increasing, in seconds.
+    """Find the element of ``others`` (increasing) that is nearest to each element of ``times``.
 
     Returns:
         Indices into ``others`` (int [N]), and the distances in seconds (float64 [N]).
@@ -211,18 +207,12 @@ def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.
 def interpolate_poses(
     times: np.ndarray, table: np.ndarray, tolerance: float = MAX_FRAME_GAP
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate poses at ``times``.
-
-    Args:
-        times: float64 [N], seconds.
-        table: float64 [M, 4], (time, x, y, heading) of the known poses.
-        tolerance: If a recorded pose is at most this many seconds from a time, the pose at that
-            time counts as known.
+    """Interpolate the poses of ``table``, float64 [M, 4] (time, x, y, heading), at ``times`` [N].
 
     Returns:
         The poses (float64 [N, 3]), and whether each pose is known (bool [N]). Poses are unknown
         where recorded poses are more than ``MAX_POSE_GAP`` seconds apart, except within
-        ``tolerance`` of a recorded pose.
+        ``tolerance`` seconds of a recorded pose.
     """
     table = table[np.isfinite(table).all(1)]
     if not len(table):
@@ -307,11 +297,7 @@ def match_times(
 
 
 def read_instruction(file: Path) -> str:
-    """Read the instruction from a text file, or return "" if the file does not exist.
-
-    Raises:
-        ValueError: If the text is too long or not UTF-8.
-    """
+    """Read the instruction from a text file, or return "" if the file does not exist."""
     instruction = read_text(file, MAX_INSTRUCTION_BYTES).strip() if file.is_file() else ""
     if "\N{REPLACEMENT CHARACTER}" in instruction or "\0" in instruction:
         raise ValueError(f"{file} must be UTF-8 text. Save it as UTF-8, or remove it.")
@@ -319,11 +305,7 @@ def read_instruction(file: Path) -> str:
 
 
 def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
-    """Read a text file.
-
-    Raises:
-        ValueError: If the file is larger than ``max_bytes``.
-    """
+    """Read a text file. Raise ValueError if it is larger than ``max_bytes``."""
     with open(file, "rb") as stream:
         # read(n) allocates n bytes in advance, so n is limited by the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)

@@ -42,14 +42,7 @@ class Camera:
 def describe(
     source: Source, recording: Recording, cameras: Mapping[str, Camera], step: Step
 ) -> list[str]:
-    """Return a description with one line for the drive, one per camera and one for the pose.
-
-    Args:
-        source: The source from which the drive was loaded.
-        recording: The loaded drive.
-        cameras: The camera that faces forward, for each sensor.
-        step: Distance between two time steps.
-    """
+    """Return one line each for the drive, its cameras, its pose and its instruction."""
     seconds = float(source.times[-1] - source.times[0])
     drive = f"{recording.name}: {counted(len(recording.times), 'step')}"
     if source.stepped:
@@ -104,9 +97,7 @@ def _depth_range(depth: np.ndarray, border: float) -> str:
 
 
 def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camera]) -> None:
-    """Warn if the border is large, if the scale of depth is implausible, or if the instruction is
-    missing.
-    """
+    """Warn about a large border, an implausible scale of depth, or a missing instruction."""
     name = recording.name
     border = max(camera.border for camera in cameras.values())
     if border > MAX_BORDER:

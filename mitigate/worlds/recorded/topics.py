@@ -129,9 +129,8 @@ def _sort_images(
 ) -> tuple[list[str], list[str]]:
     """Return the topics that contain RGB images and the topics that contain depth images.
 
-    The encoding decides the kind of a topic. If the encoding allows both kinds, the name decides.
-    If several topics of one kind have a suitable encoding, topics with a suitable name are
-    preferred. For example, ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
+    The encoding decides; if it allows both kinds, the name decides. Topics with a suitable name are
+    preferred: ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
     """
     named_depth = [name for name in images if _DEPTH_TOPIC.search(name)]
     depth = []
@@ -170,10 +169,9 @@ def _candidates(
 
 
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
-    """Return the CameraInfo topics of an image topic.
+    """Return the CameraInfo topics of an image topic: ``<camera>/camera_info``.
 
-    In ROS, the name is ``<camera>/camera_info``. If that topic is missing, return the topics that
-    start with the same namespace and share the most words with the image topic.
+    Without it, return those of the same namespace that share the most words with the topic.
     """
     namespace = topic
     while "/" in namespace.strip("/"):

@@ -11,7 +11,9 @@ import numpy as np
 from mitigate.core.observation import DEPTH
 from mitigate.worlds.recorded.source import MIN_HFOV, Lens
 
-SUPERSAMPLING = 4  # enlargement factor of the canvas for a partially covered view
+# enlargement factor of the canvas for a partially covered view, so that rounding moves the edges of
+# the frame only by a fraction of a pixel
+SUPERSAMPLING = 4
 
 
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
@@ -48,9 +50,7 @@ def border_fraction(lens: Lens, height: int, width: int, tangent: float = 1.0) -
 def _edges(
     lens: Lens, height: int, width: int, tangent: float
 ) -> tuple[float, float, float, float]:
-    """Return the left, right, top and bottom edges of a square view, in pixel coordinates of the
-    image.
-    """
+    """Return the left, right, top and bottom edges of a square view in pixels of the image."""
     fx, fy, cx, cy = lens.intrinsics(height, width)
     return cx - fx * tangent, cx + fx * tangent, cy - fy * tangent, cy + fy * tangent
 
@@ -84,11 +84,7 @@ def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) 
 def _partial_view(
     frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """Paste a frame that covers only a part of the view.
-
-    The frame is first pasted onto a larger canvas, so that rounding moves its edges only by a
-    fraction of a pixel.
-    """
+    """Paste a frame that covers only a part of the view."""
     height, width = frame.shape[:2]
     left, right, top, bottom = edges
     large = SUPERSAMPLING * size
