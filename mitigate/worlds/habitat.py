@@ -100,12 +100,7 @@ def is_camera(entry: str) -> bool:
 
 
 def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
-    """Raise ValueError if a corruption changes a modality that no camera has.
-
-    Args:
-        entries: Names of the entries of an observation.
-        names: Names of corruptions.
-    """
+    """Raise ValueError if one of the corruptions ``names`` changes a modality without a camera."""
     entries = list(entries)
     available = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
     lack = f"the observation has no camera named {{0}}, {{0}}_30, ... (its entries are {entries})"

@@ -114,7 +114,7 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return the episode with this number, and a name that is unique to this run of it."""
+        """Return the episode of this number, and a name that is unique to this run."""
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode, repetition = self.episodes.draw(rng, (0, 1)), number

@@ -72,7 +72,8 @@ class World:
     :func:`as_world` adds the missing defaults.
 
     A class may define ``beside()``, which returns a second world of the same kind. Several episodes
-    can then run at the same time.
+    can then run at the same time. It may define ``move(metres, degrees)``, which moves forward and
+    then turns to the left, as one step. Motion faults of robots with discrete actions use it.
 
     Attributes:
         sensors: Descriptions of the entries of an observation. Frames that are to be corrupted must
@@ -193,10 +194,8 @@ class TrainingEpisodes(Protocol):
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
         """Sample an episode. The result depends only on the state of ``rng`` and on ``share``.
 
-        Args:
-            rng: Random generator.
-            share: The pair (index of this worker, number of workers). A world may use it to divide
-                its scenes among workers.
+        ``share`` is the pair (index of this worker, number of workers). A world may use it to
+        divide its scenes among workers.
         """
 
 
@@ -372,11 +371,7 @@ def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
 
 
 def expert_of(world: World) -> Expert:
-    """Return the expert of a world for the current episode.
-
-    Raises:
-        ValueError: If the world has no expert.
-    """
+    """Return the expert of a world for the current episode. Raise ValueError if it has none."""
     expert = as_world(world).expert()
     if expert is None:
         inner = world.world if isinstance(world, WorldWrapper) else world
@@ -388,13 +383,9 @@ def expert_of(world: World) -> Expert:
 
 
 def greedy_action(heading: float, distance_after: Callable[[float], float]) -> int:
-    """Find the heading in which a step forward ends nearest to the goal. Return FORWARD if the
-    agent has this heading, and otherwise the turn towards it.
+    """Return the action towards the heading in which a step forward ends nearest to the goal.
 
-    Args:
-        heading: Heading of the agent in radians.
-        distance_after: Function that takes a heading and returns the distance to the goal after a
-            step in that direction.
+    ``distance_after`` maps a heading in radians to the distance to the goal after that step.
     """
     turns = sorted(range(-12, 13), key=abs)
     headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
@@ -410,15 +401,9 @@ class _ExpertView(Expert):
 
 
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
-    """Raise ValueError if depth values are too large to be in metres.
+    """Raise ValueError if the median of ``depth`` is above ``MAX_MEDIAN_DEPTH`` metres.
 
-    Args:
-        depth: Depth as float32 of any shape, where 0 means missing.
-        name: Name of the depth data in the error message.
-        fix: Last part of the error message, which contains advice for the user.
-
-    Raises:
-        ValueError: If the median depth is above ``MAX_MEDIAN_DEPTH``.
+    Values of 0 are missing. ``name`` and ``fix`` are parts of the message: the data, and advice.
     """
     readings = depth[depth > 0]
     median = float(np.median(readings)) if len(readings) else 0.0

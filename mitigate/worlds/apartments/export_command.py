@@ -251,7 +251,7 @@ def glb(faces: Faces) -> bytes:
         {**_primitive(buffer, faces, faces.pattern == pattern), "material": number}
         for number, pattern in enumerate(used)
     ]
-    pictures = [cv2.imencode(".png", texture(PATTERNS[k], 0))[1].tobytes() for k in used]
+    pictures = [cv2.imencode(".png", texture(PATTERNS[k]))[1].tobytes() for k in used]
     document = {
         "asset": {"version": "2.0", "generator": "mitigate"},
         "extensionsUsed": ["KHR_materials_unlit"],

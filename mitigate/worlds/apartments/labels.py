@@ -32,11 +32,10 @@ YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return a mask that is 1 where the straight path from a pose is free of obstacles.
+    """Return a mask, float32 [120, 12], that is 1 where the straight path from a pose is free.
 
-    The mask is float32 [120, 12]. The first axis is the angle to the right of the heading; bin
-    ``10 * k + i`` is at ``30 * k - 15 + 3 * (i + 0.5)`` degrees. The second axis is the distance in
-    steps of 0.25 m.
+    Angle bin ``10 * k + i`` is ``30 * k - 15 + 3 * (i + 0.5)`` degrees to the right of the heading.
+    The second axis is the distance in steps of 0.25 m.
     """
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)

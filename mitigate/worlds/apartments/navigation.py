@@ -49,11 +49,9 @@ class FreeSpace:
 
     @property
     def graph(self) -> csr_matrix:
-        """The graph of the free cells, in which each cell is connected to its 8 neighbours. Edge
-        weights are in metres.
+        """The graph of the free cells and their 8 neighbours, with edge weights in metres.
 
-        Paths along this graph have eight directions. On average, they are 5 % longer than paths in
-        any direction (:meth:`shortest_length`).
+        Its paths are 5 % longer on average than those of :meth:`shortest_length`.
         """
         return _graph_of(self)
 
@@ -80,9 +78,7 @@ class FreeSpace:
         return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Return the cell centres ``[n, 2]`` on the shortest path from the cell ``start`` to the
-        nearest target of ``field`` (see :meth:`distances`).
-        """
+        """Return the cell centres [n, 2] from ``start`` to the nearest target of ``field``."""
         path, graph = [start], self.graph
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
@@ -91,8 +87,7 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def shortest_length(self, xy: np.ndarray, targets: list[int]) -> float:
-        """Return the length in metres of the shortest path from a plan position [2] in a free cell
-        to the nearest centre of a target cell.
+        """Return the metres of the shortest path from a free plan position [2] to a target cell.
 
         The path may have any direction. It only bends at corners of blocked cells, so Dijkstra's
         algorithm runs on the visibility graph of these corners (Lozano-Perez and Wesley, 1979).
@@ -109,8 +104,9 @@ class FreeSpace:
         return float(np.min(to_points[:, None] + last) * CELL)
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """Move straight ahead and slide along walls, as agents do in the R2R task of VLN-CE. Return
-        the new position and whether the agent collided.
+        """Move straight ahead and slide along walls, as in VLN-CE.
+
+        Returns the new position and whether the agent collided.
         """
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
@@ -124,8 +120,9 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Return the free distance in metres along ``count`` evenly spaced headings,
-        counter-clockwise from heading 0. Distances are limited to ``reach``.
+        """Return the free metres, at most ``reach``, along ``count`` evenly spaced headings.
+
+        Headings are counter-clockwise from 0.
         """
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 

@@ -186,7 +186,7 @@ class Renderer:
         image.setup_2d_texture(
             TEXTURE_PIXELS, TEXTURE_PIXELS, core.Texture.T_unsigned_byte, core.Texture.F_rgb
         )
-        image.set_ram_image(np.repeat(texture(pattern, 0)[:, :, None], 3, 2).tobytes())
+        image.set_ram_image(np.repeat(texture(pattern)[:, :, None], 3, 2).tobytes())
         image.set_minfilter(core.SamplerState.FT_nearest)
         image.set_magfilter(core.SamplerState.FT_nearest)
         return image

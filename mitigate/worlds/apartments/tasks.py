@@ -131,8 +131,7 @@ class DrawnEpisodes:
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """Sample an episode with a newly generated instruction.
 
-        The layouts are split into ``count`` parts, and ``share`` = (index, count) selects the part
-        to sample from. Each layout has ``_POOL`` different paths.
+        ``share`` is the pair (index, number) of the part of the layouts to sample from.
         """
         seeds = share_of(range(self.layouts), *share)
         seed = seeds[int(rng.integers(len(seeds)))]
@@ -149,10 +148,9 @@ class DrawnEpisodes:
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Return the indices of the furniture that marks the goal: one piece in VLN, and all pieces of
-    the goal category in OGN.
+    """Return the indices of the furniture that marks the goal: all of a category in OGN.
 
-    Raises ValueError if the episode's info does not contain the goal.
+    Raises ValueError if the info of the episode does not contain the goal.
     """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))
@@ -178,9 +176,7 @@ def _view_points(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """Yield the first ``count`` episodes of a split in the order of apartment seeds, with
-    ``PER_APARTMENT`` episodes per apartment.
-    """
+    """Yield ``count`` episodes in the order of seeds, ``PER_APARTMENT`` per apartment."""
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // PER_APARTMENT), task, number % PER_APARTMENT)

@@ -181,7 +181,7 @@ class ApartmentsWorld(World):
         _, depth, ids = self._frames()
         labels = pose_labels(simulator.apartment, simulator.xy, simulator.heading, ids, depth)
         goal = labels["seen"][:, landmarks(simulator.episode)].any(1)
-        return labels | {"goal": goal.astype(np.float32)}
+        return {**labels, "goal": np.asarray(goal, np.float32)}
 
     # indices of the furniture (as in the label "seen") that marks the goal of an episode
     landmarks = staticmethod(landmarks)

@@ -13,7 +13,14 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
-from mitigate.worlds.recorded.source import MAX_INSTANTS, Lens, Source, read_text
+from mitigate.worlds.recorded.source import (
+    MAX_INSTANTS,
+    SET_UNIT,
+    Lens,
+    Source,
+    clean_depth,
+    read_text,
+)
 
 INSTRUCTION = "instruction.txt"
 
@@ -36,20 +43,14 @@ class Frames(Source):
     def __post_init__(self) -> None:
         assumed = "" if self.unit_given else " (assumed)"
         counted = f"16-bit PNG, {self.unit:g} metres per count{assumed}"
-        self.formats = {
-            name: f"{name}, {counted if self._is_counted(name) else files[0].suffix[1:].upper()}"
-            for name, files in self.files.items()
-        }
-
-    def _is_counted(self, camera: str) -> bool:
-        """Return whether a camera's files contain depth as integer multiples of ``unit``."""
-        is_npy = self.files[camera][0].suffix.lower() == ".npy"
-        return self.cameras[camera].kind == DEPTH and not is_npy
-
-    def depth_advice(self) -> str:
-        if any(map(self._is_counted, self.files)):
-            return "Set unit= (metres per count), such as unit=0.0001."
-        return super().depth_advice()
+        self.formats = {}
+        for name, files in self.files.items():
+            suffix = files[0].suffix[1:].upper()
+            if self.cameras[name].kind == DEPTH and suffix != "NPY":
+                self.formats[name] = f"{name}, {counted}"
+                self.depth_advice = SET_UNIT
+            else:
+                self.formats[name] = f"{name}, {suffix}"
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         for index in chosen:
@@ -66,10 +67,7 @@ class Frames(Source):
                 f"{path} must be a {kind} frame, like the other frames of camera {camera!r}. "
                 "Replace it."
             )
-        if kind == RGB:
-            return frame
-        depth = frame[..., 0]
-        return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
+        return frame if kind == RGB else clean_depth(frame[..., 0])
 
 
 def assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:

@@ -16,7 +16,7 @@ from PIL import Image
 
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.frame_files import NO_READING
-from mitigate.worlds.recorded.source import Lens, plan_pose
+from mitigate.worlds.recorded.source import Lens, clean_depth, heading_along
 
 FISHEYE = ("equidistant", "fisheye")  # names of fisheye distortion models in ROS
 MAX_SIDE = 1 << 13  # maximum width and height of an image in pixels (heuristic)
@@ -62,8 +62,8 @@ def read_pose(message: Any) -> tuple[float, float, float]:
     while (inner := _field(message, "pose")) is not None:
         message = inner
     position, turn = message.position, message.orientation
-    quaternion = (turn.x, turn.y, turn.z, turn.w)
-    return plan_pose(float(position.x), float(position.y), quaternion, (1.0, 0.0, 0.0))
+    heading = heading_along((turn.x, turn.y, turn.z, turn.w), (1.0, 0.0, 0.0))
+    return float(position.x), float(position.y), heading
 
 
 def _field(message: Any, *names: str) -> Any:
@@ -72,8 +72,7 @@ def _field(message: Any, *names: str) -> Any:
 
 
 def read_stamp(raw: bytes, ros2: bool) -> float:
-    """Return the time in seconds from the header of a serialised message, or 0 if there is no
-    header.
+    """Return the time in seconds from the header of a serialised message, or 0 without a header.
 
     A ROS 1 message starts with a counter and a time, both little endian. A ROS 2 message (CDR)
     starts with four bytes; the second byte gives the byte order. The time follows.
@@ -113,14 +112,9 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
 
 
 def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
-    """Return the image of a message: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W].
-    Missing depth is 0.
+    """Return an image: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W] (0: missing).
 
-    Args:
-        message: An Image or a CompressedImage.
-        kind: "rgb" or "depth".
-        path: The bag, for error messages.
-        unit: Metres per integer step of depth. If None, :func:`depth_unit` determines it.
+    ``unit`` is metres per integer step of depth. If None, :func:`depth_unit` determines it.
 
     Raises:
         DamagedImage: If the image cannot be decoded.
@@ -157,7 +151,7 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
         stored = rows.view(dtype)
         if dtype.kind == "u":
             stored = np.where(stored == NO_READING, 0, stored)
-        return _clean_depth(stored * unit)
+        return clean_depth(stored * unit)
     pixels = rows.reshape(height, width, channels)
     return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
 
@@ -177,7 +171,7 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
                 f"{path}: compressed depth must be 16-bit PNG, got the format "
                 f"{encoding[:40]!r}. Record the raw images."
             )
-        return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
+        return clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
     if pixels.dtype != np.uint8:
         raise ValueError(f"{path}: compressed RGB images must be uint8, got {pixels.dtype}.")
     if pixels.ndim == 2:
@@ -192,8 +186,3 @@ def _is_image(data: np.ndarray) -> bool:
             return max(opened.size) <= MAX_SIDE
     except Exception:  # Pillow raises many kinds of errors for damaged bytes
         return False
-
-
-def _clean_depth(depth: np.ndarray) -> np.ndarray:
-    """Return depth as float32, with negative and non-finite values replaced by 0."""
-    return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)

@@ -137,7 +137,7 @@ def load(source: Source, *, views: int, size: int, step: Step, crop: bool = Fals
     )
     chosen = chosen[readable]
     if DEPTH in frames:
-        check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice())
+        check_metres(frames[DEPTH], f"the depth of {source.name}", source.depth_advice)
     poses = None if source.poses is None else source.poses[chosen]
     times = source.times[chosen] - source.times[0]
     driven = None

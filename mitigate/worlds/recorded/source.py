@@ -32,6 +32,7 @@ MAX_CENTRE_OFFSET = 4.0
 # A heading is defined if the horizontal component of a unit direction is at least this.
 # The direction then points at most 73 degrees up or down.
 MIN_LEVEL = 0.3
+SET_UNIT = "Set unit= (metres per count), such as unit=0.0001."
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02
 
@@ -131,6 +132,7 @@ class Source:
         formats: Description of where and how the data is stored, for each camera and for "pose".
             Examples are "/odom" and "16-bit PNG, 0.001 metres per count (assumed)".
         damaged: Descriptions of the damaged images that ``frames`` has found so far.
+        depth_advice: How a user can correct depth that is not in metres.
     """
 
     name: str
@@ -143,10 +145,7 @@ class Source:
     signals: Mapping[str, np.ndarray] = field(default_factory=dict)
     formats: Mapping[str, str] = field(default_factory=dict)
     damaged: list[str] = field(default_factory=list)
-
-    def depth_advice(self) -> str:
-        """Return advice on how to correct depth that is not in metres."""
-        return "Convert it to metres."
+    depth_advice: str = "Convert it to metres."
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frames of all cameras at each chosen time step, in order.
@@ -164,31 +163,31 @@ class Source:
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
 
-def plan_pose(
-    x: float, y: float, quaternion: Sequence[float], axis: Sequence[float]
-) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of an agent. The z axis points up.
+def heading_along(quaternion: Sequence[float], axis: Sequence[float]) -> float:
+    """Return the heading of an agent in radians, in a frame whose z axis points up.
 
     Args:
-        x: Position in metres.
-        y: Position in metres.
         quaternion: Rotation of the agent or its camera, as (x, y, z, w).
         axis: Forward direction [3] before the rotation is applied.
 
     Returns:
-        The pose. The heading is NaN if the agent faces up or down, or if ``quaternion`` is not a
-        rotation.
+        The heading, or NaN if the agent faces up or down or ``quaternion`` is not a rotation.
     """
     values = np.asarray(quaternion, np.float64)
     length = float(np.linalg.norm(values))
     if not (values.shape == (4,) and np.isfinite(length) and length > 1e-6):
-        return x, y, math.nan
+        return math.nan
     *imaginary, w = values / length
     u = np.array(imaginary)
     v = np.asarray(axis, np.float64)
     forward = v + 2 * np.cross(u, np.cross(u, v) + w * v)
     level = math.hypot(forward[0], forward[1]) >= MIN_LEVEL
-    return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
+    return math.atan2(-forward[0], forward[1]) if level else math.nan
+
+
+def clean_depth(depth: np.ndarray) -> np.ndarray:
+    """Return depth as float32, with negative and non-finite values replaced by 0."""
+    return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -26,11 +26,8 @@ FAR_MEDIAN = 10.0
 class Camera:
     """The camera of a sensor that faces forward.
 
-    Attributes:
-        lens: Lens of the camera.
-        shape: Height and width of the images in pixels.
-        format: Description of where and how the images are stored.
-        border: Fraction of a view's pixels that lie outside the camera's field of view.
+    ``shape`` is the height and width of its images, ``format`` describes how they are stored, and
+    ``border`` is the fraction of a view's pixels that lie outside its field of view.
     """
 
     lens: Lens
@@ -113,7 +110,7 @@ def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camer
         if not NEAR_MEDIAN <= median <= FAR_MEDIAN:
             warnings.warn(
                 f"{name}: the median depth is {median:.3g} m, which is unusual for a robot "
-                f"indoors. Check the scale. {source.depth_advice()}",
+                f"indoors. Check the scale. {source.depth_advice}",
                 stacklevel=3,
             )
     if not recording.instruction:

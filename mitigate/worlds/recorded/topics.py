@@ -67,13 +67,13 @@ def choose_topics(
         path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
         topics: The topics that the user chose.
-        counts: Number of messages of each topic, if known. A pose topic with a single message does
-            not count as a trajectory if an image topic has several messages.
-        encodings: Encoding of the first image of each topic, if known. If it is unknown, the name
-            of the topic decides whether the topic contains depth.
+        counts: Number of messages of each topic. A pose topic with a single message is no
+            trajectory if an image topic has several messages.
+        encodings: Encoding of the first image of each topic. Without it, the name of the topic
+            decides whether it contains depth.
 
     Returns:
-        The chosen topics by name. Names for which the bag has no topic are absent.
+        The chosen topics by name, without those that the bag lacks.
 
     Raises:
         ValueError: If a chosen topic is missing or has the wrong type, if several topics are

@@ -23,7 +23,7 @@ from mitigate.worlds.recorded.drive_files import (
     read_rows,
 )
 from mitigate.worlds.recorded.options import Options
-from mitigate.worlds.recorded.source import match_times, plan_pose, read_instruction
+from mitigate.worlds.recorded.source import heading_along, match_times, read_instruction
 
 LISTS = ("rgb.txt", "depth.txt")
 # file that contains both lists, written by associate.py of the TUM RGB-D benchmark
@@ -107,8 +107,7 @@ def _read_trajectory(file: Path) -> np.ndarray:
     rows = []
     for line, row in read_rows(file, 8):
         numbers = [number(word, file, line) for word in row[:8]]
-        pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
-        rows.append((numbers[0], *pose))
+        rows.append((*numbers[:3], heading_along(numbers[4:], (0.0, 0.0, 1.0))))
     if not rows:
         raise ValueError(
             f"{file} has no pose. Add poses. To read the images without poses, delete this file."

@@ -19,10 +19,7 @@ SUPERSAMPLING = 4
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
     """Return the tangent of half of the largest square field of view that all cameras cover.
 
-    The maximum is 1, which means 90 degrees.
-
-    Args:
-        cameras: The lens of each camera, and the height and width of its images.
+    ``cameras`` are lenses with the height and width of their images. The maximum is 1 (90 degrees).
 
     Raises:
         ValueError: If the field of view would be narrower than ``MIN_HFOV``.
@@ -56,13 +53,9 @@ def _edges(
 
 
 def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) -> np.ndarray:
-    """Crop and resize a frame to a square view.
+    """Crop and resize a frame, uint8 [H, W, 3] or float32 [H, W], to a square view.
 
-    Args:
-        frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took the frame.
-        size: Height and width of the view in pixels.
-        tangent: Tangent of half the angle that the view covers, which is 1 for 90 degrees.
+    ``tangent`` is the tangent of half the angle that the view covers.
 
     Returns:
         The view, uint8 [size, size, 3] or float32 [size, size, 1]. If the frame already is such a
