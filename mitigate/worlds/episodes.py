@@ -235,13 +235,9 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         hidden_goals: Whether to accept episodes without goals and without a reference path, as in
             test splits.
 
-    Yields:
-        The episodes.
-
     Raises:
         FileNotFoundError: If the file does not exist.
-        ValueError: If an episode is invalid. The message contains the file, the episode and the
-            key.
+        ValueError: If an episode is invalid. The message names the file, the episode and the key.
     """
     has_episodes = False
     for key, items in _members(path):
@@ -274,16 +270,10 @@ def is_seed(value: Any) -> bool:
 
 
 class ListedEpisodes:
-    """Source of training episodes (``worlds/world.py``) from a file.
+    """Source of training episodes (``worlds/world.py``) from the episode file ``path``.
 
-    Each of n workers samples only from every n-th episode of the file, so different parts of a
-    batch use different episodes.
-
-    Args:
-        path: An episode file.
-
-    Raises:
-        ValueError: If the file contains no episode, or if :func:`read_episodes` raises ValueError.
+    Each of n workers samples only from every n-th episode, so different parts of a batch use
+    different episodes. Raises ValueError if the file is invalid or contains no episode.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -321,16 +311,12 @@ def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
 def write_episodes(
     path: Path | str, episodes: Iterable[Episode], extras: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write a VLN-CE file. If writing fails, the old file is kept.
+    """Write a VLN-CE file, and return its path. If writing fails, the old file is kept.
 
     Args:
         path: Path of the file. The file is gzipped if the name ends in ``.gz``.
         episodes: The episodes.
-        extras: Other top-level keys of the file and their values, as returned by
-            :func:`read_extras`.
-
-    Returns:
-        The path.
+        extras: Other top-level keys and their values, as returned by :func:`read_extras`.
 
     Raises:
         ValueError: If a value cannot be written as JSON, such as NaN or infinity.

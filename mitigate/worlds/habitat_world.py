@@ -108,9 +108,8 @@ class HabitatWorld(World):
     def reset(self, episode: Episode) -> Observation:
         """Start an episode.
 
-        Raises:
-            FileNotFoundError: If the scene does not exist.
-            ValueError: If the start or a goal is not on the navmesh.
+        Raises FileNotFoundError if the scene does not exist, and ValueError if the start or a goal
+        is not on the navmesh.
         """
         self._load_scene(episode.scene_id)
         self.episode = episode
@@ -127,12 +126,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Take a low-level action.
-
-        Raises:
-            ValueError: If the action does not exist.
-            RuntimeError: If the episode is over.
-        """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
         if action == STOP:
@@ -148,11 +141,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
-
-        Raises:
-            RuntimeError: If the episode is over.
-        """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
         agent = self._sim.get_agent(0)
@@ -170,11 +158,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return the measures of the episode so far, with lengths and distances in metres.
-
-        ``success`` and ``spl`` are defined as in habitat-lab. ``ndtw`` compares the path with the
-        reference path; its threshold is ``Rule.path_metres``.
-        """
         values = measures.of_episode(
             self._rule,
             np.array(self.path),
@@ -196,7 +179,6 @@ class HabitatWorld(World):
         return float(path.geodesic_distance)
 
     def expert(self) -> NavmeshExpert:
-        """Return the oracle of the current episode."""
         return NavmeshExpert(self)
 
     def _observation(self) -> Observation:
@@ -303,12 +285,6 @@ class HabitatWorld(World):
     def _heading(self) -> float:
         rotation = self._sim.get_agent(0).get_state().rotation
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
-
-    def close(self) -> None:
-        """Free the simulator."""
-        if self._sim is not None:
-            self._sim.close()
-            self._sim, self._scene = None, ""
 
 
 class NavmeshExpert(Expert):

@@ -66,13 +66,11 @@ WHOLE = ""  # entry name used if the observation is a single frame and not a dic
 
 @dataclass(frozen=True)
 class NativeFormat:
-    """Convert frames back to the observation format of the environment, with which its policy was
-    trained.
+    """Convert frames back to the observation format of the environment.
 
     Attributes:
-        entries: Name of the observation entry for each sensor. Nested entries are written as
-            "camera.rgb".
-        dtypes: dtype of the entry for each sensor.
+        entries: Entry of each sensor. Nested entries are written as "camera.rgb".
+        dtypes: dtype of the entry of each sensor.
         unit: Metres per unit of depth.
     """
 
@@ -81,11 +79,7 @@ class NativeFormat:
     unit: float = 1.0
 
     def __call__(self, frames: Mapping[str, Any]) -> Any:
-        """Return the observation, which is an array or nested dictionaries of arrays.
-
-        Args:
-            frames: Arrays by sensor. They may have a batch axis in front.
-        """
+        """Return an array or nested dictionaries of arrays. ``frames`` may have a batch axis."""
         observation: dict[str, Any] = {}
         for name, entry in self.entries.items():
             array = np.asarray(frames[name])
@@ -234,8 +228,8 @@ class SeededWorld(World):
 
         Raises:
             RuntimeError: If the episode is over.
-            ValueError: If the action does not exist, the environment ended the episode without
-                reporting success, or the reward is NaN although the score depends on it.
+            ValueError: If the action does not exist, success is not reported at the end, or the
+                reward is NaN although the score depends on it.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")

@@ -128,19 +128,15 @@ class World:
         return {}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
-        """Render what a displaced camera would see at the current pose. Camera faults use this
-        method.
+        """Render what a displaced camera would see, in the format of an observation.
 
-        Returns:
-            The frames, in the format of an observation. If the world cannot render them, return
-            None. Camera faults then warp the frames of the observation instead. This requires the
-            ``hfov`` of the sensors.
+        If the world returns None, camera faults warp the frames of the observation instead. This
+        requires the ``hfov`` of the sensors.
         """
         return None
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context manager in which frames are cached, so that several conditions of an
-        episode share them.
+        """Return a context in which frames are cached, so that conditions of an episode share them.
 
         The cache does not affect results.
         """
@@ -197,9 +193,6 @@ class TrainingEpisodes(Protocol):
         ``share`` is the pair (index of this worker, number of workers). A world may use it to
         divide its scenes among workers.
         """
-
-
-OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
 
 
 def as_world(world: Any) -> World:
@@ -268,7 +261,8 @@ class _WorldView(World):
 
     def __init__(self, world: Any) -> None:
         self._world = world
-        take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
+        optional = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
+        take_over(self, world, ("reset", "step", "measures", *optional))
 
     def __getattr__(self, name: str) -> Any:
         """Read other attributes at each access, because they may change during an episode."""

@@ -47,14 +47,6 @@ class FreeSpace:
         table[nearest[self.free]] = self.index[self.free]
         self.nearest = table[nearest]
 
-    @property
-    def graph(self) -> csr_matrix:
-        """The graph of the free cells and their 8 neighbours, with edge weights in metres.
-
-        Its paths are 5 % longer on average than those of :meth:`shortest_length`.
-        """
-        return _graph_of(self)
-
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
         """Return the index of the free cell that is nearest to a plan position in metres."""
         return int(self.nearest[self._place(xy)])
@@ -75,11 +67,12 @@ class FreeSpace:
 
     def distances(self, targets: list[int]) -> np.ndarray:
         """Return the metres from every free cell to the nearest target cell, float32 [n]."""
-        return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
+        return dijkstra(_graph_of(self), indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
         """Return the cell centres [n, 2] from ``start`` to the nearest target of ``field``."""
-        path, graph = [start], self.graph
+        path = [start]
+        graph = _graph_of(self)
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
             row, cost = graph.indices[near], graph.data[near]
@@ -129,6 +122,10 @@ class FreeSpace:
 
 @lru_cache(maxsize=GRAPHS)
 def _graph_of(space: FreeSpace) -> csr_matrix:
+    """Return the graph of the free cells and their 8 neighbours, with edge weights in metres.
+
+    Its paths are 5 % longer on average than those of :meth:`FreeSpace.shortest_length`.
+    """
     rows, cols, data = [], [], []
     height, width = space.index.shape
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):

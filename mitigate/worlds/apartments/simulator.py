@@ -34,11 +34,9 @@ class Simulator:
         self.size = size
 
     def reset(self, episode: Episode) -> None:
-        """Place the agent at the start of an episode, or in the free cell that is nearest to the
-        start.
+        """Place the agent at the start of an episode, or in the nearest free cell.
 
-        Raises ValueError if the start or a goal is more than ``NEAR`` metres away from every free
-        cell.
+        Raises ValueError if the start or a goal is more than ``NEAR`` metres from every free cell.
         """
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
@@ -86,12 +84,7 @@ class Simulator:
         return renderer.render(*place, views=views, mount=mount)
 
     def step(self, action: int) -> None:
-        """Execute one low-level action.
-
-        Raises:
-            RuntimeError: If the episode is over.
-            ValueError: If the action does not exist.
-        """
+        """Execute one low-level action. Raise ValueError if it does not exist."""
         if action != STOP and action not in MOVES:
             raise ValueError(
                 f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
@@ -102,8 +95,7 @@ class Simulator:
     def move(self, metres: float, degrees: float) -> None:
         """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
-        Raises:
-            RuntimeError: If the episode is over.
+        Raises RuntimeError if the episode is over.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")

@@ -100,7 +100,6 @@ class ApartmentsWorld(World):
         return self.simulator.done
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode. Raises ValueError if the scene of the episode is not an apartment."""
         self.simulator.reset(episode)
         self._shortest = self._shortest_length(episode)
         return self._observation()
@@ -110,7 +109,6 @@ class ApartmentsWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
         self.simulator.move(metres, degrees)
         return self._observation()
 
@@ -187,7 +185,6 @@ class ApartmentsWorld(World):
     landmarks = staticmethod(landmarks)
 
     def draw(self, axes: Any) -> None:
-        """Draw the plan of the apartment on matplotlib axes, in metres."""
         draw_plan(axes, self.simulator.apartment)
 
     def _observation(self) -> Observation:
@@ -202,7 +199,6 @@ class ApartmentsWorld(World):
         return {name: rendered[i][views].copy() for i, name in enumerate((RGB, DEPTH))}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
-        """Render the frames that a displaced camera would see at the current pose."""
         key = (*self._pose(), mount)
         return self._copied(self._memory.recall(key, lambda: self._observe(mount)))
 

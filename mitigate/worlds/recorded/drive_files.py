@@ -27,13 +27,9 @@ INSTRUCTION = "instruction.txt"
 
 @dataclass(kw_only=True)
 class Frames(Source):
-    """A recorded drive whose frames are stored in separate files.
+    """A recorded drive with one file per camera and time step.
 
-    Attributes:
-        files: The frame files of each camera, one per time step.
-        unit: Metres per integer step of 16-bit depth.
-        unit_given: Whether ``unit`` comes from the user or the recording. If false, neither states
-            a unit, and ``unit`` holds the default value.
+    ``unit`` is metres per step of 16-bit depth. If ``unit_given`` is false, it is a default.
     """
 
     files: Mapping[str, Sequence[Path]]

@@ -298,7 +298,6 @@ class RecordedWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Return the next recorded observation, or the last one again when the episode ends."""
         if self.done:
             raise RuntimeError("The recording is over. Call reset() before step().")
         self.index += 1
@@ -306,7 +305,6 @@ class RecordedWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return an empty dict, because the driver and not the agent chose the path."""
         return {}
 
     def _observation(self) -> Observation:
@@ -354,15 +352,9 @@ class Step:
         """Choose the recorded times at which an agent receives an observation.
 
         The earliest time is always chosen. A later time is chosen if it is about one step or more
-        after the previously chosen time. If poses are known, the final time is also chosen. If the
-        final two chosen times then have nearly the same pose, only the final time is kept.
-
-        Args:
-            times: float64 [N], seconds.
-            poses: float64 [N, 3], or None if unknown.
-
-        Returns:
-            Indices of the chosen times, int [T].
+        after the previously chosen time. If ``poses`` (float64 [N, 3]) are known, the final time is
+        also chosen. If the final two chosen times then have nearly the same pose, only the final
+        time is kept.
         """
         chosen = [0]
         for index in range(1, len(times)):

@@ -230,11 +230,8 @@ def interpolate_poses(
 class Instants:
     """The time steps at which all cameras have a frame and the pose is known.
 
-    Attributes:
-        times: float64 [N], seconds.
-        poses: float64 [N, 3], or None if unknown.
-        frames: int [N] for each camera: the index of its frame at each time step.
-        dropped: Number of skipped time steps.
+    ``frames`` holds, for each camera, the index of its frame at each time step (int [N]), and
+    ``dropped`` is the number of skipped time steps.
     """
 
     times: np.ndarray

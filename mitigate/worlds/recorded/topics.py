@@ -35,16 +35,9 @@ COMPRESSED = ("/compressed", "/compressedDepth")
 
 @dataclass(frozen=True)
 class Topics:
-    """The names of the topics to read from a bag.
+    """The names of the topics to read from a bag; ``info`` are those with the CameraInfo.
 
     If a name is None, the only suitable topic is read. If it is "none", no topic is read.
-
-    Attributes:
-        rgb: Topic with images of the RGB camera.
-        depth: Topic with images of the depth camera.
-        pose: Topic with poses of the robot.
-        info: Topic with the CameraInfo of the RGB camera.
-        depth_info: Topic with the CameraInfo of the depth camera.
     """
 
     rgb: str | None = None
