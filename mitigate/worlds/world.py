@@ -344,7 +344,10 @@ class Corrupted(WorldWrapper):
         return Observation(clean.ready, corrupted, clean.frames, clean=clean)
 
     def _displaced(self, clean: Observation, key: Key) -> dict[str, Any] | None:
-        """Return the frames of a displaced camera, or None without one or if not rendered."""
+        """Return the observation as rendered with the camera fault.
+
+        Return None if there is no camera fault or if the world cannot render it.
+        """
         mount = mount_of(self.by, key) if isinstance(self.by, Corruption) else None
         frames = None if mount is None else self._inner.displaced(mount)
         return None if frames is None else {**clean.ready, **frames}

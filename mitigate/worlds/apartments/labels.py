@@ -45,14 +45,9 @@ def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndar
 def pose_labels(
     apartment: Apartment, xy: np.ndarray, heading: float, ids: np.ndarray, depth: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Return the labels "concepts", "seen" and "free" of ``ApartmentsWorld.truth``.
+    """Return the labels "concepts", "seen" and "free" of ``ApartmentsWorld.truth`` at a pose.
 
-    Args:
-        apartment: The apartment.
-        xy: Plan position [2] in metres.
-        heading: Heading in radians.
-        ids: Face ids of a panorama, int32 [12, S, S], or of a single camera, [1, S, S].
-        depth: Depth of the same views in metres, with a last axis of size 1.
+    ``ids`` (int32) and ``depth`` (metres) are the views of a panorama or of a single camera.
     """
     free = free_directions(apartment.space, xy, heading)
     width = ids.shape[2]

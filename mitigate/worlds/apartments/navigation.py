@@ -184,7 +184,7 @@ def _line_is_free(free, x, y, dx, dy):
             return False
         if i == last_i and j == last_j:
             return True
-        if abs(next_i - next_j) < _TOUCH:
+        if abs(next_i - next_j) < _TOUCH:  # the line may touch the corners of blocked cells
             i, j = i + step_i, j + step_j
             next_i, next_j = next_i + abs(1 / dy), next_j + abs(1 / dx)
         elif next_i < next_j:

@@ -148,9 +148,10 @@ class DrawnEpisodes:
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Return the indices of the furniture that marks the goal: all of a category in OGN.
+    """Return the indices of the furniture that marks the goal.
 
-    Raises ValueError if the info of the episode does not contain the goal.
+    It is one piece in VLN, and all pieces of the goal category in OGN. Raises ValueError if the
+    info of the episode does not contain the goal.
     """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))

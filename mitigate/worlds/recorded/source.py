@@ -164,14 +164,10 @@ class Source:
 
 
 def heading_along(quaternion: Sequence[float], axis: Sequence[float]) -> float:
-    """Return the heading of an agent in radians, in a frame whose z axis points up.
+    """Return the heading in radians of a ``quaternion`` (x, y, z, w) in a frame with z up.
 
-    Args:
-        quaternion: Rotation of the agent or its camera, as (x, y, z, w).
-        axis: Forward direction [3] before the rotation is applied.
-
-    Returns:
-        The heading, or NaN if the agent faces up or down or ``quaternion`` is not a rotation.
+    ``axis`` [3] is the forward direction before the rotation. The heading is NaN if the direction
+    is up or down, or if ``quaternion`` is not a rotation.
     """
     values = np.asarray(quaternion, np.float64)
     length = float(np.linalg.norm(values))

@@ -35,9 +35,10 @@ COMPRESSED = ("/compressed", "/compressedDepth")
 
 @dataclass(frozen=True)
 class Topics:
-    """The names of the topics to read from a bag; ``info`` are those with the CameraInfo.
+    """The names of the topics to read from a bag.
 
-    If a name is None, the only suitable topic is read. If it is "none", no topic is read.
+    ``info`` and ``depth_info`` hold the CameraInfo of the RGB and the depth camera. If a name is
+    None, the only suitable topic is read. If it is "none", no topic is read.
     """
 
     rgb: str | None = None
