@@ -148,10 +148,7 @@ def check_for_file(corruption: str) -> None:
 
 
 def _check_target(source: Path, out: Path) -> None:
-    """Raise ValueError if :func:`run` must not write to ``out``.
-
-    An existing file may be replaced only if :func:`run` wrote it and it has not changed since.
-    """
+    """Raise ValueError if ``out`` exists, unless :func:`run` wrote it and it is unchanged."""
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):
@@ -181,8 +178,8 @@ def _changed(
 ) -> Iterator[Episode]:
     """Yield the episodes with corrupted instructions, one at a time.
 
-    If ``every`` is true, unchanged instructions are also tokenized with ``words``. This is needed
-    if the vocabulary of ``words`` differs from the vocabulary of the file.
+    If ``every`` is true, unchanged instructions are also tokenized, because ``words`` is not the
+    vocabulary of the file.
     """
     for episode in episodes:
         counts.episodes += 1
@@ -211,9 +208,7 @@ def _changed(
 def _tokens(
     text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
 ) -> tuple[int, ...] | None:
-    """Return the tokens of ``text``, padded or cut to the old length. Return None if ``words`` is
-    None.
-    """
+    """Return the tokens of ``text``, padded or cut to the old length, or None without ``words``."""
     if words is None:
         counts["removed"] += old is not None
         return None

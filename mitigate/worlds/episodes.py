@@ -39,10 +39,7 @@ NEEDED = (
 
 
 class Record:
-    """A JSON object that was read from a file.
-
-    Its error messages contain the file and the position of the object in the file.
-    """
+    """A JSON object that was read from a file. Its error messages name the file and the place."""
 
     def __init__(self, raw: Any, path: Path | str, where: str) -> None:
         self.raw, self.path, self.where = raw, path, where
@@ -50,15 +47,11 @@ class Record:
             self.fail("is not a JSON object")
 
     def fail(self, problem: str) -> NoReturn:
-        """Raise ValueError with a message that contains the file, the position, ``problem`` and the
-        expected format.
-        """
+        """Raise ValueError with the file, the place, ``problem`` and the expected format."""
         raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
-        """Return the value of ``key``, which must have one of the types ``kinds``. A ``default`` of
-        ``...`` means that the key is required.
-        """
+        """Return a value of one of the types ``kinds``. It is required if there is no default."""
         value = self.raw.get(key)
         if value is None:
             if default is ...:
@@ -69,22 +62,18 @@ class Record:
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return the value of ``key``, which must be a number >= 0. Return None if the key is
-        absent.
-        """
+        """Return a number >= 0, or None if the key is absent."""
         value = self.get(key, (int, float), None)
         if value is not None and not (_finite(value) and value >= 0):
             self.fail(f"has an invalid {key!r}: it must be metres >= 0, got {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
-        """Return the value of ``key``, which must be a list of ``size`` finite numbers."""
+        """Return a list of ``size`` finite numbers."""
         return self._vector(key, self.get(key, list), size)
 
     def rotation(self, key: str) -> Vector:
-        """Return the value of ``key``, which must be a unit quaternion (x, y, z, w) about the
-        vertical y axis.
-        """
+        """Return a unit quaternion (x, y, z, w) about the vertical y axis."""
         quaternion = self.vector(key, 4)
         x, _, z, _ = quaternion
         length_error = abs(math.hypot(*quaternion) - 1)
@@ -96,16 +85,16 @@ class Record:
         return quaternion
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
-        """Return the value of ``key``, which must be a non-empty list of vectors."""
+        """Return a non-empty list of vectors."""
         return tuple(self._vector(key, value, size) for value in self._items(key))
 
     def records(self, key: str) -> list[Record]:
-        """Return the value of ``key``, which must be a non-empty list of objects."""
+        """Return a non-empty list of objects."""
         items = enumerate(self._items(key))
         return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
-        """Return all entries except those whose keys are in ``known``."""
+        """Return all entries except those of the keys ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
 
     def _items(self, key: str) -> list[Any]:
@@ -123,9 +112,7 @@ class Record:
 
 
 def _finite(value: Any) -> bool:
-    """Return whether a value is a number whose absolute value is at most ``MAX_METRES``. NaN is
-    rejected.
-    """
+    """Return whether a value is a number of at most ``MAX_METRES``. NaN is rejected."""
     return isinstance(value, (int, float)) and abs(value) <= MAX_METRES
 
 
@@ -147,9 +134,7 @@ _SEEDED = {"scene_id": "", "start_position": [0, 0, 0], "start_rotation": [0, 0,
 
 
 def from_vlnce(position: Vector) -> np.ndarray:
-    """Convert a VLN-CE position to a plan position: float64 [2] in metres, in the frame of
-    poses.
-    """
+    """Convert a VLN-CE position to a plan position: float64 [2] in metres."""
     return np.array([position[0], -position[2]], np.float64)
 
 
@@ -225,9 +210,7 @@ class Episode:
 
 
 def placeless_episode(name: str, text: str, **info: Any) -> Episode:
-    """Return an episode without positions, for worlds that read only its id, its instruction and
-    ``info``.
-    """
+    """Return an episode without positions, for worlds that read only its id, text and info."""
     return Episode(
         episode_id=name,
         trajectory_id=name,
@@ -252,13 +235,9 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
         hidden_goals: Whether to accept episodes without goals and without a reference path, as in
             test splits.
 
-    Yields:
-        The episodes.
-
     Raises:
         FileNotFoundError: If the file does not exist.
-        ValueError: If an episode is invalid. The message contains the file, the episode and the
-            key.
+        ValueError: If an episode is invalid. The message names the file, the episode and the key.
     """
     has_episodes = False
     for key, items in _members(path):
@@ -281,35 +260,20 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Return every n-th item of a list or range, starting at the index of a worker. This divides
-    items such as scenes among n workers.
-
-    Args:
-        items: The list or range.
-        piece: Index of the worker.
-        pieces: Number of workers, n.
-    """
+    """Return the share of worker ``piece`` of ``pieces``: every ``pieces``-th item."""
     return items[piece % len(items) :: pieces]
 
 
 def is_seed(value: Any) -> bool:
-    """Return whether ``value`` is a valid seed of an environment, that is, a non-negative integer
-    below 2**31.
-    """
+    """Return whether ``value`` is an integer from 0 to 2**31 - 1."""
     return type(value) is int and 0 <= value < 1 << 31
 
 
 class ListedEpisodes:
-    """Source of training episodes (``worlds/world.py``) from a file.
+    """Source of training episodes (``worlds/world.py``) from the episode file ``path``.
 
-    Each of n workers samples only from every n-th episode of the file, so different parts of a
-    batch use different episodes.
-
-    Args:
-        path: An episode file.
-
-    Raises:
-        ValueError: If the file contains no episode, or if :func:`read_episodes` raises ValueError.
+    Each of n workers samples only from every n-th episode, so different parts of a batch use
+    different episodes. Raises ValueError if the file is invalid or contains no episode.
     """
 
     def __init__(self, path: Path | str) -> None:
@@ -319,12 +283,7 @@ class ListedEpisodes:
             raise ValueError(f"{path} must contain at least one episode to train on.")
 
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
-        """Sample an episode. The result depends only on the state of ``rng`` and on ``share``.
-
-        Args:
-            rng: Random generator.
-            share: The pair (index of this worker, number of workers).
-        """
+        """Sample an episode; see ``TrainingEpisodes`` (``worlds/world.py``)."""
         episodes = share_of(self._episodes, *share)
         return episodes[int(rng.integers(len(episodes)))]
 
@@ -334,16 +293,12 @@ class ListedEpisodes:
 
 
 def read_extras(path: Path | str) -> dict[str, Any]:
-    """Return the keys of a file and their values, except the episodes. For example, files of R2R-CE
-    contain ``instruction_vocab``.
-    """
+    """Return all entries of a file except the episodes, such as ``instruction_vocab``."""
     return {key: value for key, value in _members(path) if key != "episodes"}
 
 
 def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
-    """Yield the keys and values of an episode file. Raise an error with advice if the file belongs
-    to the discrete R2R task.
-    """
+    """Yield the keys and values of an episode file. Reject files of the discrete R2R task."""
     try:
         yield from json_members(path, "episodes")
     except JsonListError as error:
@@ -356,16 +311,12 @@ def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
 def write_episodes(
     path: Path | str, episodes: Iterable[Episode], extras: Mapping[str, Any] | None = None
 ) -> Path:
-    """Write a VLN-CE file. If writing fails, the old file is kept.
+    """Write a VLN-CE file, and return its path. If writing fails, the old file is kept.
 
     Args:
         path: Path of the file. The file is gzipped if the name ends in ``.gz``.
         episodes: The episodes.
-        extras: Other top-level keys of the file and their values, as returned by
-            :func:`read_extras`.
-
-    Returns:
-        The path.
+        extras: Other top-level keys and their values, as returned by :func:`read_extras`.
 
     Raises:
         ValueError: If a value cannot be written as JSON, such as NaN or infinity.
@@ -474,10 +425,7 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id with the JSON type that it had in the file.
-
-    If the id of the episode was changed after the file was read, return the new id as a string.
-    """
+    """Return an id with the JSON type that it had in the file, or as a string if it is new."""
     text = str(vars(episode)[key])
     original = episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text

@@ -39,16 +39,14 @@ class NamedDepthSensorConfig(HabitatSimDepthSensorConfig):
 
 
 def panorama(rgb: int = 224, depth: int = 256, height: float = 1.25) -> dict[str, Any]:
-    """Return the configs of 12 RGB and 12 depth cameras by name. Successive cameras are 30 degrees
-    further to the left.
+    """Return the configs of 12 RGB and 12 depth cameras by name.
+
+    Successive cameras are 30 degrees further to the left.
 
     Args:
         rgb: Height and width of the RGB cameras in pixels.
         depth: Height and width of the depth cameras in pixels.
         height: Height of the cameras above the floor in metres.
-
-    Returns:
-        Sensor configs by name.
     """
     sensors = {}
     for kind, name, size in (

@@ -28,8 +28,9 @@ def corrupt_habitat_tensors(
     normalised: bool = True,
     backend: str | None = None,
 ) -> dict[str, Tensor]:
-    """Corrupt the cameras of a batch of observations. Each row of the result equals
-    ``corrupt_habitat`` applied to that row.
+    """Corrupt the cameras of a batch of observations.
+
+    Each row of the result equals ``corrupt_habitat`` applied to that row.
 
     Args:
         observations: entries ``rgb*`` are uint8 [B, H, W, 3], and entries ``depth*`` are float32
@@ -37,12 +38,11 @@ def corrupt_habitat_tensors(
             the same size.
         corruptions: Corruption of each row.
         keys: Key of the random numbers of each row, which is Key(seed, episode id, step).
-        sensor: Depth range of the camera: 0 to 10 m for R2R-CE (the default), ``DepthSensor(0.5,
-            5.0)`` for RxR-CE.
+        sensor: As in ``corrupt_habitat``.
         headings: Heading of the agent in each row, in radians, counter-clockwise. Unknown headings
             are None.
-        turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
-        normalised: Whether depth is normalised to [0, 1]. If false, depth is in metres.
+        turn: As in ``corrupt_habitat``.
+        normalised: As in ``corrupt_habitat``.
         backend: As in ``corrupt_tensors``.
 
     Returns:
@@ -50,9 +50,8 @@ def corrupt_habitat_tensors(
         corruption changes are not copied.
 
     Raises:
-        ValueError: If no camera has the modality of a corruption. If the yaw of a camera is
-            not 0, 30, ..., or 330 degrees, or if cameras of one modality have the same yaw or
-            different sizes. Errors of ``corrupt_observations`` are passed on.
+        ValueError: If a camera is missing or invalid, as in ``corrupt_habitat``. Errors of
+            ``corrupt_observations`` are passed on.
     """
     check_turn(turn)
     parts = [part for corruption in corruptions for part in corruption.parts]
@@ -80,11 +79,7 @@ def corrupt_habitat_tensors(
 
 
 def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
-    """Return the frames as one tensor [B, V, H, W, C].
-
-    The index on the second axis is the view number. V is the largest view number plus 1. Views
-    without a camera are filled with zeros.
-    """
+    """Return the frames as one tensor [B, V, H, W, C] in the order of views, missing views as 0."""
     first = observations[next(iter(views))]
     for entry in views:
         frames = observations[entry]

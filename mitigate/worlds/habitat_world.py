@@ -108,9 +108,8 @@ class HabitatWorld(World):
     def reset(self, episode: Episode) -> Observation:
         """Start an episode.
 
-        Raises:
-            FileNotFoundError: If the scene does not exist.
-            ValueError: If the start or a goal is not on the navmesh.
+        Raises FileNotFoundError if the scene does not exist, and ValueError if the start or a goal
+        is not on the navmesh.
         """
         self._load_scene(episode.scene_id)
         self.episode = episode
@@ -127,12 +126,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
-        """Take a low-level action.
-
-        Raises:
-            ValueError: If the action does not exist.
-            RuntimeError: If the episode is over.
-        """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
         if action == STOP:
@@ -148,11 +141,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
-
-        Raises:
-            RuntimeError: If the episode is over.
-        """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
         agent = self._sim.get_agent(0)
@@ -170,11 +158,6 @@ class HabitatWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
-        """Return the measures of the episode so far, with lengths and distances in metres.
-
-        ``success`` and ``spl`` are defined as in habitat-lab. ``ndtw`` compares the path with the
-        reference path; its threshold is ``Rule.path_metres``.
-        """
         values = measures.of_episode(
             self._rule,
             np.array(self.path),
@@ -186,9 +169,7 @@ class HabitatWorld(World):
         return values | {"collisions": self.collisions, "steps": self.steps}
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
-        """Return the geodesic distance in metres from a position [3] to the nearest goal. The
-        default position is the agent's.
-        """
+        """Return the geodesic metres from a position [3] (default: the agent's) to a goal."""
         import habitat_sim
 
         path = habitat_sim.MultiGoalShortestPath()
@@ -198,7 +179,6 @@ class HabitatWorld(World):
         return float(path.geodesic_distance)
 
     def expert(self) -> NavmeshExpert:
-        """Return the oracle of the current episode."""
         return NavmeshExpert(self)
 
     def _observation(self) -> Observation:
@@ -206,9 +186,7 @@ class HabitatWorld(World):
         return Observation({POSE: pose}, self._frames, (RGB, DEPTH))
 
     def _frames(self) -> dict[str, np.ndarray]:
-        """Render the RGB and depth frames that ``sensors`` describes. Depth is clipped to
-        ``Z_MAX``.
-        """
+        """Render the frames that ``sensors`` describes. Depth is clipped to ``Z_MAX``."""
         images = self._sim.get_sensor_observations()
         rgb = np.stack([images[f"{RGB}{k}"][..., :3] for k in range(self.views)])
         depth = np.stack([images[f"{DEPTH}{k}"] for k in range(self.views)])[..., None]
@@ -240,9 +218,7 @@ class HabitatWorld(World):
         self._scene = scene
 
     def _settings(self, file: Path) -> Any:
-        """Return a habitat-sim configuration with the cameras, the actions of VLN-CE, and sliding
-        along walls.
-        """
+        """Return a configuration with the cameras and actions of VLN-CE, and sliding."""
         habitat_sim = _habitat_sim()
         backend = habitat_sim.SimulatorConfiguration()
         backend.scene_id = str(file)
@@ -265,9 +241,7 @@ class HabitatWorld(World):
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
-        """Return the camera of a view. Successive views are 30 degrees further to the right, and
-        Habitat's yaw is positive to the left.
-        """
+        """Return the camera of a view. Habitat's yaw is positive to the left."""
         habitat_sim = _habitat_sim()
         types = habitat_sim.SensorType
         spec = habitat_sim.CameraSensorSpec()
@@ -312,35 +286,22 @@ class HabitatWorld(World):
         rotation = self._sim.get_agent(0).get_state().rotation
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
 
-    def close(self) -> None:
-        """Free the simulator."""
-        if self._sim is not None:
-            self._sim.close()
-            self._sim, self._scene = None, ""
-
 
 class NavmeshExpert(Expert):
-    """Oracle that uses geodesic distances on the navmesh.
-
-    It turns to the heading in which the next step forward reduces the distance most.
-    """
+    """Oracle that turns to the heading in which the next step reduces the distance most."""
 
     def __init__(self, world: HabitatWorld) -> None:
         self.world = world
 
     def distance(self, xy: np.ndarray) -> float:
-        """Return the geodesic distance in metres to the goal from a plan position [2] on the
-        agent's floor.
-        """
+        """Return the geodesic metres to the goal from a plan position [2] on this floor."""
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 
     def counts(self, metres: float) -> bool:
-        """Return whether STOP at this distance from the goal is a success."""
         return self.world._rule.met(metres, True)
 
     def action(self) -> int:
-        """Return the low-level action that brings the agent closest to the goal."""
         world = self.world
         if world.distance_to_goal() < world._rule.stop_within:
             return STOP
@@ -355,9 +316,7 @@ class NavmeshExpert(Expert):
 
 
 def _habitat_sim() -> Any:
-    """Import habitat-sim with its log disabled, because it warns about missing labels in every
-    scene.
-    """
+    """Import habitat-sim without its log, which warns about missing labels in every scene."""
     for variable in ("HABITAT_SIM_LOG", "MAGNUM_LOG"):
         os.environ.setdefault(variable, "quiet")
     try:
@@ -370,9 +329,7 @@ def _habitat_sim() -> Any:
 
 
 def _navmesh_settings(navmesh: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
-    """Return navmesh settings by name. If they are read from a file, it must have the format that
-    ``mitigate export-scene`` writes.
-    """
+    """Return navmesh settings by name, from a mapping or a file of ``mitigate export-scene``."""
     if navmesh is None:
         navmesh = str(scenes.parent / "navmesh.json")
         if not Path(navmesh).is_file():

@@ -53,12 +53,9 @@ class Rule:
         return SUCCESS_DISTANCE if self.view_points else self.metres
 
     def met(self, distance: float, stopped: bool) -> bool:
-        """Return whether an episode is a success if it ends ``distance`` metres away from the goal.
+        """Return whether an episode that ends ``distance`` metres from the goal succeeds.
 
-        An infinite distance means that the goal is unreachable, and counts as a failure.
-
-        Raises:
-            ValueError: If the distance is NaN.
+        An infinite distance means that the goal is unreachable. Raises ValueError for NaN.
         """
         if math.isnan(distance):
             raise ValueError(
@@ -113,9 +110,8 @@ def spl(succeeded: bool, geodesic_distance: float, length: float) -> float:
 def dtw(path: ArrayLike, reference: ArrayLike) -> float:
     """Return the dynamic time warping cost of the two paths, in metres.
 
-    The value is exact. It is computed by dynamic programming over all alignments of the paths, and
-    vectorised along the anti-diagonals of the cost matrix. VLN-CE uses ``fastdtw`` instead, whose
-    approximate cost is never smaller than the exact value.
+    The exact value is computed along the anti-diagonals of the cost matrix. VLN-CE uses
+    ``fastdtw``, whose approximate cost is never smaller.
     """
     a = _points(path, "path")
     b = _points(reference, "reference path")
@@ -154,12 +150,12 @@ def of_episode(
 ) -> dict[str, float]:
     """Return the measures of an episode: success, SPL, nDTW, and lengths in metres.
 
-    Infinite distances are left out. nDTW is left out if there is no reference path.
+    Infinite distances are left out, and so is nDTW if ``reference`` is empty.
 
     Args:
         rule: The success rule.
         path: The agent's path.
-        reference: The reference path, which may be empty.
+        reference: The reference path.
         start: Distance in metres from start to goal.
         left: Distance in metres from the agent to the goal.
         stopped: Whether the agent took STOP.

@@ -12,7 +12,7 @@ The effect of a fault depends on the kind of action:
 
 from __future__ import annotations
 
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import numpy as np
 
@@ -26,14 +26,6 @@ from mitigate.worlds.world import MOVES, World, WorldWrapper
 
 # drift bias at severity 1, as a fraction of half the range of a Box element (heuristic)
 BIAS = 0.25
-
-
-@runtime_checkable
-class Movable(Protocol):
-    """A world in which a step can move the agent by any distance and angle."""
-
-    def move(self, metres: float, degrees: float) -> Observation:
-        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
 
 
 class FaultyMotion(WorldWrapper):
@@ -53,7 +45,7 @@ class FaultyMotion(WorldWrapper):
         super().__init__(world)
         self.fault = fault
         self.seed = seed
-        self._navigates = isinstance(_innermost(world), Movable)
+        self._navigates = hasattr(_innermost(world), "move")
         space = self.action_space
         self._box = space if isinstance(space, Box) else None
         if not (self._navigates or self._box or fault.name == "repeated_action"):
@@ -86,7 +78,7 @@ class FaultyMotion(WorldWrapper):
             return self._inner.step(_changed(action, movement, self._box))
         if action not in MOVES:  # the world raises the error for an invalid action
             return self._inner.step(action)
-        robot: Any = self._inner  # an instance of Movable, or a wrapper of such a world
+        robot: Any = self._inner  # a world that defines move, or a wrapper of such a world
         metres, degrees = MOVES[action]
         if movement.dropped:
             return robot.move(0.0, 0.0)

@@ -66,13 +66,11 @@ WHOLE = ""  # entry name used if the observation is a single frame and not a dic
 
 @dataclass(frozen=True)
 class NativeFormat:
-    """Convert frames back to the observation format of the environment, with which its policy was
-    trained.
+    """Convert frames back to the observation format of the environment.
 
     Attributes:
-        entries: Name of the observation entry for each sensor. Nested entries are written as
-            "camera.rgb".
-        dtypes: dtype of the entry for each sensor.
+        entries: Entry of each sensor. Nested entries are written as "camera.rgb".
+        dtypes: dtype of the entry of each sensor.
         unit: Metres per unit of depth.
     """
 
@@ -81,11 +79,7 @@ class NativeFormat:
     unit: float = 1.0
 
     def __call__(self, frames: Mapping[str, Any]) -> Any:
-        """Return the observation, which is an array or nested dictionaries of arrays.
-
-        Args:
-            frames: Arrays by sensor. They may have a batch axis in front.
-        """
+        """Return an array or nested dictionaries of arrays. ``frames`` may have a batch axis."""
         observation: dict[str, Any] = {}
         for name, entry in self.entries.items():
             array = np.asarray(frames[name])
@@ -234,8 +228,8 @@ class SeededWorld(World):
 
         Raises:
             RuntimeError: If the episode is over.
-            ValueError: If the action does not exist, the environment ended the episode without
-                reporting success, or the reward is NaN although the score depends on it.
+            ValueError: If the action does not exist, success is not reported at the end, or the
+                reward is NaN although the score depends on it.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
@@ -263,12 +257,7 @@ class SeededWorld(World):
         return self._observation(parts)
 
     def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
-        """Return the action space of ``env``, and the shape, dtype and maximum of each entry of its
-        observations.
-
-        Raises:
-            ValueError: If the actions are not supported (``core/spaces.py``).
-        """
+        """Return the action space, and the shape, dtype and maximum of each observation entry."""
         raise NotImplementedError(f"{type(self).__name__} defines no _spaces(env)")
 
     def _reset_env(self, seed: int) -> Mapping[str, Any]:
@@ -276,11 +265,7 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _reset_env()")
 
     def _step_env(self, action: Any) -> tuple[Mapping[str, Any], float, bool]:
-        """Step the environment. Return its observation, the reward, and whether the episode is
-        over.
-
-        A subclass also sets ``terminated``.
-        """
+        """Step, set ``terminated``, and return the observation, the reward and the end."""
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
@@ -326,9 +311,7 @@ class SeededWorld(World):
 
     @contextmanager
     def _calling(self, what: str) -> Iterator[None]:
-        """Convert any error in the user's code inside the context to a ValueError that names the
-        episode.
-        """
+        """Convert errors in the user's code to a ValueError that names the episode."""
         try:
             yield
         except MemoryError:  # core/errors.py handles this error
@@ -342,9 +325,7 @@ class SeededWorld(World):
             ) from error
 
     def _observation(self, values: Mapping[str, Any]) -> Observation:
-        """Return an observation with copied arrays, because an environment may reuse its
-        buffers.
-        """
+        """Return an observation with copied arrays, because environments reuse buffers."""
         absent = [entry for entry in self.entries.values() if entry not in values]
         if absent:
             raise ValueError(
@@ -366,9 +347,7 @@ class SeededWorld(World):
         return Observation(pose, lambda: frames, tuple(frames))
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
-        """Convert depth to metres as float32. The first frame of an episode is used to check the
-        unit.
-        """
+        """Convert depth to float32 metres. The first frame of an episode checks the unit."""
         metres = depth.astype(np.float32) * np.float32(self.unit)
         metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
         if self._steps == 0:
@@ -382,11 +361,7 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _as_bool(value: Any, source: str, episode: str) -> bool:
-    """Return whether a value, or at least one of its elements, is true. None counts as false.
-
-    Raises:
-        ValueError: If an element is something other than a boolean, 0 or 1.
-    """
+    """Return whether an element of ``value`` is true. Each must be a boolean, 0, 1 or None."""
     try:
         parts = np.asarray(value).ravel().tolist()
         valid = all(part is None or part in (0, 1) for part in parts)
@@ -404,9 +379,7 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
 
 
 def _check_success(success: Any, rule: str | None) -> None:
-    """Raise ValueError if ``success`` is invalid, or if it is a function but ``rule`` is not
-    set.
-    """
+    """Raise ValueError if ``success`` is invalid, or is a function without ``rule``."""
     if callable(success) and not rule:
         raise ValueError(
             'A success function needs rule=, the rule in words, such as rule="return > 0".'

@@ -114,9 +114,7 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return the episode with this number, and its unique name. Both depend only on ``number``
-        and on the list of episodes or the seed.
-        """
+        """Return the episode of this number, and a name that is unique to this run."""
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode, repetition = self.episodes.draw(rng, (0, 1)), number
@@ -192,12 +190,7 @@ class EnvWorld(SeededWorld):
 
 
 def _space_of(spec: Any) -> ActionSpace:
-    """Return the action space that corresponds to a torchrl spec.
-
-    Raises:
-        ValueError: If the spec is not Categorical, OneHot, MultiCategorical, or a bounded or
-            unbounded array.
-    """
+    """Return the action space of a torchrl spec. Raise ValueError if it is not supported."""
     kind = type(spec).__name__
     if kind == "Categorical" and spec.shape.numel() == 1:
         return Discrete(int(spec.space.n))
@@ -241,11 +234,7 @@ def _spec_of(sensor: Sensor) -> Any:
 
 
 def _describe(spec: Any) -> tuple[tuple[int, ...], str, float]:
-    """Return the shape, dtype and maximum of an entry. The maximum is infinity if the entry is
-    unbounded.
-
-    torchrl itself uses the largest number of the dtype as the maximum of an unbounded entry.
-    """
+    """Return the shape, dtype and maximum of an entry. The maximum of an unbounded entry is inf."""
     dtype = str(spec.dtype).removeprefix("torch.")
     high = float(spec.space.high.max()) if isinstance(spec.space, ContinuousBox) else math.inf
     unbounded = dtype.startswith("float") and high >= torch.finfo(spec.dtype).max / 2

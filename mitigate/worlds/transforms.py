@@ -299,9 +299,7 @@ class EpisodeCounter(Transform):
 def _reset_mask(
     transform: Transform, tensordict: TensorDictBase | None, reset: TensorDictBase
 ) -> torch.Tensor:
-    """Return a bool mask [rows], on the CPU, of the rows of the flattened batch that are being
-    reset.
-    """
+    """Return a bool mask [rows], on the CPU, of the batch rows that are being reset."""
     parent = transform.parent
     name = "_reset" if parent is None else parent.reset_keys[0]
     mask = None if tensordict is None else tensordict.get(name, None)

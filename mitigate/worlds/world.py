@@ -72,7 +72,8 @@ class World:
     :func:`as_world` adds the missing defaults.
 
     A class may define ``beside()``, which returns a second world of the same kind. Several episodes
-    can then run at the same time.
+    can then run at the same time. It may define ``move(metres, degrees)``, which moves forward and
+    then turns to the left, as one step. Motion faults of robots with discrete actions use it.
 
     Attributes:
         sensors: Descriptions of the entries of an observation. Frames that are to be corrupted must
@@ -127,19 +128,15 @@ class World:
         return {}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
-        """Render what a displaced camera would see at the current pose. Camera faults use this
-        method.
+        """Render what a displaced camera would see, in the format of an observation.
 
-        Returns:
-            The frames, in the format of an observation. If the world cannot render them, return
-            None. Camera faults then warp the frames of the observation instead. This requires the
-            ``hfov`` of the sensors.
+        If the world returns None, camera faults warp the frames of the observation instead. This
+        requires the ``hfov`` of the sensors.
         """
         return None
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context manager in which frames are cached, so that several conditions of an
-        episode share them.
+        """Return a context in which frames are cached, so that conditions of an episode share them.
 
         The cache does not affect results.
         """
@@ -193,22 +190,13 @@ class TrainingEpisodes(Protocol):
     def draw(self, rng: np.random.Generator, share: tuple[int, int]) -> Episode:
         """Sample an episode. The result depends only on the state of ``rng`` and on ``share``.
 
-        Args:
-            rng: Random generator.
-            share: The pair (index of this worker, number of workers). A world may use it to divide
-                its scenes among workers.
+        ``share`` is the pair (index of this worker, number of workers). A world may use it to
+        divide its scenes among workers.
         """
 
 
-OPTIONAL = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
-
-
 def as_world(world: Any) -> World:
-    """Return ``world`` as a :class:`World`.
-
-    An object of another class is wrapped, which adds the missing defaults. The object itself is not
-    changed.
-    """
+    """Return ``world``, or a view of it with the missing defaults of :class:`World`."""
     return world if isinstance(world, World) else _WorldView(world)
 
 
@@ -273,12 +261,11 @@ class _WorldView(World):
 
     def __init__(self, world: Any) -> None:
         self._world = world
-        take_over(self, world, ("reset", "step", "measures", *OPTIONAL))
+        optional = ("expert", "truth", "displaced", "remembering", "draw", "action_space", "native")
+        take_over(self, world, ("reset", "step", "measures", *optional))
 
     def __getattr__(self, name: str) -> Any:
-        """Read other attributes from the object at each access, because they may change during an
-        episode.
-        """
+        """Read other attributes at each access, because they may change during an episode."""
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self._world, name)
@@ -381,11 +368,7 @@ def depth_sensor(sensors: Mapping[str, Sensor]) -> DepthSensor:
 
 
 def expert_of(world: World) -> Expert:
-    """Return the expert of a world for the current episode.
-
-    Raises:
-        ValueError: If the world has no expert.
-    """
+    """Return the expert of a world for the current episode. Raise ValueError if it has none."""
     expert = as_world(world).expert()
     if expert is None:
         inner = world.world if isinstance(world, WorldWrapper) else world
@@ -397,13 +380,9 @@ def expert_of(world: World) -> Expert:
 
 
 def greedy_action(heading: float, distance_after: Callable[[float], float]) -> int:
-    """Find the heading in which a step forward ends nearest to the goal. Return FORWARD if the
-    agent has this heading, and otherwise the turn towards it.
+    """Return the action towards the heading in which a step forward ends nearest to the goal.
 
-    Args:
-        heading: Heading of the agent in radians.
-        distance_after: Function that takes a heading and returns the distance to the goal after a
-            step in that direction.
+    ``distance_after`` maps a heading in radians to the distance to the goal after that step.
     """
     turns = sorted(range(-12, 13), key=abs)
     headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
@@ -419,15 +398,9 @@ class _ExpertView(Expert):
 
 
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
-    """Raise ValueError if depth values are too large to be in metres.
+    """Raise ValueError if the median of ``depth`` is above ``MAX_MEDIAN_DEPTH`` metres.
 
-    Args:
-        depth: Depth as float32 of any shape, where 0 means missing.
-        name: Name of the depth data in the error message.
-        fix: Last part of the error message, which contains advice for the user.
-
-    Raises:
-        ValueError: If the median depth is above ``MAX_MEDIAN_DEPTH``.
+    Values of 0 are missing. ``name`` and ``fix`` are parts of the message: the data, and advice.
     """
     readings = depth[depth > 0]
     median = float(np.median(readings)) if len(readings) else 0.0

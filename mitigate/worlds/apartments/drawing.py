@@ -26,25 +26,27 @@ NAME_WIDTH = 1.6  # approximate width of a room's name in metres
 
 def draw_plan(axes: Any, apartment: Apartment) -> None:
     """Draw rooms, doorways and furniture from above on matplotlib axes, in metres."""
+    centred = {"ha": "center", "va": "center"}
     for room in apartment.rooms:
-        _draw_room(axes, room, apartment.furniture)
+        _draw_box(axes, room.rect, fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
+        place = _free_place(room.rect, apartment.furniture)
+        axes.text(*place, room.kind, fontsize=10, color="#333333", zorder=4, **centred)
     for door in apartment.doors:
         _draw_box(axes, door.area(0.07, DOOR / 2), fc="white", ec="none", zorder=2)
     paint = palette(apartment.split)
+    label_box = {"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4}
     for piece in apartment.furniture:
         colour = paint.colours[piece.colour].mean(0) if piece.colour else (0.62, 0.62, 0.64)
-        _draw_piece(axes, piece, colour)
+        alpha = 0.9 if CATALOGUE[piece.category].solid else 0.45
+        x0, y0, x1, y1 = piece.rect
+        rect = (x0, y0, x1, max(y1, y0 + 0.05))
+        _draw_box(axes, rect, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
+        axes.text(*piece.centre, piece.category, fontsize=6, zorder=5, bbox=label_box, **centred)
     width, depth = apartment.extent
     axes.set_xlim(-0.2, width + 0.2)
     axes.set_ylim(-0.2, depth + 0.2)
     axes.set_aspect("equal")
     axes.axis("off")
-
-
-def _draw_room(axes: Any, room: Any, furniture: Sequence[Any]) -> None:
-    _draw_box(axes, room.rect, fc=_ROOMS[room.kind], ec="#333333", lw=2.5)
-    style = {"ha": "center", "va": "center", "fontsize": 10, "color": "#333333", "zorder": 4}
-    axes.text(*_free_place(room.rect, furniture), room.kind, **style)
 
 
 def _free_place(rect: Rect, furniture: Sequence[Any]) -> tuple[float, float]:
@@ -64,16 +66,6 @@ def _gap(place: tuple[float, float], rect: Rect) -> float:
     across = max(x0 - place[0], place[0] - x1, 0.0)
     along = max(y0 - place[1], place[1] - y1, 0.0)
     return max(across - NAME_WIDTH / 2, 0.0) + along
-
-
-def _draw_piece(axes: Any, piece: Any, colour: Any) -> None:
-    x0, y0, x1, y1 = piece.rect
-    alpha = 0.9 if CATALOGUE[piece.category].solid else 0.45
-    rect = (x0, y0, x1, max(y1, y0 + 0.05))
-    _draw_box(axes, rect, fc=colour, ec="#222222", lw=0.7, alpha=alpha, zorder=3)
-    box = {"fc": "white", "ec": "none", "alpha": 0.6, "pad": 0.4}
-    style = {"ha": "center", "va": "center", "fontsize": 6, "zorder": 5, "bbox": box}
-    axes.text(*piece.centre, piece.category, **style)
 
 
 def _draw_box(axes: Any, rect: Rect, **style: Any) -> None:

@@ -82,9 +82,7 @@ def export(out: Path, split: str, scenes: int | None, tasks: Sequence[str]) -> l
 
 
 def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
-    """Return the episodes of the first ``scenes`` apartments. Validation episodes are read from the
-    shipped lists, and training episodes are generated.
-    """
+    """Return the episodes of the first ``scenes`` apartments of a split."""
     if split == "train":
         return list(fixed_episodes(split, task, PER_APARTMENT * (scenes or TRAIN)))
     episodes = load_episodes(split, task)
@@ -93,9 +91,7 @@ def _episodes(split: str, task: str, scenes: int | None) -> list[Episode]:
 
 
 def write_vln(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes in the format of R2R-CE. The file also contains the vocabulary that defines
-    the tokens.
-    """
+    """Write episodes in the format of R2R-CE, with the vocabulary that defines the tokens."""
     words = sorted({w for e in episodes for w in _words(e.instruction.text)})
     vocabulary = [PAD, UNKNOWN, *words]
     numbers = {word: number for number, word in enumerate(vocabulary)}
@@ -129,9 +125,7 @@ def _words(text: str) -> list[str]:
 
 
 def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes in the ObjectNav format of HM3D: one file per scene, and an index file without
-    episodes.
-    """
+    """Write episodes in the ObjectNav format of HM3D: one file per scene, and an index."""
     ids = {category: number for number, category in enumerate(CATEGORIES)}
     category_ids = {
         "category_to_task_category_id": ids,
@@ -165,9 +159,7 @@ def _objectnav(episode: Episode) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """Return all objects of a category. The view points of an object are the free cells next to
-    it.
-    """
+    """Return all objects of a category. Their view points are the free cells next to them."""
     apartment = apartment_of(episode.scene_id)
     goals = []
     for thing in landmarks(episode):
@@ -221,9 +213,7 @@ _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)
 
 
 class _Buffer:
-    """Collect the binary data of a glTF file, aligned to 4 bytes, and its buffer views and
-    accessors.
-    """
+    """The binary data of a glTF file, aligned to 4 bytes, with its views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()
@@ -261,7 +251,7 @@ def glb(faces: Faces) -> bytes:
         {**_primitive(buffer, faces, faces.pattern == pattern), "material": number}
         for number, pattern in enumerate(used)
     ]
-    pictures = [cv2.imencode(".png", texture(PATTERNS[k], 0))[1].tobytes() for k in used]
+    pictures = [cv2.imencode(".png", texture(PATTERNS[k]))[1].tobytes() for k in used]
     document = {
         "asset": {"version": "2.0", "generator": "mitigate"},
         "extensionsUsed": ["KHR_materials_unlit"],

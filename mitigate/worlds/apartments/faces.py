@@ -48,9 +48,7 @@ class Faces:
 
 
 class FaceBuilder:
-    """Collect the faces of an apartment, which are rectangles with colours, textures and baked
-    shading.
-    """
+    """Collect the faces of an apartment."""
 
     # axis: (brightness of faces towards its negative side, towards its positive side)
     _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
@@ -89,9 +87,7 @@ class FaceBuilder:
     def _tints(
         self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
     ) -> np.ndarray:
-        """Return shaded colours. The shade depends on the direction of the face and on the room,
-        and vertical faces get darker towards the floor.
-        """
+        """Return the colours, shaded by room, direction of the face, and height."""
         sides = np.array([self._SHADE[k] for k in range(3)])
         shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
         dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
@@ -112,10 +108,9 @@ class FaceBuilder:
         category: int = STRUCTURE,
         instance: int = -1,
     ) -> None:
-        """Add a rectangle that is perpendicular to ``axis`` and lies at the coordinate ``at``.
+        """Add a rectangle perpendicular to ``axis`` at ``at``, with a normal of sign ``sign``.
 
-        The sign of its normal is ``sign``. Its bounds on the other two axes are ``low`` and
-        ``high``.
+        ``low`` and ``high`` are its bounds on the other two axes.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, *low, *high))
@@ -186,12 +181,7 @@ def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return the corners (float32 [n, 4, 3]) of n rectangles.
-
-    Each rectangle is perpendicular to its ``axis`` and lies at the coordinate ``at``. The order of
-    the corners depends on ``sign``, the sign of the rectangle's normal. ``low`` and ``high`` [n, 2]
-    are the bounds on the other two axes.
-    """
+    """Return the corners of n rectangles (see ``FaceBuilder._add``), float32 [n, 4, 3]."""
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
     corners, every = np.zeros((n, 4, 3), np.float32), np.arange(n)

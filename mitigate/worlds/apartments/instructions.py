@@ -48,9 +48,7 @@ def name_of(apartment: Apartment, instance: int) -> str:
 def describe(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> str:
-    """Return an instruction for a path (float [n, 2], metres) that ends at the piece of furniture
-    ``target``.
-    """
+    """Return an instruction for a path (float [n, 2], metres) to the furniture ``target``."""
     events = _events(apartment, path, heading, target, rng)
     clauses = [_clause(apartment, event, rng) for event in events]
     words = TEMPLATES[apartment.split]
@@ -93,9 +91,7 @@ def _clause(apartment: Apartment, event: Event, rng: np.random.Generator) -> str
 def _events(
     apartment: Apartment, path: np.ndarray, heading: float, target: int, rng: np.random.Generator
 ) -> list[Event]:
-    """Return the events of a path in order: the first turn, the changes of room with their turns,
-    and up to two landmarks.
-    """
+    """Return the turns, changes of room and up to two landmarks of a path, in order."""
     steps = np.hypot(*np.diff(path, axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     events = [Event(0.0, turn_word(_direction(path, along, 0.0), heading))]
@@ -117,12 +113,7 @@ def _events(
 
 
 def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
-    """Return the left or right turn of a path at a doorway, which is ``door`` metres from the start
-    of the path.
-
-    The event is located where the path has completed half of the turn. Return None if the path does
-    not turn there, or if the doorway is near the start of the path.
-    """
+    """Return the middle of a left or right turn at a doorway, ``door`` metres along the path."""
     if door <= _BESIDE:
         return None
     before, after = (_direction(path, along, at) for at in (door - _BESIDE, door))

@@ -32,60 +32,44 @@ YAWS = np.radians(360.0 / ANGLES * (np.arange(ANGLES) + 0.5) - 180.0 / VIEWS)
 
 
 def free_directions(space: FreeSpace, xy: np.ndarray, heading: float) -> np.ndarray:
-    """Return a mask that is 1 where the straight path from a pose is free of obstacles.
+    """Return a mask, float32 [120, 12], that is 1 where the straight path from a pose is free.
 
-    The mask is float32 [120, 12]. The first axis is the angle to the right of the heading; bin
-    ``10 * k + i`` is at ``30 * k - 15 + 3 * (i + 0.5)`` degrees. The second axis is the distance in
-    steps of 0.25 m.
+    Angle bin ``10 * k + i`` is ``30 * k - 15 + 3 * (i + 0.5)`` degrees to the right of the heading.
+    The second axis is the distance in steps of 0.25 m.
     """
     fine = space.rays(xy, 4 * ANGLES, STEP * DISTANCES)
     world = (np.round((heading - YAWS) / (2 * np.pi) * 4 * ANGLES).astype(int)) % (4 * ANGLES)
     return (fine[world][:, None] >= STEP * (np.arange(DISTANCES) + 1) - 1e-3).astype(np.float32)
 
 
-def ahead(directions: np.ndarray) -> np.ndarray:
-    """Return the part of :func:`free_directions` that lies inside the forward 90-degree view. The
-    shape is [30, 12], from left to right.
+def pose_labels(
+    apartment: Apartment, xy: np.ndarray, heading: float, ids: np.ndarray, depth: np.ndarray
+) -> dict[str, np.ndarray]:
+    """Return the labels "concepts", "seen" and "free" of ``ApartmentsWorld.truth`` at a pose.
+
+    ``ids`` (int32) and ``depth`` (metres) are the views of a panorama or of a single camera.
     """
-    half = round(ANGLES * HFOV_DEGREES / 720)
-    # The heading is this many bins to the right of the left edge of bin 0.
-    middle = round(ANGLES / VIEWS / 2)
-    return np.roll(directions, half - middle, 0)[: 2 * half]
-
-
-def view_labels(
-    apartment: Apartment, ids: np.ndarray, depth: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the labels of a panorama from its face ids.
-
-    Returns:
-        The concepts, float32 ``[12, len(CONCEPTS)]`` with values 0 and 1. The second array is bool
-        ``[12, furniture]``: which pieces of furniture are visible in the central band of each view.
-    """
-    middle = ids.shape[2] / 2
-    half = np.tan(_HALF_ANGLE) * middle
-    return _within(apartment, ids, depth, round(middle - half), round(middle + half))
-
-
-def column_labels(
-    apartment: Apartment, ids: np.ndarray, depth: np.ndarray
-) -> tuple[np.ndarray, np.ndarray]:
-    """Compute the labels of :func:`view_labels` for each of the ``COLUMNS`` columns of a view.
-
-    Returns:
-        The concepts, float32 [views, 4, len(CONCEPTS)], and the visible furniture, bool [views, 4,
-        furniture].
-    """
-    edges = np.linspace(0, ids.shape[2], COLUMNS + 1).round().astype(int)
-    parts = [_within(apartment, ids, depth, a, b) for a, b in pairwise(edges.tolist())]
-    concepts, seen = (np.stack(part, 1) for part in zip(*parts, strict=True))
-    return concepts, seen
+    free = free_directions(apartment.space, xy, heading)
+    width = ids.shape[2]
+    if len(ids) == VIEWS:
+        middle = width / 2
+        half = np.tan(_HALF_ANGLE) * middle
+        concepts, seen = _within(apartment, ids, depth, round(middle - half), round(middle + half))
+    else:
+        edges = np.linspace(0, width, COLUMNS + 1).round().astype(int).tolist()
+        columns = [_within(apartment, ids, depth, low, high) for low, high in pairwise(edges)]
+        concepts, seen = map(np.concatenate, zip(*columns, strict=True))
+        half_view = round(ANGLES * HFOV_DEGREES / 720)
+        # the heading is this many bins to the right of the left edge of bin 0
+        first = round(ANGLES / VIEWS / 2)
+        free = np.roll(free, half_view - first, 0)[: 2 * half_view]
+    return {"concepts": concepts, "seen": seen, "free": free}
 
 
 def _within(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the labels of the pixel columns from ``low`` to ``high``."""
+    """Return the concepts and the furniture in the pixel columns from ``low`` to ``high``."""
     sizes = (len(CATEGORIES), len(COLOUR_NAMES), len(CONCEPTS))
     arguments: Any = (ids, depth[..., 0], low, high, *_tables(apartment), *sizes)
     return _label(*arguments)

@@ -47,34 +47,18 @@ class FreeSpace:
         table[nearest[self.free]] = self.index[self.free]
         self.nearest = table[nearest]
 
-    @property
-    def graph(self) -> csr_matrix:
-        """The graph of the free cells, in which each cell is connected to its 8 neighbours. Edge
-        weights are in metres.
-
-        Paths along this graph have eight directions. On average, they are 5 % longer than paths in
-        any direction (:meth:`shortest_length`).
-        """
-        return _graph_of(self)
-
     def cell_of(self, xy: np.ndarray | tuple[float, float]) -> int:
         """Return the index of the free cell that is nearest to a plan position in metres."""
         return int(self.nearest[self._place(xy)])
 
     def _place(self, xy: np.ndarray | tuple[float, float]) -> tuple[int, int]:
-        """Return the index (i, j) of the grid cell that contains a plan position, or of the nearest
-        cell if the position is outside the grid.
-        """
+        """Return the index (i, j) of the grid cell nearest to a plan position."""
         i = min(max(int(xy[1] / CELL), 0), self.free.shape[0] - 1)
         j = min(max(int(xy[0] / CELL), 0), self.free.shape[1] - 1)
         return i, j
 
     def stand(self, xy: np.ndarray) -> np.ndarray:
-        """Return a position where an agent can stand, float [2] in metres.
-
-        The position is ``xy`` if the cell of ``xy`` is free, and otherwise the centre of the
-        nearest free cell.
-        """
+        """Return ``xy`` if its cell is free, and otherwise the centre of the nearest free cell."""
         return xy if self.free[self._place(xy)] else self.centre(self.cell_of(xy))
 
     def centre(self, cell: int) -> np.ndarray:
@@ -82,16 +66,13 @@ class FreeSpace:
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
-        """Return the geodesic distance in metres from every free cell to the nearest target cell,
-        as float32 [n].
-        """
-        return dijkstra(self.graph, indices=targets, min_only=True).astype(np.float32)
+        """Return the metres from every free cell to the nearest target cell, float32 [n]."""
+        return dijkstra(_graph_of(self), indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Return the cell centres ``[n, 2]`` on the shortest path from the cell ``start`` to the
-        nearest target of ``field`` (see :meth:`distances`).
-        """
-        path, graph = [start], self.graph
+        """Return the cell centres [n, 2] from ``start`` to the nearest target of ``field``."""
+        path = [start]
+        graph = _graph_of(self)
         while field[path[-1]] > 1e-6:
             near = slice(graph.indptr[path[-1]], graph.indptr[path[-1] + 1])
             row, cost = graph.indices[near], graph.data[near]
@@ -99,8 +80,7 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def shortest_length(self, xy: np.ndarray, targets: list[int]) -> float:
-        """Return the length in metres of the shortest path from a plan position [2] in a free cell
-        to the nearest centre of a target cell.
+        """Return the metres of the shortest path from a free plan position [2] to a target cell.
 
         The path may have any direction. It only bends at corners of blocked cells, so Dijkstra's
         algorithm runs on the visibility graph of these corners (Lozano-Perez and Wesley, 1979).
@@ -117,8 +97,9 @@ class FreeSpace:
         return float(np.min(to_points[:, None] + last) * CELL)
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """Move straight ahead and slide along walls, as agents do in the R2R task of VLN-CE. Return
-        the new position and whether the agent collided.
+        """Move straight ahead and slide along walls, as in VLN-CE.
+
+        Returns the new position and whether the agent collided.
         """
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
@@ -132,14 +113,19 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Return the free distance in metres along ``count`` evenly spaced headings,
-        counter-clockwise from heading 0. Distances are limited to ``reach``.
+        """Return the free metres, at most ``reach``, along ``count`` evenly spaced headings.
+
+        Headings are counter-clockwise from 0.
         """
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 
 @lru_cache(maxsize=GRAPHS)
 def _graph_of(space: FreeSpace) -> csr_matrix:
+    """Return the graph of the free cells and their 8 neighbours, with edge weights in metres.
+
+    Its paths are 5 % longer on average than those of :meth:`FreeSpace.shortest_length`.
+    """
     rows, cols, data = [], [], []
     height, width = space.index.shape
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -155,9 +141,7 @@ def _graph_of(space: FreeSpace) -> csr_matrix:
 
 @lru_cache(maxsize=GRAPHS)
 def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners at which a path can bend, float [n, 2] (x, y), and the lengths of the free
-    straight lines between them, float [n, n] (inf: no free line). The unit is one cell.
-    """
+    """Return the corners at which paths bend [n, 2], and their free distances [n, n], in cells."""
     free, corners = space.free, []
     rows, columns = np.arange(1, free.shape[0] - 1), np.arange(1, free.shape[1] - 1)
     for di in (-1, 1):
@@ -175,9 +159,7 @@ def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
 
 @njit(cache=True)
 def _visible_lengths(free, starts, ends):
-    """Return the lengths of the straight lines from ``starts`` [n, 2] to ``ends`` [m, 2] through
-    free cells, float [n, m] in cells (inf: the line is not free).
-    """
+    """Return the lengths of the lines from ``starts`` to ``ends`` [n, m] (inf: not free)."""
     lengths = np.full((len(starts), len(ends)), np.inf)
     for a in range(len(starts)):
         for b in range(len(ends)):
@@ -190,9 +172,7 @@ def _visible_lengths(free, starts, ends):
 
 @njit(cache=True)
 def _line_is_free(free, x, y, dx, dy):
-    """Return whether the line from (x, y) to (x + dx, y + dy) crosses free cells only (Amanatides
-    and Woo, 1987). It may touch the corners of blocked cells.
-    """
+    """Return whether a line crosses free cells only (Amanatides and Woo, 1987)."""
     i, j = int(np.floor(y)), int(np.floor(x))
     last_i, last_j = int(np.floor(y + dy)), int(np.floor(x + dx))
     step_i, step_j = (1 if dy > 0 else -1), (1 if dx > 0 else -1)
@@ -204,7 +184,7 @@ def _line_is_free(free, x, y, dx, dy):
             return False
         if i == last_i and j == last_j:
             return True
-        if abs(next_i - next_j) < _TOUCH:
+        if abs(next_i - next_j) < _TOUCH:  # the line may touch the corners of blocked cells
             i, j = i + step_i, j + step_j
             next_i, next_j = next_i + abs(1 / dy), next_j + abs(1 / dx)
         elif next_i < next_j:
@@ -215,9 +195,7 @@ def _line_is_free(free, x, y, dx, dy):
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Return the free distance in metres from (x, y) in the direction (dx, dy), at most
-    ``length``.
-    """
+    """Return the free distance in metres from (x, y) towards (dx, dy), at most ``length``."""
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length

@@ -74,11 +74,11 @@ def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
     return np.array([colorsys.hsv_to_rgb(*row) for row in rows], np.float32)
 
 
-def texture(pattern: str, variant: int) -> np.ndarray:
+def texture(pattern: str) -> np.ndarray:
     """Return a grey texture as uint8 ``[32, 32]``, with values mostly from 200 to 255. Vertex
     colours tint it.
     """
-    rng = np.random.default_rng([7, PATTERNS.index(pattern), variant])
+    rng = np.random.default_rng([7, PATTERNS.index(pattern), 0])
     n = TEXTURE_PIXELS
     y, x = np.mgrid[0:n, 0:n]
     base = np.full((n, n), 250.0)

@@ -186,7 +186,7 @@ class Renderer:
         image.setup_2d_texture(
             TEXTURE_PIXELS, TEXTURE_PIXELS, core.Texture.T_unsigned_byte, core.Texture.F_rgb
         )
-        image.set_ram_image(np.repeat(texture(pattern, 0)[:, :, None], 3, 2).tobytes())
+        image.set_ram_image(np.repeat(texture(pattern)[:, :, None], 3, 2).tobytes())
         image.set_minfilter(core.SamplerState.FT_nearest)
         image.set_magfilter(core.SamplerState.FT_nearest)
         return image
@@ -236,10 +236,7 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def shared_renderer(size: int) -> Renderer:
-    """Return this process's renderer for views of ``size`` pixels.
-
-    All users of this renderer share its cache of ``SCENES`` scenes.
-    """
+    """Return the renderer that all users of this process share for views of ``size`` pixels."""
     return Renderer(size)
 
 
@@ -253,20 +250,14 @@ def _make_pipe(core: Any) -> Any:
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
-    """Encode face ids as colours (float32 [n, 3]): face id + 1 is written in base 32, so rounding
-    does not change the decoded id.
-    """
+    """Encode face ids in base 32 as colours, float32 [n, 3], so that rounding keeps the ids."""
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
     return (digits * 8 + 4).astype(np.float32) / 255
 
 
 def _turn(mount: Mount, heading: float) -> np.ndarray:
-    """Return the rotation matrix [3, 3] that applies ``mount`` to the directions of a camera rig.
-
-    The matrix maps the directions of a level rig with ``heading`` to those of the mounted rig. All
-    directions are in the plan frame.
-    """
+    """Return the rotation [3, 3] of a mounted rig relative to a level rig, in the plan frame."""
     if (mount.pitch, mount.roll, mount.yaw) == (0.0, 0.0, 0.0):
         return np.eye(3)
     cos, sin = math.cos(heading), math.sin(heading)

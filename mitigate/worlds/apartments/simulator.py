@@ -23,26 +23,20 @@ NEAR = 0.5
 # number of cached distance fields; a field takes 20 kB, and half a millisecond to compute
 @lru_cache(maxsize=256)
 def goal_field(scene_id: str, goal_cells: tuple[int, ...]) -> np.ndarray:
-    """Return the geodesic distance in metres from every free cell of a scene to the nearest goal
-    cell.
-    """
+    """Return the metres from every free cell of a scene to the nearest goal cell."""
     return apartment_of(scene_id).space.distances(list(goal_cells))
 
 
 class Simulator:
-    """Simulator of one agent in one apartment. The actions and the step limit are the same as in
-    VLN-CE (``core/observation.py``).
-    """
+    """Simulator of one agent in one apartment, with the actions and step limit of VLN-CE."""
 
     def __init__(self, size: int = 64) -> None:
         self.size = size
 
     def reset(self, episode: Episode) -> None:
-        """Place the agent at the start of an episode, or in the free cell that is nearest to the
-        start.
+        """Place the agent at the start of an episode, or in the nearest free cell.
 
-        Raises ValueError if the start or a goal is more than ``NEAR`` metres away from every free
-        cell.
+        Raises ValueError if the start or a goal is more than ``NEAR`` metres from every free cell.
         """
         self.episode, self.apartment = episode, apartment_of(episode.scene_id)
         self.space = self.apartment.space
@@ -90,12 +84,7 @@ class Simulator:
         return renderer.render(*place, views=views, mount=mount)
 
     def step(self, action: int) -> None:
-        """Execute one low-level action.
-
-        Raises:
-            RuntimeError: If the episode is over.
-            ValueError: If the action does not exist.
-        """
+        """Execute one low-level action. Raise ValueError if it does not exist."""
         if action != STOP and action not in MOVES:
             raise ValueError(
                 f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
@@ -106,8 +95,7 @@ class Simulator:
     def move(self, metres: float, degrees: float) -> None:
         """Move ``metres`` forward, then turn ``degrees`` to the left, as one step.
 
-        Raises:
-            RuntimeError: If the episode is over.
+        Raises RuntimeError if the episode is over.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
@@ -120,11 +108,7 @@ class Simulator:
 
 
 class GeodesicExpert(Expert):
-    """Expert that greedily reduces the geodesic distances in ``field``.
-
-    The expert turns to the heading in which the next step forward reduces the distance most. It
-    stops at the distance that ``rule`` defines.
-    """
+    """Expert that turns to the heading in which a step reduces the distances of ``field`` most."""
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:
         self.simulator, self.rule, self.field = simulator, rule, field

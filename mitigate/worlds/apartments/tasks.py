@@ -131,8 +131,7 @@ class DrawnEpisodes:
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """Sample an episode with a newly generated instruction.
 
-        The layouts are split into ``count`` parts, and ``share`` = (index, count) selects the part
-        to sample from. Each layout has ``_POOL`` different paths.
+        ``share`` is the pair (index, number) of the part of the layouts to sample from.
         """
         seeds = share_of(range(self.layouts), *share)
         seed = seeds[int(rng.integers(len(seeds)))]
@@ -149,10 +148,10 @@ class DrawnEpisodes:
 
 
 def landmarks(episode: Episode) -> list[int]:
-    """Return the indices of the furniture that marks the goal: one piece in VLN, and all pieces of
-    the goal category in OGN.
+    """Return the indices of the furniture that marks the goal.
 
-    Raises ValueError if the episode's info does not contain the goal.
+    It is one piece in VLN, and all pieces of the goal category in OGN. Raises ValueError if the
+    info of the episode does not contain the goal.
     """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))
@@ -167,9 +166,7 @@ def landmarks(episode: Episode) -> list[int]:
 
 
 def view_points(episode: Episode) -> list[int]:
-    """Return the view points of the goal object: the free cells next to it, as for the object goals
-    of VLN-CE.
-    """
+    """Return the free cells next to the goal object, as for the object goals of VLN-CE."""
     return list(_view_points(episode.scene_id, tuple(landmarks(episode))))
 
 
@@ -180,9 +177,7 @@ def _view_points(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """Yield the first ``count`` episodes of a split in the order of apartment seeds, with
-    ``PER_APARTMENT`` episodes per apartment.
-    """
+    """Yield ``count`` episodes in the order of seeds, ``PER_APARTMENT`` per apartment."""
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // PER_APARTMENT), task, number % PER_APARTMENT)
@@ -190,9 +185,7 @@ def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
 
 @lru_cache(maxsize=100_000)
 def _pooled(seed: int, task: str, index: int) -> bytes:
-    """Return a pickled training episode. A cache of unpickled episodes would need ten times the
-    memory.
-    """
+    """Return a pickled training episode, because cached objects would need ten times the memory."""
     scene = f"apartments/train/{seed:06d}"
     return pickle.dumps(make_episode(apartment_of(scene), task, index, seed=1))
 

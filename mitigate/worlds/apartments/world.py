@@ -6,9 +6,8 @@ from __future__ import annotations
 
 import copy
 import warnings
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,7 +19,7 @@ from mitigate.corruptions.faults.camera import Mount
 from mitigate.worlds import measures
 from mitigate.worlds.apartments.apartment import Apartment, apartment_of
 from mitigate.worlds.apartments.drawing import draw_plan
-from mitigate.worlds.apartments.labels import ahead, column_labels, free_directions, view_labels
+from mitigate.worlds.apartments.labels import pose_labels
 from mitigate.worlds.apartments.navigation import CELL
 from mitigate.worlds.apartments.renderer import LEVEL, shared_renderer
 from mitigate.worlds.apartments.simulator import GeodesicExpert, Simulator, goal_field
@@ -81,9 +80,7 @@ class ApartmentsWorld(World):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Return a context manager that caches rendered frames, so that repeated poses are not
-        rendered again.
-        """
+        """Return a context manager in which frames of repeated poses are cached."""
         before, self._memory = self._memory, Memory(MEMORY_BYTES)
         try:
             yield
@@ -91,9 +88,7 @@ class ApartmentsWorld(World):
             self._memory = before
 
     def beside(self) -> ApartmentsWorld:
-        """Return a second world for a simultaneous episode. Both worlds share their cache of
-        rendered frames.
-        """
+        """Return a second world that shares the cache of rendered frames."""
         other = copy.copy(self)
         other._memory = self._memory
         return other
@@ -105,7 +100,6 @@ class ApartmentsWorld(World):
         return self.simulator.done
 
     def reset(self, episode: Episode) -> Observation:
-        """Start an episode. Raises ValueError if the scene of the episode is not an apartment."""
         self.simulator.reset(episode)
         self._shortest = self._shortest_length(episode)
         return self._observation()
@@ -115,7 +109,6 @@ class ApartmentsWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
-        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
         self.simulator.move(metres, degrees)
         return self._observation()
 
@@ -135,7 +128,7 @@ class ApartmentsWorld(World):
             np.array(simulator.path),
             [from_vlnce(point) for point in simulator.episode.reference_path],
             start=self._shortest,
-            left=self._left(),
+            left=float(self._field()[simulator.space.cell_of(simulator.xy)]),
             stopped=simulator.stopped,
         )
         return values | {"collisions": int(simulator.collisions), "steps": simulator.steps}
@@ -144,25 +137,14 @@ class ApartmentsWorld(World):
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
 
     def _field(self) -> np.ndarray:
-        """Return the distance in metres from each free cell to the target of the success rule,
-        which is the goal or its view points.
-        """
+        """Return the metres from each free cell to the goal, or to its view points."""
         episode = self.simulator.episode
         if not RULES[self._rule].view_points:
             return self.simulator.field
         return goal_field(episode.scene_id, tuple(view_points(episode)))
 
-    def _left(self) -> float:
-        """Return the distance in metres from the agent to the target of the success rule."""
-        return float(self._field()[self.simulator.space.cell_of(self.simulator.xy)])
-
     def _shortest_length(self, episode: Episode) -> float:
-        """Return the length in metres of the shortest path from the start to the target of the
-        success rule.
-
-        If the file hides the goals, return the length that the file records. If the recorded
-        length differs from the measured length, a warning is issued once per world.
-        """
+        """Return the metres from start to target; the file's value if the file hides the goals."""
         recorded, simulator = episode.geodesic_distance, self.simulator
         if recorded is not None and not episode.goals:
             return recorded
@@ -195,14 +177,14 @@ class ApartmentsWorld(World):
         """
         simulator = self.simulator
         _, depth, ids = self._frames()
-        marks = landmarks(simulator.episode)
-        return Labels(simulator.apartment, simulator.xy, simulator.heading, ids, depth, marks)
+        labels = pose_labels(simulator.apartment, simulator.xy, simulator.heading, ids, depth)
+        goal = labels["seen"][:, landmarks(simulator.episode)].any(1)
+        return {**labels, "goal": np.asarray(goal, np.float32)}
 
     # indices of the furniture (as in the label "seen") that marks the goal of an episode
     landmarks = staticmethod(landmarks)
 
     def draw(self, axes: Any) -> None:
-        """Draw the plan of the apartment on matplotlib axes, in metres."""
         draw_plan(axes, self.simulator.apartment)
 
     def _observation(self) -> Observation:
@@ -212,14 +194,11 @@ class ApartmentsWorld(World):
         )
 
     def _copied(self, rendered: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-        """Return copies of the frames, because an agent may write into its observation. Frames of a
-        single camera have no axis for views.
-        """
+        """Return copies of the frames, because an agent may write into its observation."""
         views = slice(None) if self.views > 1 else 0
         return {name: rendered[i][views].copy() for i, name in enumerate((RGB, DEPTH))}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray]:
-        """Render the frames that a displaced camera would see at the current pose."""
         key = (*self._pose(), mount)
         return self._copied(self._memory.recall(key, lambda: self._observe(mount)))
 
@@ -246,9 +225,7 @@ class ApartmentsWorld(World):
         return [f"apartments/train/{seed:06d}" for seed in range(self.layouts)]
 
     def enter(self, scene: str) -> None:
-        """Select the scene that ``point`` and ``put`` use. Raises ValueError for an unknown
-        scene.
-        """
+        """Select the scene of ``point`` and ``put``. Raise ValueError if it is unknown."""
         self._entered: Apartment = apartment_of(scene)
 
     def point(self, rng: np.random.Generator) -> np.ndarray:
@@ -256,9 +233,7 @@ class ApartmentsWorld(World):
         return space.centre(int(rng.integers(len(space.cells)))) + rng.uniform(-0.05, 0.05, 2)
 
     def points(self) -> np.ndarray:
-        """Return one point per free cell of the scene, as [n, 2]. An agent can stand at each
-        point.
-        """
+        """Return one point per free cell of the scene in metres, as [n, 2]."""
         return (self._entered.space.cells[:, ::-1] + 0.5) * CELL
 
     def put(
@@ -282,56 +257,4 @@ class ApartmentsWorld(World):
         drawn = renderer.render(*place, views=selected, rgb=rgb, mount=mount)
         _, depth, ids = parts = [part[: self.views] for part in drawn]
         pose = np.array([*xy, heading], np.float32)
-        return {**self._copied(parts), POSE: pose}, Labels(apartment, xy, heading, ids, depth)
-
-
-class Labels(Mapping[str, np.ndarray]):
-    """Labels of one pose, such as the visible objects. Each label is computed when it is read.
-
-    Args:
-        apartment: The apartment.
-        xy: Plan position [2] in metres.
-        heading: Heading in radians.
-        ids: Face ids of the views.
-        depth: Depth of the views in metres.
-        marks: Indices of the furniture that marks the goal. If None, there is no label "goal".
-    """
-
-    def __init__(
-        self,
-        apartment: Apartment,
-        xy: np.ndarray,
-        heading: float,
-        ids: np.ndarray,
-        depth: np.ndarray,
-        marks: Sequence[int] | None = None,
-    ) -> None:
-        panorama = len(ids) == VIEWS
-
-        @lru_cache(maxsize=1)
-        def visible() -> tuple[np.ndarray, np.ndarray]:
-            if panorama:
-                return view_labels(apartment, ids, depth)
-            concepts, seen = column_labels(apartment, ids, depth)
-            return concepts[0], seen[0]
-
-        def free() -> np.ndarray:
-            directions = free_directions(apartment.space, xy, heading)
-            return directions if panorama else ahead(directions)
-
-        self._make: dict[str, Callable[[], np.ndarray]] = {
-            "concepts": lambda: visible()[0],
-            "seen": lambda: visible()[1],
-            "free": free,
-        }
-        if marks is not None:
-            self._make["goal"] = lambda: np.asarray(visible()[1][:, marks].any(1), np.float32)
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        return self._make[name]()
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._make)
-
-    def __len__(self) -> int:
-        return len(self._make)
+        return {**self._copied(parts), POSE: pose}, pose_labels(apartment, xy, heading, ids, depth)

@@ -35,6 +35,7 @@ from mitigate.worlds.recorded.messages import (
 from mitigate.worlds.recorded.options import Options
 from mitigate.worlds.recorded.source import (
     MAX_INSTANTS,
+    SET_UNIT,
     Lens,
     Source,
     match_times,
@@ -59,11 +60,7 @@ MAX_BUFFER_BYTES = 1 << 30
 
 
 class Bag(Source):
-    """A recorded drive that is stored in a bag.
-
-    Args:
-        path: Path of the bag, which is a file or a folder.
-        options: Options for opening it.
+    """A recorded drive that is stored in a bag, which is a file or a folder.
 
     Raises:
         ValueError: If the bag is damaged or lacks a topic, or ``rosbags`` is not installed.
@@ -76,6 +73,7 @@ class Bag(Source):
         self.tolerance = options.frame_gap
         self.signals = {}
         self.damaged = []
+        self.depth_advice = SET_UNIT
         self.name = resolved.name if path.is_dir() else path.stem
         self.instruction = read_instruction(resolved.parent / f"{self.name}.txt")
         with self._open() as reader:
@@ -100,9 +98,6 @@ class Bag(Source):
                 )
         self.cameras = {k: lenses.get(k) or Lens(k, options.hfov or 0.0) for k in self.kinds}
         self.formats = self._describe(encodings)
-
-    def depth_advice(self) -> str:
-        return "Set unit= (metres per count), such as unit=0.0001."
 
     def _describe(self, encodings: Mapping[str, str]) -> dict[str, str]:
         """Describe each sensor by its topic, its image encoding and the unit of its depth."""
@@ -166,7 +161,6 @@ class Bag(Source):
 
     @contextmanager
     def _open(self) -> Iterator[Any]:
-        """Open a reader."""
         try:
             from rosbags.highlevel import AnyReader
             from rosbags.typesys import Stores, get_typestore
@@ -216,17 +210,9 @@ class Bag(Source):
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, tuple[float, float], Any]]:
-        """Yield the messages of some topics in the order in which the bag stores them.
+        """Yield the messages of the topics ``names``: name, (header time, received), message.
 
-        Args:
-            reader: The open reader.
-            names: Keys of ``self.topics``.
-            decode: Indices of the messages to decode for each name. For a name that has no entry,
-                all messages are decoded.
-
-        Yields:
-            The name, the two timestamps in seconds (from the header, and on receipt), and the
-            message. The message is None if it was not decoded.
+        ``decode`` holds the indices of the messages to decode; other names are always decoded.
         """
         by_topic: dict[str, list[str]] = {}
         for name in names:
@@ -245,9 +231,7 @@ class Bag(Source):
     def _index(
         self, reader: Any, hfov: float | None
     ) -> tuple[dict[str, list[float]], list[tuple[float, ...]], dict[str, Lens]]:
-        """Return the times of the images, the poses as (time, x, y, heading), and the lenses of the
-        cameras.
-        """
+        """Return the times of the images, the poses as (time, x, y, heading), and the lenses."""
         stamps: dict[str, list[tuple[float, float]]] = {name: [] for name in (*self.kinds, POSE)}
         poses: list[tuple[float, ...]] = []
         lenses: dict[str, Lens] = {}
@@ -310,10 +294,9 @@ def _repair_advice(path: Path) -> str:
 
 
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
-    """Open a reader of ``rosbags`` that parses only the definitions of the supported message types.
+    """Open a reader that parses only the definitions of the supported message types.
 
-    Otherwise, one definition that ``rosbags`` cannot parse, such as a service event, would make the
-    whole bag unreadable.
+    One definition that ``rosbags`` cannot parse would make the whole bag unreadable.
     """
     from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
 

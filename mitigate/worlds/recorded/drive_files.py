@@ -13,20 +13,23 @@ import numpy as np
 
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions import frame_files
-from mitigate.worlds.recorded.source import MAX_INSTANTS, Lens, Source, read_text
+from mitigate.worlds.recorded.source import (
+    MAX_INSTANTS,
+    SET_UNIT,
+    Lens,
+    Source,
+    clean_depth,
+    read_text,
+)
 
 INSTRUCTION = "instruction.txt"
 
 
 @dataclass(kw_only=True)
 class Frames(Source):
-    """A recorded drive whose frames are stored in separate files.
+    """A recorded drive with one file per camera and time step.
 
-    Attributes:
-        files: The frame files of each camera, one per time step.
-        unit: Metres per integer step of 16-bit depth.
-        unit_given: Whether ``unit`` comes from the user or the recording. If false, neither states
-            a unit, and ``unit`` holds the default value.
+    ``unit`` is metres per step of 16-bit depth. If ``unit_given`` is false, it is a default.
     """
 
     files: Mapping[str, Sequence[Path]]
@@ -36,20 +39,14 @@ class Frames(Source):
     def __post_init__(self) -> None:
         assumed = "" if self.unit_given else " (assumed)"
         counted = f"16-bit PNG, {self.unit:g} metres per count{assumed}"
-        self.formats = {
-            name: f"{name}, {counted if self._is_counted(name) else files[0].suffix[1:].upper()}"
-            for name, files in self.files.items()
-        }
-
-    def _is_counted(self, camera: str) -> bool:
-        """Return whether a camera's files contain depth as integer multiples of ``unit``."""
-        is_npy = self.files[camera][0].suffix.lower() == ".npy"
-        return self.cameras[camera].kind == DEPTH and not is_npy
-
-    def depth_advice(self) -> str:
-        if any(map(self._is_counted, self.files)):
-            return "Set unit= (metres per count), such as unit=0.0001."
-        return super().depth_advice()
+        self.formats = {}
+        for name, files in self.files.items():
+            suffix = files[0].suffix[1:].upper()
+            if self.cameras[name].kind == DEPTH and suffix != "NPY":
+                self.formats[name] = f"{name}, {counted}"
+                self.depth_advice = SET_UNIT
+            else:
+                self.formats[name] = f"{name}, {suffix}"
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         for index in chosen:
@@ -66,14 +63,11 @@ class Frames(Source):
                 f"{path} must be a {kind} frame, like the other frames of camera {camera!r}. "
                 "Replace it."
             )
-        if kind == RGB:
-            return frame
-        depth = frame[..., 0]
-        return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
+        return frame if kind == RGB else clean_depth(frame[..., 0])
 
 
 def assumed_lens(kind: str, hfov: float | None, default: float = 90.0) -> Lens:
-    """Return a lens with the field of view that the user set, or with a default field of view."""
+    """Return a lens with the field of view that the user set, or with a default."""
     return Lens(kind, default if hfov is None else hfov, assumed=hfov is None)
 
 
@@ -82,7 +76,7 @@ def read_rows(
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield the line number and the words of each line that is not a comment.
 
-    A line may have more than ``columns`` words, but not if ``separator`` is set.
+    A line may have more than ``columns`` words if ``separator`` is None.
     """
     if not file.is_file():
         return
@@ -102,11 +96,7 @@ def read_rows(
 
 
 def number(word: str, file: Path, line: int) -> float:
-    """Parse a finite number.
-
-    Raises:
-        ValueError: If the word is not a finite number. The message contains the file and the line.
-    """
+    """Parse a finite number. Raise ValueError with the file and the line if it is invalid."""
     try:
         value = float(word)
     except ValueError:

@@ -59,12 +59,7 @@ MAX_HEADING = 50.0
 
 
 def read_run(path: Path, options: Options) -> list[Frames]:
-    """Read all episodes of a recording that ``mitigate run`` wrote.
-
-    Raises:
-        FileNotFoundError: If a file is missing.
-        ValueError: If the recording is damaged, or an option does not apply to it.
-    """
+    """Read all episodes of a recording that ``mitigate run`` wrote."""
     # hidden folders are skipped: they hold episodes that are being recorded or were interrupted
     episodes = sorted(file.parent for file in path.glob(f"[!.]*/[!.]*/{STEPS}"))
     drives = (_read_episode(folder, path, options.hfov, options.cameras) for folder in episodes)
@@ -74,10 +69,7 @@ def read_run(path: Path, options: Options) -> list[Frames]:
 def _read_episode(
     folder: Path, recording: Path, hfov: float | None, chosen: Sequence[str] | None
 ) -> Frames | None:
-    """Read one episode of a recording that ``mitigate run`` wrote. Return None if it has no frames.
-
-    An interrupted episode ends with its last complete step.
-    """
+    """Read one episode up to its last complete step. Return None if it has no frames."""
     episode = read_object(folder / EPISODE, FIX)
     steps = _read_lines(folder / STEPS)
     described = read_object(folder / CAMERAS, FIX) if (folder / CAMERAS).is_file() else {}
@@ -135,11 +127,7 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera.
-
-    If ``cameras.json`` does not describe the camera, its kind is inferred from a frame, and its
-    field of view is ``hfov`` or a default.
-    """
+    """Return the lens of a camera. If it is not described, its kind comes from a frame."""
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
@@ -160,11 +148,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """Return the number that ``values`` holds for ``key``, or None if it is missing or null.
-
-    Raises:
-        ValueError: If the value is not a number, or it is too large.
-    """
+    """Return the number of ``key``, or None if it is missing or null."""
     value = values.get(key)
     if value is None:
         return None
@@ -176,10 +160,7 @@ def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | 
 
 
 def _recorded_poses(steps: Sequence[Any], file: Path) -> np.ndarray | None:
-    """Return the poses in the lines of steps.jsonl, float64 [N, 3].
-
-    If a line has no pose, the result is None. A warning is issued if only some lines have poses.
-    """
+    """Return the poses of steps.jsonl, float64 [N, 3], or None if a line has no pose."""
     count = sum(map(_has_pose, steps))
     if count < len(steps):
         if count:
@@ -203,11 +184,7 @@ def _has_pose(step: Any) -> bool:
 
 
 def read_frames(path: Path, options: Options) -> list[Frames]:
-    """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``. Each frame file is one step.
-
-    Raises:
-        ValueError: If the folder is damaged.
-    """
+    """Read the drive in ``rgb/``, ``depth/`` and ``poses.csv``. Each frame file is one step."""
     if (path / TRAJECTORY).is_file():
         raise ValueError(
             f"{path} has {TRAJECTORY}, but lacks the lists of its frames. Add {' or '.join(LISTS)}."
@@ -271,12 +248,7 @@ def _check_radians(poses: np.ndarray, file: Path) -> np.ndarray:
 
 
 def _list_frames(folder: Path) -> list[Path]:
-    """Return the frame files of a folder, sorted by name. Digits in names are compared as
-    numbers.
-
-    Raises:
-        ValueError: If a file is a link to a place outside of the parent of the folder.
-    """
+    """Return the frame files of a folder in natural order of their names."""
     if not folder.is_dir():
         return []
     files = [p for p in folder.iterdir() if p.suffix.lower() in SUFFIXES and p.name[0] != "."]

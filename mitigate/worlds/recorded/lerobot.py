@@ -23,14 +23,7 @@ from mitigate.worlds.recorded.source import MAX_INSTANTS, Source
 
 @dataclass(kw_only=True)
 class LerobotEpisode(Source):
-    """An episode of a dataset.
-
-    Attributes:
-        dataset: The dataset.
-        episode: The episode.
-        read: Cameras to read.
-        tolerance: Maximum time difference in seconds between a row and its video frame.
-    """
+    """An episode of a dataset, and the cameras to read."""
 
     dataset: Dataset
     episode: Episode
@@ -47,9 +40,8 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
 
     Raises:
         FileNotFoundError: If a file is missing.
-        ValueError: If the dataset is damaged, or if an option names an unknown camera or episode.
-            If no camera can be read, or if several cameras of one kind can be read. If an episode
-            is too long or has an unknown task.
+        ValueError: If the dataset is damaged or too long, or the options do not select at most one
+            camera of each kind.
     """
     dataset = open_dataset(path)
     chosen = []

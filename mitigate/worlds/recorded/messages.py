@@ -16,7 +16,7 @@ from PIL import Image
 
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.corruptions.frame_files import NO_READING
-from mitigate.worlds.recorded.source import Lens, plan_pose
+from mitigate.worlds.recorded.source import Lens, clean_depth, heading_along
 
 FISHEYE = ("equidistant", "fisheye")  # names of fisheye distortion models in ROS
 MAX_SIDE = 1 << 13  # maximum width and height of an image in pixels (heuristic)
@@ -46,43 +46,33 @@ def encoding_of(message: Any) -> str:
 
 
 def kind_of(encoding: str) -> str | None:
-    """Return "rgb" or "depth" for an encoding. Return None if both kinds of images may use the
-    encoding.
-    """
+    """Return "rgb" or "depth", or None if both kinds of images may use the encoding."""
     if "compressedDepth" in encoding or encoding.startswith(("16UC1", "32FC1")):
         return DEPTH
     return RGB if "jpeg" in encoding or encoding.startswith(tuple(_COLOURS)) else None
 
 
 def depth_unit(encoding: str) -> float:
-    """Return the depth unit in metres that REP 118 prescribes: 1 for 32FC1, and 0.001 for
-    integers.
-    """
+    """Return the metres per count of REP 118: 1 for 32FC1, and 0.001 for integers."""
     return 1.0 if encoding == "32FC1" else 0.001
 
 
 def read_pose(message: Any) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of a message. The heading is NaN if the rotation is
-    invalid.
-    """
+    """Return the plan pose (x, y, heading). The heading is NaN if the rotation is invalid."""
     while (inner := _field(message, "pose")) is not None:
         message = inner
     position, turn = message.position, message.orientation
-    quaternion = (turn.x, turn.y, turn.z, turn.w)
-    return plan_pose(float(position.x), float(position.y), quaternion, (1.0, 0.0, 0.0))
+    heading = heading_along((turn.x, turn.y, turn.z, turn.w), (1.0, 0.0, 0.0))
+    return float(position.x), float(position.y), heading
 
 
 def _field(message: Any, *names: str) -> Any:
-    """Return the value of the first of ``names`` that is a field of the message, or None.
-
-    Several names are needed because ROS 1 and ROS 2 name some fields differently.
-    """
+    """Return the first existing field of ``names``, which differ between ROS 1 and 2, or None."""
     return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
 
 def read_stamp(raw: bytes, ros2: bool) -> float:
-    """Return the time in seconds from the header of a serialised message, or 0 if there is no
-    header.
+    """Return the time in seconds from the header of a serialised message, or 0 without a header.
 
     A ROS 1 message starts with a counter and a time, both little endian. A ROS 2 message (CDR)
     starts with four bytes; the second byte gives the byte order. The time follows.
@@ -95,18 +85,12 @@ def read_stamp(raw: bytes, ros2: bool) -> float:
 
 
 def camera_matrix(message: Any) -> np.ndarray:
-    """Return the flattened 3x3 camera matrix of a CameraInfo. The field is called ``K`` in ROS 1
-    and ``k`` in ROS 2.
-    """
+    """Return the flattened 3x3 camera matrix of a CameraInfo."""
     return np.asarray(_field(message, "k", "K")).reshape(-1)
 
 
 def read_lens(kind: str, message: Any, path: Path) -> Lens:
-    """Return the lens that a CameraInfo describes.
-
-    Raises:
-        ValueError: If focal lengths or sizes are invalid, or the lens is a fisheye lens.
-    """
+    """Return the lens of a CameraInfo. Raise ValueError if it is invalid or a fisheye lens."""
     matrix = camera_matrix(message).astype(np.float64)
     if matrix.shape != (9,) or not (matrix[0] > 0 and matrix[4] > 0 and np.isfinite(matrix).all()):
         raise ValueError(
@@ -128,14 +112,9 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
 
 
 def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
-    """Return the image of a message: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W].
-    Missing depth is 0.
+    """Return an image: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W] (0: missing).
 
-    Args:
-        message: An Image or a CompressedImage.
-        kind: "rgb" or "depth".
-        path: The bag, for error messages.
-        unit: Metres per integer step of depth. If None, :func:`depth_unit` determines it.
+    ``unit`` is metres per integer step of depth. If None, :func:`depth_unit` determines it.
 
     Raises:
         DamagedImage: If the image cannot be decoded.
@@ -172,7 +151,7 @@ def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -
         stored = rows.view(dtype)
         if dtype.kind == "u":
             stored = np.where(stored == NO_READING, 0, stored)
-        return _clean_depth(stored * unit)
+        return clean_depth(stored * unit)
     pixels = rows.reshape(height, width, channels)
     return pixels if conversion is None else cv2.cvtColor(pixels, conversion)
 
@@ -192,7 +171,7 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
                 f"{path}: compressed depth must be 16-bit PNG, got the format "
                 f"{encoding[:40]!r}. Record the raw images."
             )
-        return _clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
+        return clean_depth(np.where(pixels == NO_READING, 0, pixels) * unit)
     if pixels.dtype != np.uint8:
         raise ValueError(f"{path}: compressed RGB images must be uint8, got {pixels.dtype}.")
     if pixels.ndim == 2:
@@ -201,16 +180,9 @@ def _read_compressed(message: Any, kind: str, path: Path, unit: float) -> np.nda
 
 
 def _is_image(data: np.ndarray) -> bool:
-    """Return whether the bytes begin like a PNG or JPEG image of an allowed size. The image is not
-    decoded.
-    """
+    """Return whether the bytes begin like a PNG or JPEG of an allowed size, without decoding."""
     try:
         with Image.open(io.BytesIO(data.tobytes()), formats=("PNG", "JPEG")) as opened:
             return max(opened.size) <= MAX_SIDE
     except Exception:  # Pillow raises many kinds of errors for damaged bytes
         return False
-
-
-def _clean_depth(depth: np.ndarray) -> np.ndarray:
-    """Return depth as float32, with negative and non-finite values replaced by 0."""
-    return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)

@@ -32,6 +32,7 @@ MAX_CENTRE_OFFSET = 4.0
 # A heading is defined if the horizontal component of a unit direction is at least this.
 # The direction then points at most 73 degrees up or down.
 MIN_LEVEL = 0.3
+SET_UNIT = "Set unit= (metres per count), such as unit=0.0001."
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02
 
@@ -83,7 +84,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels for an image of this size.
 
         Raises:
-            ValueError: If the aspect ratio of the image differs from the aspect ratio of ``size``.
+            ValueError: If its aspect ratio differs from that of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
@@ -131,6 +132,7 @@ class Source:
         formats: Description of where and how the data is stored, for each camera and for "pose".
             Examples are "/odom" and "16-bit PNG, 0.001 metres per count (assumed)".
         damaged: Descriptions of the damaged images that ``frames`` has found so far.
+        depth_advice: How a user can correct depth that is not in metres.
     """
 
     name: str
@@ -143,10 +145,7 @@ class Source:
     signals: Mapping[str, np.ndarray] = field(default_factory=dict)
     formats: Mapping[str, str] = field(default_factory=dict)
     damaged: list[str] = field(default_factory=list)
-
-    def depth_advice(self) -> str:
-        """Return advice on how to correct depth that is not in metres."""
-        return "Convert it to metres."
+    depth_advice: str = "Convert it to metres."
 
     def frames(self, chosen: Sequence[int]) -> Iterator[dict[str, np.ndarray]]:
         """Yield the frames of all cameras at each chosen time step, in order.
@@ -164,39 +163,31 @@ class Source:
         raise NotImplementedError(f"{type(self).__name__} defines no frames(chosen)")
 
 
-def plan_pose(
-    x: float, y: float, quaternion: Sequence[float], axis: Sequence[float]
-) -> tuple[float, float, float]:
-    """Return the plan pose (x, y, heading) of an agent. The z axis points up.
+def heading_along(quaternion: Sequence[float], axis: Sequence[float]) -> float:
+    """Return the heading in radians of a ``quaternion`` (x, y, z, w) in a frame with z up.
 
-    Args:
-        x: Position in metres.
-        y: Position in metres.
-        quaternion: Rotation of the agent or its camera, as (x, y, z, w).
-        axis: Forward direction [3] before the rotation is applied.
-
-    Returns:
-        The pose. The heading is NaN if the agent faces up or down, or if ``quaternion`` is not a
-        rotation.
+    ``axis`` [3] is the forward direction before the rotation. The heading is NaN if the direction
+    is up or down, or if ``quaternion`` is not a rotation.
     """
     values = np.asarray(quaternion, np.float64)
     length = float(np.linalg.norm(values))
     if not (values.shape == (4,) and np.isfinite(length) and length > 1e-6):
-        return x, y, math.nan
+        return math.nan
     *imaginary, w = values / length
     u = np.array(imaginary)
     v = np.asarray(axis, np.float64)
     forward = v + 2 * np.cross(u, np.cross(u, v) + w * v)
     level = math.hypot(forward[0], forward[1]) >= MIN_LEVEL
-    return x, y, math.atan2(-forward[0], forward[1]) if level else math.nan
+    return math.atan2(-forward[0], forward[1]) if level else math.nan
+
+
+def clean_depth(depth: np.ndarray) -> np.ndarray:
+    """Return depth as float32, with negative and non-finite values replaced by 0."""
+    return np.where(np.isfinite(depth) & (depth > 0), depth, 0).astype(np.float32)
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the element of ``others`` that is nearest to each element of ``times``.
-
-    Args:
-        times: float64 [N], seconds.
-        others: float64 [M], increasing, in seconds.
+    """Find the element of ``others`` (increasing) that is nearest to each element of ``times``.
 
     Returns:
         Indices into ``others`` (int [N]), and the distances in seconds (float64 [N]).
@@ -211,18 +202,12 @@ def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.
 def interpolate_poses(
     times: np.ndarray, table: np.ndarray, tolerance: float = MAX_FRAME_GAP
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate poses at ``times``.
-
-    Args:
-        times: float64 [N], seconds.
-        table: float64 [M, 4], (time, x, y, heading) of the known poses.
-        tolerance: If a recorded pose is at most this many seconds from a time, the pose at that
-            time counts as known.
+    """Interpolate the poses of ``table``, float64 [M, 4] (time, x, y, heading), at ``times`` [N].
 
     Returns:
         The poses (float64 [N, 3]), and whether each pose is known (bool [N]). Poses are unknown
         where recorded poses are more than ``MAX_POSE_GAP`` seconds apart, except within
-        ``tolerance`` of a recorded pose.
+        ``tolerance`` seconds of a recorded pose.
     """
     table = table[np.isfinite(table).all(1)]
     if not len(table):
@@ -241,11 +226,8 @@ def interpolate_poses(
 class Instants:
     """The time steps at which all cameras have a frame and the pose is known.
 
-    Attributes:
-        times: float64 [N], seconds.
-        poses: float64 [N, 3], or None if unknown.
-        frames: int [N] for each camera: the index of its frame at each time step.
-        dropped: Number of skipped time steps.
+    ``frames`` holds, for each camera, the index of its frame at each time step (int [N]), and
+    ``dropped`` is the number of skipped time steps.
     """
 
     times: np.ndarray
@@ -307,11 +289,7 @@ def match_times(
 
 
 def read_instruction(file: Path) -> str:
-    """Read the instruction from a text file, or return "" if the file does not exist.
-
-    Raises:
-        ValueError: If the text is too long or not UTF-8.
-    """
+    """Read the instruction from a text file, or return "" if the file does not exist."""
     instruction = read_text(file, MAX_INSTRUCTION_BYTES).strip() if file.is_file() else ""
     if "\N{REPLACEMENT CHARACTER}" in instruction or "\0" in instruction:
         raise ValueError(f"{file} must be UTF-8 text. Save it as UTF-8, or remove it.")
@@ -319,11 +297,7 @@ def read_instruction(file: Path) -> str:
 
 
 def read_text(file: Path, max_bytes: int = MAX_TEXT_BYTES) -> str:
-    """Read a text file.
-
-    Raises:
-        ValueError: If the file is larger than ``max_bytes``.
-    """
+    """Read a text file. Raise ValueError if it is larger than ``max_bytes``."""
     with open(file, "rb") as stream:
         # read(n) allocates n bytes in advance, so n is limited by the size of the file
         raw = stream.read(min(max_bytes, file.stat().st_size) + 1)

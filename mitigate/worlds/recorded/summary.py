@@ -26,11 +26,8 @@ FAR_MEDIAN = 10.0
 class Camera:
     """The camera of a sensor that faces forward.
 
-    Attributes:
-        lens: Lens of the camera.
-        shape: Height and width of the images in pixels.
-        format: Description of where and how the images are stored.
-        border: Fraction of a view's pixels that lie outside the camera's field of view.
+    ``shape`` is the height and width of its images, ``format`` describes how they are stored, and
+    ``border`` is the fraction of a view's pixels that lie outside its field of view.
     """
 
     lens: Lens
@@ -42,14 +39,7 @@ class Camera:
 def describe(
     source: Source, recording: Recording, cameras: Mapping[str, Camera], step: Step
 ) -> list[str]:
-    """Return a description with one line for the drive, one per camera and one for the pose.
-
-    Args:
-        source: The source from which the drive was loaded.
-        recording: The loaded drive.
-        cameras: The camera that faces forward, for each sensor.
-        step: Distance between two time steps.
-    """
+    """Return one line each for the drive, its cameras, its pose and its instruction."""
     seconds = float(source.times[-1] - source.times[0])
     drive = f"{recording.name}: {counted(len(recording.times), 'step')}"
     if source.stepped:
@@ -104,9 +94,7 @@ def _depth_range(depth: np.ndarray, border: float) -> str:
 
 
 def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camera]) -> None:
-    """Warn if the border is large, if the scale of depth is implausible, or if the instruction is
-    missing.
-    """
+    """Warn about a large border, an implausible scale of depth, or a missing instruction."""
     name = recording.name
     border = max(camera.border for camera in cameras.values())
     if border > MAX_BORDER:
@@ -122,7 +110,7 @@ def warn_about(source: Source, recording: Recording, cameras: Mapping[str, Camer
         if not NEAR_MEDIAN <= median <= FAR_MEDIAN:
             warnings.warn(
                 f"{name}: the median depth is {median:.3g} m, which is unusual for a robot "
-                f"indoors. Check the scale. {source.depth_advice()}",
+                f"indoors. Check the scale. {source.depth_advice}",
                 stacklevel=3,
             )
     if not recording.instruction:

@@ -23,7 +23,7 @@ from mitigate.worlds.recorded.drive_files import (
     read_rows,
 )
 from mitigate.worlds.recorded.options import Options
-from mitigate.worlds.recorded.source import match_times, plan_pose, read_instruction
+from mitigate.worlds.recorded.source import heading_along, match_times, read_instruction
 
 LISTS = ("rgb.txt", "depth.txt")
 # file that contains both lists, written by associate.py of the TUM RGB-D benchmark
@@ -42,12 +42,8 @@ def is_tum(folder: Path) -> bool:
 def read_tum(path: Path, options: Options) -> list[Frames]:
     """Read the drive in a folder with the layout of TUM RGB-D.
 
-    A time step consists of an RGB image, and of the depth image and the pose that are nearest to it
-    in time. The heading is the direction of the camera's optical axis.
-
-    Raises:
-        ValueError: If a file is damaged, or the times of RGB images, depth images and poses are too
-            far apart.
+    A time step is an RGB image with the nearest depth image and pose in time. The heading is the
+    direction of the camera's optical axis.
     """
     if any((path / name).is_file() for name in LISTS):
         listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
@@ -75,20 +71,12 @@ def read_tum(path: Path, options: Options) -> list[Frames]:
 
 
 def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
-    """Read a list of images as tuples (time, file). Raise ValueError if a file is outside the
-    folder.
-    """
+    """Read a list of images as tuples (time, file)."""
     return sorted(_read_entry(path, name, line, row) for line, row in read_rows(path / name, 2))
 
 
 def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
-    """Read lines of the form "time file time file".
-
-    The two files in the first line determine which column contains RGB and which contains depth.
-
-    Raises:
-        ValueError: If a file lies outside the folder, or both files have the same kind.
-    """
+    """Read lines "time file time file". The first line decides which column is depth."""
     rows = list(read_rows(path / ASSOCIATIONS, 4))
     pairs = [
         [_read_entry(path, ASSOCIATIONS, n, row[at : at + 2]) for n, row in rows] for at in (0, 2)
@@ -115,19 +103,11 @@ def _read_entry(path: Path, name: str, line: int, row: Sequence[str]) -> tuple[f
 
 
 def _read_trajectory(file: Path) -> np.ndarray:
-    """Read lines of the form "time x y z qx qy qz qw". Return float64 [N, 4] with time, x, y and
-    heading.
-
-    Raises:
-        ValueError: If the file has no pose, or if the camera faces up or down in most poses. The
-            latter happens if the poses describe a robot frame (x forward) instead of the frame of
-            the camera (z forward).
-    """
+    """Read lines "time x y z qx qy qz qw" as float64 [N, 4]: time, x, y and heading."""
     rows = []
     for line, row in read_rows(file, 8):
         numbers = [number(word, file, line) for word in row[:8]]
-        pose = plan_pose(numbers[1], numbers[2], numbers[4:], (0.0, 0.0, 1.0))
-        rows.append((numbers[0], *pose))
+        rows.append((*numbers[:3], heading_along(numbers[4:], (0.0, 0.0, 1.0))))
     if not rows:
         raise ValueError(
             f"{file} has no pose. Add poses. To read the images without poses, delete this file."

@@ -30,19 +30,13 @@ class Bomb(ValueError):
 
 
 class Budget:
-    """Counter of decompressed bytes, with a limit on how many bytes a bag of ``size`` bytes may
-    expand to.
-    """
+    """Counter of the bytes to which a bag of ``size`` bytes may expand."""
 
     def __init__(self, size: int) -> None:
         self.limit = self.left = FREE + RATIO * size
 
     def spend(self, count: int) -> None:
-        """Subtract ``count`` bytes.
-
-        Raises:
-            Bomb: If the budget is exceeded.
-        """
+        """Subtract ``count`` bytes. Raise :class:`Bomb` if the budget is exceeded."""
         self.left -= count
         if self.left < 0:
             raise Bomb(
@@ -87,11 +81,7 @@ def _check(files: list[Path], size: int) -> None:
 
 
 def check_tables(file: Path) -> None:
-    """Check that a query of a database cannot run code that is stored in the database.
-
-    Raises:
-        ValueError: If the database has views, triggers, virtual tables or computed columns.
-    """
+    """Raise ValueError if a query of the database could run code that is stored in it."""
     try:
         with closing(sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)) as base:
             schema = base.execute("SELECT type, name, sql FROM sqlite_master LIMIT 1000").fetchall()
@@ -110,9 +100,7 @@ def check_tables(file: Path) -> None:
 
 
 def _count(unpacked: bytes) -> bytes:
-    """Subtract the length of decompressed data from the budget of the last opened bag, and return
-    the data.
-    """
+    """Subtract decompressed data from the budget of the last opened bag, and return it."""
     if _budgets:
         _budgets[-1].spend(len(unpacked))
     return unpacked
@@ -124,14 +112,7 @@ def _max_length() -> int:
 
 
 def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
-    """Decompress one or several concatenated streams within the budget.
-
-    Args:
-        make: Function that returns a new decompressor.
-        data: The compressed bytes.
-
-    Returns:
-        The decompressed bytes.
+    """Decompress concatenated streams within the budget, each with a new decompressor of ``make``.
 
     Raises:
         Bomb: If the budget is exceeded.

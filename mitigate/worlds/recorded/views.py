@@ -11,16 +11,15 @@ import numpy as np
 from mitigate.core.observation import DEPTH
 from mitigate.worlds.recorded.source import MIN_HFOV, Lens
 
-SUPERSAMPLING = 4  # enlargement factor of the canvas for a partially covered view
+# enlargement factor of the canvas for a partially covered view, so that rounding moves the edges of
+# the frame only by a fraction of a pixel
+SUPERSAMPLING = 4
 
 
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
     """Return the tangent of half of the largest square field of view that all cameras cover.
 
-    The maximum is 1, which means 90 degrees.
-
-    Args:
-        cameras: The lens of each camera, and the height and width of its images.
+    ``cameras`` are lenses with the height and width of their images. The maximum is 1 (90 degrees).
 
     Raises:
         ValueError: If the field of view would be narrower than ``MIN_HFOV``.
@@ -48,21 +47,15 @@ def border_fraction(lens: Lens, height: int, width: int, tangent: float = 1.0) -
 def _edges(
     lens: Lens, height: int, width: int, tangent: float
 ) -> tuple[float, float, float, float]:
-    """Return the left, right, top and bottom edges of a square view, in pixel coordinates of the
-    image.
-    """
+    """Return the left, right, top and bottom edges of a square view in pixels of the image."""
     fx, fy, cx, cy = lens.intrinsics(height, width)
     return cx - fx * tangent, cx + fx * tangent, cy - fy * tangent, cy + fy * tangent
 
 
 def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) -> np.ndarray:
-    """Crop and resize a frame to a square view.
+    """Crop and resize a frame, uint8 [H, W, 3] or float32 [H, W], to a square view.
 
-    Args:
-        frame: uint8 [H, W, 3] or float32 [H, W].
-        lens: Lens of the camera that took the frame.
-        size: Height and width of the view in pixels.
-        tangent: Tangent of half the angle that the view covers, which is 1 for 90 degrees.
+    ``tangent`` is the tangent of half the angle that the view covers.
 
     Returns:
         The view, uint8 [size, size, 3] or float32 [size, size, 1]. If the frame already is such a
@@ -84,11 +77,7 @@ def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) 
 def _partial_view(
     frame: np.ndarray, edges: tuple[float, float, float, float], size: int, is_depth: bool
 ) -> np.ndarray:
-    """Paste a frame that covers only a part of the view.
-
-    The frame is first pasted onto a larger canvas, so that rounding moves its edges only by a
-    fraction of a pixel.
-    """
+    """Paste a frame that covers only a part of the view."""
     height, width = frame.shape[:2]
     left, right, top, bottom = edges
     large = SUPERSAMPLING * size
