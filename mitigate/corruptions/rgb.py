@@ -15,7 +15,7 @@ import numpy as np
 
 from mitigate.corruptions import blur, masks
 from mitigate.corruptions.eld import low_light_noise
-from mitigate.corruptions.keying import Key, digest, scramble, uniform
+from mitigate.corruptions.keying import Key, digest, uniform, view_streams
 from mitigate.corruptions.record import Record
 
 BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernels are 3 to 14 % of W
@@ -92,7 +92,7 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     """Darken with a gradient mask, which is the same for all views of the episode."""
     height, width = views.shape[1:3]
     mask = masks.low_light_mask(digest(key, "low_light"), severity, height, width)
-    return masks.covered(views, mask, masks.colour_row(BLACK, width))
+    return masks.cover(views, mask, masks.colour_row(BLACK, width))
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -102,7 +102,7 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     colour = masks.spatter_colour(digest(key, "spatter_colour"))
-    return masks.covered(views, mask, masks.colour_row(colour, width))
+    return masks.cover(views, mask, masks.colour_row(colour, width))
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -111,14 +111,12 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
     The direction of the light is fixed in the world if the heading is known.
     """
     count, height, width, _ = views.shape
-    out, white = np.empty_like(views), masks.colour_row(WHITE, width)
+    out, white = views.copy(), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
     for view, centre in enumerate(centres):
-        if centre is None:
-            out[view] = views[view]
-        else:
+        if centre is not None:
             mask = masks.flare_mask(*centre, severity, height, width)
-            masks.cover(views[view : view + 1], mask, white, out[view : view + 1])
+            out[view : view + 1] = masks.cover(views[view : view + 1], mask, white)
     return out
 
 
@@ -165,15 +163,17 @@ def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Draw a black disk of radius 0.5 * severity * min(H, W) at the centre."""
     out = views.copy()
-    masks.blacken(out, masks.disk_spans(severity, *views.shape[1:3]))
+    for y, (first, end) in enumerate(masks.disk_spans(severity, *views.shape[1:3])):
+        out[:, y, first:end] = 0
     return out
 
 
 def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Make each view of each frame black with probability ``severity``."""
-    out, value = np.empty_like(views), digest(key, "black_out", frame=True)
-    for view in range(len(views)):
-        out[view] = 0 if uniform(scramble(value, view)) < severity else views[view]
+    out = views.copy()
+    for view, stream in enumerate(view_streams(key, "black_out", len(views))):
+        if uniform(int(stream)) < severity:
+            out[view] = 0
     return out
 
 
