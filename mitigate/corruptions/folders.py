@@ -1,6 +1,4 @@
-"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed, and files are
-written atomically.
-"""
+"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed."""
 
 from __future__ import annotations
 
@@ -215,9 +213,7 @@ def _corrupt_frame(
 
 
 def checksum(*paths: Path) -> str:
-    """Return one checksum for an input file and its output file, or "" if one of them cannot be
-    read.
-    """
+    """Return one checksum for an input and an output file, or "" if one cannot be read."""
     try:
         return short_hash("".join(map(sha256, paths)))
     except OSError:
@@ -234,9 +230,7 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check that an earlier run in ``out`` had the same settings and episodes; then write both
-    there.
-    """
+    """Check that an earlier run in ``out`` had the same settings and episodes; write both."""
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     earlier, episodes = earlier_summary(out, settings_now), plan.episodes()

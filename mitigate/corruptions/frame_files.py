@@ -247,9 +247,7 @@ def _load(path: Path) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Frame:
-    """An input file: its relative path, its episode and its frame number, which determine its
-    key.
-    """
+    """The relative path, the episode and the frame number of an input file."""
 
     path: Path
     episode: str
@@ -258,9 +256,7 @@ class Frame:
 
 @dataclass
 class Plan:
-    """The content of a folder: its frames in order, skipped files, and counts of other files by
-    suffix.
-    """
+    """The frames of a folder in order, skipped files, and counts of other files by suffix."""
 
     frames: list[Frame] = field(default_factory=list)
     # maps a skipped file, or a skipped folder with a final slash, to the reason
@@ -309,9 +305,7 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
-    """Return the number of files per suffix as text, with the most frequent suffix first: "3 .tif,
-    1 .webp".
-    """
+    """Return the number of files per suffix, highest first: "3 .tif, 1 .webp"."""
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 
@@ -319,8 +313,7 @@ def count_suffixes(suffixes: Mapping[str, int]) -> str:
 def _files(source: Path, out: Path | None, plan: Plan) -> Iterator[Path]:
     """Yield the relative paths of all files that are not hidden, folder by folder in natural order.
 
-    Links to folders are followed, unless a link leads to an enclosing folder or into ``out`` (a
-    real path).
+    Links to folders are followed, except to an enclosing folder or into ``out`` (a real path).
     """
 
     def note_unreadable(error: OSError) -> None:

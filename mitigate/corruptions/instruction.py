@@ -106,9 +106,7 @@ def check_options(split: str, mask_token: str, tagger: str) -> None:
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
-    """Return whether the instruction of this episode is rewritten; ``severity`` is the
-    probability.
-    """
+    """Return whether this episode's instruction is rewritten, with probability ``severity``."""
     return uniform(digest(key, manner)) < severity
 
 
@@ -138,9 +136,7 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Sample one misleading sentence per kind of attack, and return a fraction ``severity`` of
-    them.
-    """
+    """Sample a misleading sentence per kind of attack; return a fraction ``severity`` of them."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]

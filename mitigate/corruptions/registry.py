@@ -53,11 +53,7 @@ HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", 
 
 @lru_cache(maxsize=1)
 def plugin_records() -> dict[str, Record]:
-    """Return the records of installed packages.
-
-    An invalid record is skipped with a warning, so that a broken package causes no error if it is
-    not used.
-    """
+    """Return the records of installed packages; an invalid record only causes a warning."""
     records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
         try:
@@ -95,8 +91,7 @@ def names(*modalities: str) -> tuple[str, ...]:
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Return the names of the unseen corruptions that change one of ``modalities``; ``half``
-    restricts them to the validation or the test set.
+    """Return the unseen corruptions that change one of ``modalities``, of one half or both.
 
     Raises:
         ValueError: If ``half`` is unknown.
@@ -123,10 +118,7 @@ def fault_names(*families: str) -> tuple[str, ...]:
 
 
 def family(name: str) -> str:
-    """Return the family of a fault, or of the first fault in a pair of corruptions.
-
-    The result is "" if there is no fault.
-    """
+    """Return the family of the first fault in a corruption or pair, or "" without a fault."""
     return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
 
 
@@ -141,9 +133,7 @@ def record(name: str) -> Record:
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Split the name of a pair into its two names; for a single corruption, return a tuple with its
-    name.
-    """
+    """Split the name of a pair into its two names; a single name gives a tuple of one."""
     return tuple(name.split(AND))
 
 
@@ -157,18 +147,14 @@ def title(name: str) -> str:
 
 
 def version(name: str) -> dict[str, str]:
-    """Return the entry ``version`` of a result row as a dict, which is empty if all parts belong to
-    the suite.
-    """
+    """Return the entry ``version`` of a result row; it is empty if all parts are in the suite."""
     others = (part for part in parts(name) if part != "clean" and part not in SUITE)
     versions = [record(part).version for part in others]
     return {"version": AND.join(versions)} if versions else {}
 
 
 def modality(name: str) -> str:
-    """Return the modality that a corruption changes, or "rgb+depth" for a fault that affects
-    both.
-    """
+    """Return the modality that a corruption changes, such as "rgb+depth" for some faults."""
     return record(name).modality
 
 

@@ -107,9 +107,7 @@ class Schedule:
 
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:
-        """Return a schedule that applies one corruption at ``severity`` to every frame, as in
-        evaluation.
-        """
+        """Return a schedule that applies one corruption to every frame, as in evaluation."""
         return cls("per_episode", severity, clean_share=0.0, names=(name,))
 
     @property
@@ -158,9 +156,7 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """Sample the corruption and the key of a frame; both depend only on the arguments and the
-        weights.
-        """
+        """Sample the corruption and the key of a frame from the arguments and the weights."""
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -189,15 +185,11 @@ class Schedule:
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """Return the state as JSON data for a checkpoint, so that a resumed run has the same
-        weights.
-        """
+        """Return the state as JSON data for a checkpoint."""
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
-        """Restore the result of ``state_dict()``; raise ValueError if it lacks a corruption of this
-        schedule.
-        """
+        """Restore the result of ``state_dict()``; raise ValueError for an invalid state."""
         if "success" not in state:
             raise ValueError(
                 f"The state of a Schedule must have the entry 'success', got only the entries "

@@ -259,17 +259,12 @@ def _limit(views, strength, rng) -> np.float32:
 
 
 def _fill(rng: np.random.Generator) -> float:
-    """Sample the value that replaces depth: no reading (NaN) in most cases, otherwise a depth in
-    range.
-    """
+    """Sample the value that replaces depth: in most cases no reading (NaN)."""
     return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view.
-
-    Before the change, holes are filled with the maximum range. After it, they are holes again.
-    """
+    """Apply ``change`` to each view; holes have the maximum range meanwhile."""
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
     return np.where(holes, np.float32(np.nan), out)
@@ -297,9 +292,7 @@ PRIMITIVES = (
 
 
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Apply one to three primitives with random strengths up to ``severity``; the choice is fixed
-    per episode.
-    """
+    """Apply one to three primitives of the episode with random strengths up to ``severity``."""
     valid = (views > 0) & np.isfinite(views)
     z_max = np.float32(sensor.z_max)
     shares = np.where(valid, np.minimum(views, z_max) / z_max, np.float32(np.nan))

@@ -23,9 +23,7 @@ GAMMA = 2.2  # display gamma: light is proportional to (stored level)^GAMMA
 
 
 def exposure(views, strength, rng, now):
-    """Change the brightness, either uniformly or by a smooth random map; the change is constant or
-    differs between frames.
-    """
+    """Change the brightness, uniformly or by a random map, per episode or per frame."""
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -110,9 +108,7 @@ def coarse(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Displace pixels by a smooth random map (PRIME's diffeomorphisms), and rotate, scale and shift
-    the image.
-    """
+    """Displace pixels by a smooth random map (PRIME), and rotate, scale and shift the image."""
     source = now if rng.random() < 0.3 else rng
     map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
@@ -159,9 +155,7 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes, which may differ between views, with a colour, noise or other parts of
-    the image.
-    """
+    """Fill random shapes with a colour, noise or other parts of the image."""
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
@@ -225,8 +219,6 @@ PRIMITIVES = (
 
 
 def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
-    """Apply one to three primitives with random strengths up to ``severity``; the choice is fixed
-    per episode.
-    """
+    """Apply one to three primitives of the episode with random strengths up to ``severity``."""
     changed = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
     return np.rint(np.clip(changed, 0.0, 1.0) * 255.0).astype(np.uint8)

@@ -59,9 +59,7 @@ class Mount:
         return min(max(degrees + self.fov, NARROWEST), WIDEST)
 
     def rotation(self) -> np.ndarray:
-        """Return the rotation matrix [3, 3] for the axes (right, forward, up); it applies roll,
-        then pitch, then yaw.
-        """
+        """Return the matrix [3, 3] (right, forward, up) that applies roll, pitch, then yaw."""
         return np.round(
             _turn(UP, self.yaw) @ _turn(RIGHT, self.pitch) @ _turn(FORWARD, self.roll), _DECIMALS
         )
@@ -113,9 +111,7 @@ def warp(
 
 @njit(inline="always")
 def _source(rotation, row, column, height, width, before, after):
-    """Return the source row and column of a pixel and its depth factor, which is 0 if the pixel is
-    behind the original camera.
-    """
+    """Return a pixel's source row and column, and its depth factor (0: behind the camera)."""
     x = (2 * column + 1 - width) / width * after
     z = (height - 1 - 2 * row) / width * after
     right = rotation[0, 0] * x + rotation[0, 1] + rotation[0, 2] * z

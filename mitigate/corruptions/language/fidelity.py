@@ -51,9 +51,7 @@ class Facts:
 
 @dataclass(frozen=True)
 class _Reading:
-    """The facts of a text, its words in canonical form, and the number of the clause in which each
-    landmark first occurs.
-    """
+    """The facts of a text, its canonical words, and the first clause of each landmark."""
 
     facts: Facts
     words: frozenset[str]
@@ -103,9 +101,7 @@ def _absent(change: str, names: Iterable[str], others: Collection[str]) -> list[
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """List names that occur less often in ``new`` than in ``old``, and names that occur only in
-    ``new``.
-    """
+    """List names that occur less often in ``new``, and names that occur only there."""
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + _absent(f"{kind} invented", new, old)
 
@@ -167,9 +163,7 @@ def _same(token: Token) -> str:
 
 
 def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return, for every word or known phrase, its index, its canonical name, and whether it is a
-    landmark.
-    """
+    """Return the index, the canonical name and whether it is a landmark, for every name."""
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(tokens):
@@ -184,9 +178,7 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
 
 
 def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
-    """Return the canonical name and the length of the longest known phrase that starts at
-    ``place``.
-    """
+    """Return the name and length of the longest known phrase at ``place``, or ("", 1)."""
     for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
         words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):

@@ -21,9 +21,7 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 
 def normal(noun: str) -> str:
-    """Return the canonical name of a noun: the main word of its synonym group, in lower case and
-    singular.
-    """
+    """Return the canonical name of a noun: the main word of its group, singular, lower case."""
     word = noun.lower().removesuffix("'s").removesuffix("s'")
     if word in CANONICAL or word in SYNONYMS:
         return CANONICAL.get(word, word)

@@ -97,9 +97,7 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: Draw, attempt: int) -> str | None:
-    """Rewrite the command of ``clause`` in the style; return None if the command must keep its
-    words.
-    """
+    """Rewrite the command in the style; return None if it must keep its words."""
     if attempt >= 2:
         return None
     for kind, pattern in phrases.PATTERNS.items():

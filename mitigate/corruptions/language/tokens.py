@@ -16,15 +16,12 @@ class Tokenizer(Protocol):
     mask_token: str | None
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Return the token ids and whether they were truncated; if ``length`` is set, they are
-        padded or truncated to this length.
-        """
+        """Return token ids, padded or cut to ``length``, and whether they were cut."""
         ...
 
 
 class FileVocabulary:
-    """Tokenizer that uses the ``instruction_vocab`` of an R2R-CE file: lower-case words and
-    punctuation.
+    """Tokenizer with the ``instruction_vocab`` of an R2R-CE file: words and punctuation.
 
     The vocabulary has no mask token, so "[MASK]" gets the id of unknown words.
     """
@@ -36,9 +33,7 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text``; unknown words get the id of unknown words, and unknown punctuation is
-        removed.
-        """
+        """Encode ``text``; unknown punctuation is removed."""
         ids = [
             self._numbers.get(word, self._unknown)
             for word in _WORD.findall(text.lower())

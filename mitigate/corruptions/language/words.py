@@ -49,8 +49,5 @@ SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | li
 
 
 def is_kept(word: str) -> bool:
-    """Return whether ``word`` must not be masked: it is in ``SPATIAL``, or it ends in "n't".
-
-    The word must be in lower case, with a straight apostrophe.
-    """
+    """Return whether a word (lower case, straight apostrophe) must not be masked."""
     return word in SPATIAL or word.endswith("n't")

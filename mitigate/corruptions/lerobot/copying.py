@@ -221,9 +221,7 @@ def _frames_per_file(dataset: Dataset, cameras: Sequence[Camera]) -> Counter[str
 
 
 def _files(source: Path) -> Iterator[str]:
-    """Yield the relative paths of the files of a dataset, except hidden files, ``INFO`` and
-    ``SUMMARY``.
-    """
+    """Yield the relative paths of files that are not hidden, except ``INFO`` and ``SUMMARY``."""
     listed = (Path(at, name) for at, inner, files in os.walk(source) for name in (*inner, *files))
     for path in sorted(listed):
         relative = path.relative_to(source)
@@ -289,8 +287,7 @@ def _corrupt_video(
 ) -> None:
     """Write a corrupted video.
 
-    Frames that belong to no episode are corrupted and kept too, so that no other frame gets a new
-    number.
+    Frames outside all episodes are corrupted too, so that no other frame gets a new number.
     """
     source = work.dataset.path / name
     used: set[int] = set()

@@ -81,9 +81,7 @@ class Dataset:
 
     @cached_property
     def signals(self) -> dict[str, int]:
-        """The number of values per row, for each feature that contains numbers, except
-        ``COLUMNS``.
-        """
+        """The number of values per row of each numeric feature, except ``COLUMNS``."""
         sizes = {
             name: math.prod(feature["shape"])
             for name, feature in self.features.items()
@@ -92,8 +90,7 @@ class Dataset:
         return {name: size for name, size in sizes.items() if size <= MAX_SIGNAL}
 
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
-        """Return the cameras of a kind ("rgb" or "depth"); if ``names`` is given, only those in
-        ``names``.
+        """Return the cameras of a kind ("rgb" or "depth"), or those of them in ``names``.
 
         Raises:
             ValueError: If a name is unknown, or its camera cannot be used.
@@ -124,9 +121,7 @@ class Dataset:
         return cameras[0]
 
     def choose_episodes(self, numbers: Sequence[int] | None) -> list[Episode]:
-        """Return the episodes with these numbers, or all episodes if ``numbers`` is None. Raise
-        ValueError for an unknown number.
-        """
+        """Return the episodes with these numbers (None: all); raise ValueError for others."""
         for number in numbers or ():
             if number not in self.episodes:
                 raise ValueError(
@@ -252,9 +247,7 @@ def open_dataset(folder: Path | str) -> Dataset:
 
 
 def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:
-    """Convert a column, whose entries are numbers or lists of ``size`` numbers, to float64 [N,
-    size].
-    """
+    """Convert a column of numbers, or of lists of ``size`` numbers, to float64 [N, size]."""
     import pyarrow
 
     array = pyarrow.chunked_array(column).combine_chunks() if column.num_chunks else column
@@ -281,9 +274,7 @@ def _is_list(kind: Any) -> bool:
 def rows_of(
     dataset: Dataset, episodes: Sequence[Episode]
 ) -> Iterator[tuple[Episode, Rows, np.ndarray]]:
-    """Yield each episode, its rows, and a mask that marks these rows in their file (bool [rows of
-    the file]).
-    """
+    """Yield each episode, its rows, and a mask of its rows in their file (bool [N])."""
     read: dict[str, Rows] = {}
     for episode in episodes:
         if episode.data not in read:

@@ -137,11 +137,7 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | str:
-    """Return the camera of a feature, or the reason why it cannot be used.
-
-    The reason begins with a verb ("has 2 dimensions instead of 3"), so that it can follow the name
-    of the camera.
-    """
+    """Return the camera, or the reason why it cannot be used, which begins with a verb."""
     shape, names = feature["shape"], feature.get("names")
     info = {
         key: value
@@ -240,11 +236,10 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
 
 
 def _template(file: Path, key: str, template: object) -> str:
-    """Check a path template that meta/info.json contains, and return it.
+    """Return a path template of meta/info.json.
 
-    Raises:
-        ValueError: If the template is not a relative path, leads outside of the dataset, or has a
-            field other than chunk_index, file_index and (for videos) video_key.
+    Raises ValueError if the template is not a relative path, leads outside of the dataset, or has a
+    field other than chunk_index, file_index and (for videos) video_key.
     """
     is_video = key == "video_path"
     fields = "{chunk_index:03d}, {file_index:03d}" + ", {video_key}" * is_video
@@ -268,18 +263,9 @@ def _place(
     prefix: str,
     video: str = "",
 ) -> str:
-    """Return the path of the file that contains an episode's rows, or its frames of one camera.
+    """Return the path of the file with an episode's rows (``prefix`` "data") or a camera's frames.
 
-    Args:
-        columns: Columns of a file in meta/episodes.
-        row: Row of the episode.
-        path: The file that contains the columns.
-        template: A checked template.
-        prefix: "data", or "videos/" and the name of the camera.
-        video: Name of the camera.
-
-    Raises:
-        ValueError: If the index of a chunk or file is out of range.
+    ``columns`` are those of the file ``path`` in meta/episodes; ``template`` is a checked template.
     """
     values = {name: columns[f"{prefix}/{name}"][row] for name in ("chunk_index", "file_index")}
     if not all(0 <= value < MAX_INDEX for value in values.values()):

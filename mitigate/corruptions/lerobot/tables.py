@@ -72,9 +72,7 @@ def open_table(path: Path) -> Iterator[Any]:
 
 
 def _check_size(path: Path, metadata: Any) -> None:
-    """Raise ValueError if a file has too many rows, or would expand to far more bytes than it
-    has.
-    """
+    """Raise ValueError if a file has too many rows, or expands to far more bytes."""
     if metadata.num_rows > MAX_ROWS:
         raise ValueError(f"{path} must have at most {MAX_ROWS} rows, got {metadata.num_rows}.")
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
@@ -124,9 +122,7 @@ def check_columns(path: Path, names: Sequence[str], columns: Sequence[str]) -> N
 
 
 def integers(table: Any, column: str, path: Path) -> list[int]:
-    """Return an integer column as a list; raise ValueError for another type or for missing
-    values.
-    """
+    """Return an integer column as a list; raise ValueError for any other value."""
     import pyarrow
 
     values = table.column(column)

@@ -187,9 +187,7 @@ def _as_frame(path: Path, camera: Camera, frame: Any) -> np.ndarray:
 
 
 def read_codes(path: Path, frame: Any) -> np.ndarray:
-    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for another pixel
-    format.
-    """
+    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for others."""
     name = frame.format.name
     if not frame.format.components[0].bits == 12:
         raise ValueError(

@@ -1,8 +1,8 @@
 """The four depth corruptions of the standard suite for batches [B, V, H, W] in float32 metres.
 
-Each function that is named after a corruption takes the views and the parameters of each row
-(``Rows``), and returns a new batch. The formulas are in ``mitigate/corruptions/depth.py``, which
-also samples the random numbers per row.
+Each function that is named after a corruption maps the views and the parameters of each row
+(``Rows``) to a new batch. ``mitigate/corruptions/depth.py`` has the formulas and samples the random
+numbers per row.
 """
 
 from __future__ import annotations
@@ -32,11 +32,7 @@ def gaussian_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def missing_data(views: Tensor, rows: Rows) -> Tensor:
-    """Replace the depth of the pixels where a random field is highest.
-
-    These pixels are a fraction 0.5 * severity of each view. A quarter of them become z_max, and the
-    others become missing.
-    """
+    """Remove depth, or set it to z_max, in the pixels where a random field is highest."""
     count, height, width = views.shape[1:]
     digests = rows.digests("missing_data")
     smooth, cells = fields(digests, height, width, depth.HOLE_CORRELATION, views)

@@ -102,9 +102,7 @@ def _check_normalised(depth: Tensor, sensor: DepthSensor) -> None:
 
 
 def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
-    """Convert normalised depth to metres, with 0 at invalid pixels, as in
-    ``corrupt_normalised``.
-    """
+    """Convert normalised depth to metres, with 0 at invalid pixels."""
     metres = sensor.z_min + depth * (sensor.z_max - sensor.z_min)
     return metres.masked_fill(~is_valid(depth), 0.0)
 

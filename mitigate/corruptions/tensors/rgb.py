@@ -1,8 +1,8 @@
 """The eight RGB corruptions of the standard suite for uint8 batches [B, V, H, W, 3].
 
-Each function that is named after a corruption takes the views and the parameters of each row
-(``Rows``), and returns a new batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also
-samples the random numbers per row.
+Each function that is named after a corruption maps the views and the parameters of each row
+(``Rows``) to a new batch. ``mitigate/corruptions/rgb.py`` has the formulas and samples the random
+numbers per row.
 """
 
 from __future__ import annotations
@@ -32,9 +32,7 @@ ONE_TAP = np.array([0]), np.array([0]), np.array([1])
 
 
 def motion_blur(views: Tensor, rows: Rows) -> Tensor:
-    """Blend views with a line blur. float32 is exact here, because all sums are integers below
-    2^24.
-    """
+    """Blend with a line blur. float32 is exact: all sums are integers below 2^24."""
     lines = rows.draw(rgb.blur_line, views.shape[3])
     steps = np.array([rgb.tap_step(length) for length, _ in lines])
     taps = [
@@ -62,16 +60,12 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
 
 
 def _planes(views: Tensor) -> Tensor:
-    """Return one plane per view and colour, as channels of one image: float32 [1, B * V * 3, H,
-    W].
-    """
+    """Return one plane per view and colour, float32 [1, B * V * 3, H, W]."""
     return views.permute(0, 1, 4, 2, 3).flatten(0, 2).float().unsqueeze(0)
 
 
 def _per_plane(values: np.ndarray, views: Tensor) -> Tensor:
-    """Copy one value per row [B, ...] to the device, and repeat it for each plane: [B * V * 3,
-    ...].
-    """
+    """Copy a value per row [B, ...] to the device for each plane, [B * V * 3, ...]."""
     return on_device(values, views).repeat_interleave(3 * views.shape[1], 0)
 
 
@@ -134,9 +128,7 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def spatter(views: Tensor, rows: Rows) -> Tensor:
-    """Cover a fraction 0.45 * severity of the image with mud or water, where a random field is
-    highest.
-    """
+    """Cover the image with mud or water where a random field is highest."""
     height, width = views.shape[2:4]
     digests = rows.digests("spatter")
     smooth, cells = fields(digests, height, width, masks.SPATTER_CORRELATION, views)
@@ -172,8 +164,7 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
     """Return the kernel of ``blur.gaussian`` along one axis, without its first smoothing levels.
 
-    If an image was smoothed at the levels below ``first``, this kernel (float64 [n]) adds the
-    remaining blur. Its taps are 2^first pixels apart, and their sum is 1.
+    Its taps (float64 [n], sum 1) are 2^first pixels apart.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)

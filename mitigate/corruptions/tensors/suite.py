@@ -1,6 +1,4 @@
-"""Apply one corruption to a batch of views, either on the device of the batch or with the numpy
-suite on the host.
-"""
+"""Apply one corruption to a batch of views, on its device or with the numpy suite on the host."""
 
 from __future__ import annotations
 
@@ -191,10 +189,7 @@ def _check_frames(frames: Tensor, name: str, modality: str) -> None:
 
 
 def _check_unit(frames: Tensor, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth values of a row are far beyond z_max.
-
-    This is ``depth_sensor.check_unit`` for a batch.
-    """
+    """Apply ``depth_sensor.check_unit`` to each row of a batch."""
     pixels = frames.flatten(1)
     sample = pixels[:, :: pixels.shape[1] // UNIT_SAMPLES + 1]
     valid = is_valid(sample)

@@ -47,11 +47,7 @@ def misalignment(views: Tensor, rows: Rows) -> Tensor:
 
 
 def wiggling(views: Tensor, rows: Rows) -> Tensor:
-    """Add a sine wave that is a function of depth.
-
-    The numpy version reads this error from a table. To get the same values, this function computes
-    the sine for the nearest depth in that table.
-    """
+    """Add a sine of depth, for the nearest depth in the table of the numpy version."""
     phases = on_device([uniform(value) for value in rows.digests("wiggling")], views, 3)
     amplitudes = on_device(rows.scaled(calibration.WIGGLE), views, 3)
     clean = views.clamp(0.0, rows.sensor.z_max)
