@@ -48,7 +48,6 @@ BROAD = {record.name: record for record in broad.RECORDS}
 FAULTS = {record.name: record for record in faults.RECORDS}
 INCLUDED = {**SUITE, **UNSEEN, **SENSORS, **FAULTS, **BROAD}
 AND = "+"  # separator between the names of a pair
-HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
 
 @lru_cache(maxsize=1)
@@ -107,9 +106,8 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 def known(*modalities: str) -> tuple[str, ...]:
     """Return the names of all corruptions that change one of ``modalities``, except faults."""
-    others = {**SENSORS, **BROAD, **plugin_records()}.items()
-    fixed = names(*modalities) + unseen_names(*modalities)
-    return fixed + tuple(n for n, r in others if r.modality in modalities)
+    records = {**SUITE, **UNSEEN, **SENSORS, **BROAD, **plugin_records()}
+    return tuple(name for name, record in records.items() if record.modality in modalities)
 
 
 def fault_names(*families: str) -> tuple[str, ...]:
@@ -160,19 +158,14 @@ def modality(name: str) -> str:
 
 def table() -> str:
     """Return a text table of all frame corruptions, in aligned columns with a heading."""
-    records = [*(record(name) for name in known("rgb", "depth")), *FAULTS.values()]
-    records = [record for record in records if record.modality != ACTION]
-    rows = [
-        (r.name, _sensor(r), r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
-    ]
-    rows = [HEAD, *rows]
+    rows = [("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")]
+    for r in (*(record(name) for name in known("rgb", "depth")), *FAULTS.values()):
+        if r.modality != ACTION:
+            sensor = "both" if r.modality == FRAMES else r.modality
+            rows.append((r.name, sensor, r.severity, r.episode, r.frame, r.source, _suite(r)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     return "\n".join(lines)
-
-
-def _sensor(record: Record) -> str:
-    return "both" if record.modality == FRAMES else record.modality
 
 
 def _suite(record: Record) -> str:

@@ -271,23 +271,8 @@ def _each(views, change) -> np.ndarray:
 
 
 PRIMITIVES = (
-    curve,
-    uneven,
-    noisy,
-    smooth,
-    steps,
-    warped,
-    swapped,
-    holes,
-    hidden,
-    lost,
-    patterned,
-    tilted,
-    wrapped,
-    ranged,
-    spread,
-    torn,
-    ghost,
+    *(curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidden),
+    *(lost, patterned, tilted, wrapped, ranged, spread, torn, ghost),
 )
 
 

@@ -8,13 +8,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from mitigate.corruptions.broad.composition import (
-    composed,
-    displaced,
-    field,
-    log_uniform,
-    shapes,
-)
+from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
@@ -204,17 +198,8 @@ def _each(views, change) -> np.ndarray:
 
 
 PRIMITIVES = (
-    exposure,
-    tone,
-    colour_mix,
-    contrast,
-    filtered,
-    coarse,
-    warped,
-    noisy,
-    covered,
-    hidden,
-    lost,
+    *(exposure, tone, colour_mix, contrast, filtered, coarse),
+    *(warped, noisy, covered, hidden, lost),
 )
 
 

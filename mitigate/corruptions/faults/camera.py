@@ -40,19 +40,14 @@ _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the las
 class Mount:
     """A displacement of the camera (or of the rig of a panorama), or a change of its field of view.
 
-    Attributes:
-        height: Metres up.
-        pitch: Degrees up.
-        roll: Degrees clockwise, seen from behind the camera.
-        yaw: Degrees to the left.
-        fov: Degrees by which the horizontal field of view is widened.
+    All values except ``height`` are in degrees.
     """
 
-    height: float = 0.0
-    pitch: float = 0.0
-    roll: float = 0.0
-    yaw: float = 0.0
-    fov: float = 0.0
+    height: float = 0.0  # metres up
+    pitch: float = 0.0  # up
+    roll: float = 0.0  # clockwise, seen from behind the camera
+    yaw: float = 0.0  # to the left
+    fov: float = 0.0  # by which the horizontal field of view is widened
 
     def hfov(self, degrees: float) -> float:
         """Return the new horizontal field of view of a camera that originally had ``degrees``."""

@@ -25,22 +25,15 @@ LOST = 0.5  # probability that an action is dropped, or repeated, at severity 1
 
 @dataclass(frozen=True)
 class Movement:
-    """How the action of a step is executed.
+    """How the action of a step is executed."""
 
-    Attributes:
-        gain: Factor of the length of a forward step, or of a continuous action.
-        turn: Factor of the angle of a turn.
-        drift: Drift to the left, from -1 to 1, in units of ``DRIFT`` degrees per forward step. For
-            continuous actions, the drift is a bias.
-        dropped: Whether the robot stands still instead of executing the action.
-        repeated: Whether the previous action is executed again instead of this one.
-    """
-
-    gain: float = 1.0
-    turn: float = 1.0
+    gain: float = 1.0  # factor of the length of a forward step, or of a continuous action
+    turn: float = 1.0  # factor of the angle of a turn
+    # drift to the left, from -1 to 1, in units of DRIFT degrees per forward step; for continuous
+    # actions, the drift is a bias
     drift: float = 0.0
-    dropped: bool = False
-    repeated: bool = False
+    dropped: bool = False  # whether the robot stands still instead of executing the action
+    repeated: bool = False  # whether the previous action is executed instead of this one
 
 
 def motion_slip(severity: float, key: Key) -> Movement:

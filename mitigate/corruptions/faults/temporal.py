@@ -100,34 +100,16 @@ _drawn = partial(Record.drawn, TEMPORAL)
 _applied = partial(Record.of, source="heuristic", version="1", family=TEMPORAL)
 # the random values from which the position of an interval is computed
 _INTERVALS = {"episode": "phase", "frame": "start"}
+_FREEZE = f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}"
+_BURST = f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}"
+_LAG = f"frames that depth is older than RGB, up to {DELAY}"
+_EXPOSURE = f"range of the exposure, up to {STOPS:g} stops"
 RECORDS = (
-    _drawn(
-        FRAMES,
-        frozen_frame,
-        f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}",
-        **_INTERVALS,
-    ),
-    _drawn(
-        FRAMES,
-        repeated_frames,
-        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        **_INTERVALS,
-    ),
-    _applied(
-        FRAMES,
-        dropped_frames,
-        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        **_INTERVALS,
-    ),
+    _drawn(FRAMES, frozen_frame, _FREEZE, **_INTERVALS),
+    _drawn(FRAMES, repeated_frames, _BURST, **_INTERVALS),
+    _applied(FRAMES, dropped_frames, _BURST, **_INTERVALS),
     _drawn(FRAMES, frame_delay, f"delay, up to {DELAY} frames"),
-    _drawn(
-        "depth",
-        depth_lag,
-        f"frames that depth is older than RGB, up to {DELAY}",
-        label="Depth behind RGB",
-    ),
-    _applied(
-        "rgb", exposure_flicker, f"range of the exposure, up to {STOPS:g} stops", frame="exposure"
-    ),
+    _drawn("depth", depth_lag, _LAG, label="Depth behind RGB"),
+    _applied("rgb", exposure_flicker, _EXPOSURE, frame="exposure"),
     _drawn(FRAMES, intermittent, "of the other corruption of the pair", **_INTERVALS),
 )

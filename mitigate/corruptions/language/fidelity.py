@@ -28,25 +28,15 @@ _RELATIONS = {word: name for name, forms in WORDS["relations"].items() for word 
 
 @dataclass(frozen=True)
 class Facts:
-    """The facts that are extracted from a text.
+    """The facts that are extracted from a text."""
 
-    Attributes:
-        directions: left, right, around, straight, up, down and stop, in order.
-        landmarks: canonical nouns in order, with repetitions.
-        numbers: numbers, ordinals and distances ("two", "first", "two step").
-        compass: compass words.
-        attributes: colours, shapes and sizes.
-        relations: into, out, past, between, behind and similar words, in order.
-        denials: number of negations (not, never, avoid and similar words).
-    """
-
-    directions: tuple[str, ...]
-    landmarks: tuple[str, ...]
-    numbers: tuple[str, ...]
-    compass: tuple[str, ...]
-    attributes: tuple[str, ...]
-    relations: tuple[str, ...]
-    denials: int
+    directions: tuple[str, ...]  # left, right, around, straight, up, down and stop, in order
+    landmarks: tuple[str, ...]  # canonical nouns in order, with repetitions
+    numbers: tuple[str, ...]  # numbers, ordinals and distances ("two", "first", "two step")
+    compass: tuple[str, ...]  # compass words
+    attributes: tuple[str, ...]  # colours, shapes and sizes
+    relations: tuple[str, ...]  # into, out, past, between, behind and similar words, in order
+    denials: int  # number of negations (not, never, avoid and similar words)
 
 
 @dataclass(frozen=True)

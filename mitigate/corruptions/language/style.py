@@ -28,21 +28,13 @@ Draw = Callable[[Sequence[str]], str]  # makes a random choice
 
 @dataclass(frozen=True)
 class Restyled:
-    """A rewritten instruction, and what the fidelity gate decided.
-
-    Attributes:
-        text: the rewritten instruction, or the original one.
-        tries: number of rewrites that the gate checked.
-        passed: whether a rewrite was accepted; if not, ``text`` is the original.
-        plain: number of clauses whose words were not replaced by a template.
-        clauses: number of clauses.
-    """
+    """A rewritten instruction, and what the fidelity gate decided."""
 
     text: str
-    tries: int
-    passed: bool
-    plain: int
-    clauses: int
+    tries: int  # number of rewrites that the gate checked
+    passed: bool  # whether a rewrite was accepted; if not, ``text`` is the original
+    plain: int  # number of clauses whose words were not replaced by a template
+    clauses: int  # number of clauses
 
 
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:

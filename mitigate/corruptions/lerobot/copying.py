@@ -37,9 +37,9 @@ from mitigate.corruptions.folders import (
 )
 from mitigate.corruptions.frame_files import encode
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.lerobot import images, videos
+from mitigate.corruptions.lerobot import videos
 from mitigate.corruptions.lerobot.dataset import TOLERANCE, Dataset, open_dataset, rows_of
-from mitigate.corruptions.lerobot.frames import check_images, stored_image
+from mitigate.corruptions.lerobot.frames import as_frame, check_images, store_depth, stored_image
 from mitigate.corruptions.lerobot.metadata import EPISODES, INFO, VIDEO, Camera
 from mitigate.corruptions.lerobot.tables import FIX, check_file, integers, open_table, parquet
 from mitigate.corruptions.lerobot.videos import Encoding
@@ -58,29 +58,17 @@ Instant = tuple[float, int, int]
 
 @dataclass
 class Copy:
-    """A copy in progress.
+    """A copy in progress."""
 
-    Attributes:
-        dataset: The original.
-        out: Folder of the copy.
-        settings: Corruption and format.
-        cameras: Cameras to corrupt.
-        tolerance: Maximum seconds between a row and its video frame.
-        encodings: Encoding of the videos of each camera.
-        frames: Number of frames to corrupt, by file name.
-        progress: Progress bar that counts corrupted frames.
-        summary: Content of ``corrupt.json``.
-    """
-
-    dataset: Dataset
+    dataset: Dataset  # the original
     out: Path
     settings: Settings
-    cameras: Sequence[Camera]
-    tolerance: float
-    encodings: Mapping[str, Encoding]
-    frames: Counter[str]
-    progress: Progress
-    summary: dict[str, Any] = field(default_factory=dict)
+    cameras: Sequence[Camera]  # the cameras to corrupt
+    tolerance: float  # maximum seconds between a row and its video frame
+    encodings: Mapping[str, Encoding]  # by camera, for cameras with videos
+    frames: Counter[str]  # number of frames to corrupt, by file name
+    progress: Progress  # counts corrupted frames
+    summary: dict[str, Any] = field(default_factory=dict)  # content of corrupt.json
 
 
 def run(
@@ -343,9 +331,9 @@ def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
     values = []
     for row, (episode, number) in enumerate(zip(episodes, numbers, strict=True)):
         stored, form = stored_image(source, rows, row, camera, number)
-        clean = images.as_frame(stored, camera)
+        clean = as_frame(stored, camera)
         corrupted = _corrupt(work, camera, clean, _name(episode), number)
-        pixels = corrupted if camera.kind == RGB else images.store_depth(corrupted, stored, camera)
+        pixels = corrupted if camera.kind == RGB else store_depth(corrupted, stored, camera)
         if form == "JPEG" and work.settings.format == "png":
             form = "PNG"
         work.progress.advance()

@@ -39,40 +39,24 @@ MAX_SIGNAL = 1 << 12  # maximum number of values per row of a feature that is re
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of one file of data/, in the order of the file.
+    """Rows of one file of data/, in the order of the file."""
 
-    Attributes:
-        episodes: int64 [N], number of the episode.
-        frames: int64 [N], number of the frame in its episode.
-        times: float64 [N], seconds since the start of the episode.
-        tasks: int64 [N], number of the task.
-    """
-
-    episodes: np.ndarray
-    frames: np.ndarray
-    times: np.ndarray
-    tasks: np.ndarray
+    episodes: np.ndarray  # int64 [N], number of the episode
+    frames: np.ndarray  # int64 [N], number of the frame in its episode
+    times: np.ndarray  # float64 [N], seconds since the start of the episode
+    tasks: np.ndarray  # int64 [N], number of the task
 
 
 @dataclass(frozen=True)
 class Dataset:
-    """An opened dataset.
-
-    Attributes:
-        path: The folder.
-        info: Content of meta/info.json.
-        cameras: Cameras by name.
-        other_cameras: For each camera that cannot be used, the reason.
-        episodes: The episodes, by their number.
-        tasks: Text of each task, by its number.
-    """
+    """An opened dataset."""
 
     path: Path
-    info: Mapping[str, Any]
+    info: Mapping[str, Any]  # content of meta/info.json
     cameras: Mapping[str, Camera]
-    other_cameras: Mapping[str, str]
-    episodes: Mapping[int, Episode]
-    tasks: Mapping[int, str]
+    other_cameras: Mapping[str, str]  # the reason why a camera cannot be used, by name
+    episodes: Mapping[int, Episode]  # by their number
+    tasks: Mapping[int, str]  # text of each task, by its number
 
     @property
     def features(self) -> Mapping[str, Any]:
@@ -145,22 +129,19 @@ class Dataset:
         episodes, frames, tasks = whole
         rows = Rows(episodes, frames, np.array(numbers(table, "timestamp", path)), tasks)
         for episode in self.episodes.values():
-            if episode.data == data:
-                self._check_rows(path, episode, rows)
+            if episode.data != data:
+                continue
+            mine = rows.episodes == episode.index
+            if not np.array_equal(rows.frames[mine], np.arange(episode.length)):
+                raise ValueError(
+                    f"{path} must hold the rows of episode {episode.index} in order (frame_index "
+                    f"0 to {episode.length - 1}), got {int(mine.sum())} rows. {FIX}"
+                )
+            if (np.diff(rows.times[mine]) <= 0).any():
+                raise ValueError(
+                    f"{path}: the timestamps of episode {episode.index} must increase. {FIX}"
+                )
         return rows
-
-    def _check_rows(self, path: Path, episode: Episode, rows: Rows) -> None:
-        mine = rows.episodes == episode.index
-        expected = np.arange(episode.length)
-        if not np.array_equal(rows.frames[mine], expected):
-            raise ValueError(
-                f"{path} must hold the rows of episode {episode.index} in order (frame_index 0 to "
-                f"{episode.length - 1}), got {int(mine.sum())} rows. {FIX}"
-            )
-        if len(expected) > 1 and np.diff(rows.times[mine]).min() <= 0:
-            raise ValueError(
-                f"{path}: the timestamps of episode {episode.index} must increase. {FIX}"
-            )
 
     def instruction(self, rows: Rows, name: str) -> str:
         """Return the task of the first row of an episode, and warn if other rows have other tasks.

@@ -25,18 +25,12 @@ class DepthCode:
 
     Here, code 0 means no reading. lerobot writes this code both for pixels without a reading and
     for depth up to ``near``.
-
-    Attributes:
-        near: Minimum depth in metres (code 0).
-        far: Maximum depth in metres (code ``MAX_CODE``).
-        shift: Metres that are added before the logarithm is taken.
-        log: Whether codes are logarithmic.
     """
 
-    near: float = 0.01
-    far: float = 10.0
-    shift: float = 3.5
-    log: bool = True
+    near: float = 0.01  # minimum depth in metres (code 0)
+    far: float = 10.0  # maximum depth in metres (code MAX_CODE)
+    shift: float = 3.5  # metres that are added before the logarithm is taken
+    log: bool = True  # whether codes are logarithmic
 
     @classmethod
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:

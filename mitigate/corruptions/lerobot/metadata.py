@@ -48,42 +48,26 @@ CONVERTER = "python -m lerobot.scripts.convert_dataset_v21_to_v30 --repo-id=USER
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera of a dataset.
+    """A camera of a dataset."""
 
-    Attributes:
-        name: Name of the feature, such as "observation.images.front".
-        kind: "rgb" or "depth".
-        stored: "video", or "image" for encoded images in the rows of data/.
-        height: Pixels.
-        width: Pixels.
-        code: How a depth video encodes metres, or None for other cameras.
-        unit: Metres per unit of depth images. None means 0.001 for integer images and 1 for others.
-    """
-
-    name: str
-    kind: str
-    stored: str
-    height: int
+    name: str  # of the feature, such as "observation.images.front"
+    kind: str  # "rgb" or "depth"
+    stored: str  # "video", or "image" for encoded images in the rows of data/
+    height: int  # in pixels
     width: int
-    code: DepthCode | None = None
+    code: DepthCode | None = None  # how a depth video encodes metres
+    # metres per unit of depth images; None means 0.001 for integer images and 1 for others
     unit: float | None = None
 
 
 @dataclass(frozen=True)
 class Episode:
-    """The files that contain an episode.
-
-    Attributes:
-        index: Number of the episode.
-        length: Number of frames.
-        data: Path of the file with the episode's rows, relative to the dataset.
-        videos: For each camera that is stored as video, the path of the file and the time in
-            seconds at which the episode starts in it.
-    """
+    """The files that contain an episode; their paths are relative to the dataset."""
 
     index: int
-    length: int
-    data: str
+    length: int  # number of frames
+    data: str  # the file with the episode's rows
+    # by camera: the file, and the time in seconds at which the episode starts in it
     videos: Mapping[str, tuple[str, float]]
 
 

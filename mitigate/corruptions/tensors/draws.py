@@ -37,18 +37,11 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Rows:
-    """The parameters of one corruption for each row of a batch.
+    """The parameters of one corruption for each row of a batch."""
 
-    Attributes:
-        severities: Severity of each row, in (0, 1].
-        keys: Key of each row.
-        headings: Heading of each row in radians, or None for rows without a known heading.
-        sensor: Depth range, and the value that marks missing depth.
-    """
-
-    severities: Sequence[float]
+    severities: Sequence[float]  # in (0, 1]
     keys: Sequence[Key]
-    headings: Sequence[float | None]
+    headings: Sequence[float | None]  # in radians, or None if unknown
     sensor: DepthSensor
 
     def only(self, chosen: Sequence[int]) -> Rows:
@@ -93,13 +86,10 @@ def mix(streams: Tensor, counters: Tensor) -> Tensor:
 
 
 def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) -> Tensor:
-    """Copy numbers to the device of ``like``.
+    """Copy numbers, or arrays of equal shape, to the device of ``like``.
 
-    Args:
-        values: One number per row, or one array per row; all arrays have the same shape. float64
-            becomes float32, and uint64 becomes int64 with the same bits.
-        like: A tensor on the device.
-        trailing: Number of axes of length 1 that are appended, for broadcasting.
+    float64 becomes float32, and uint64 becomes int64 with the same bits. ``trailing`` axes of
+    length 1 are appended, for broadcasting.
     """
     array = np.asarray(values)
     if array.dtype == np.uint64:
