@@ -112,14 +112,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     that is already in ``out`` is not written again. A temporal fault repeats frames of earlier
     files of the episode.
 
-    Args:
-        source: Folder with frames.
-        out: Folder of the results.
-        settings: The options.
-
     Returns:
-        The summary with settings, counts and skipped files, which is also written to
-        ``out/corrupt.json``.
+        The summary with settings, counts and skipped files, as in ``out/corrupt.json``.
 
     Raises:
         FileNotFoundError: If the folder does not exist or contains no frame.

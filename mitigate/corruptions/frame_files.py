@@ -88,15 +88,11 @@ def corrupt_file(
     corrupt_frame: Callable[[np.ndarray], np.ndarray],
     no_reading: int = NO_READING,
 ) -> bytes:
-    """Corrupt the frame in the file ``path``, and return the content of the output file.
+    """Corrupt the frame in a file, and return the content of an output file of type ``suffix``.
 
-    Args:
-        path: The file to read.
-        suffix: Suffix of the output file, which determines its format.
-        unit: Metres per count of a 16-bit PNG.
-        corrupt_frame: Function that corrupts one frame: uint8 [H, W, 3], or float32 metres in the
-            shape of the file. Pixels that this function does not change keep their stored values.
-        no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
+    The argument of ``corrupt_frame`` is uint8 [H, W, 3], or float32 metres in the shape of the
+    file. Pixels that it does not change keep their stored values. In a 16-bit PNG, a count is
+    ``unit`` metres; 0 and ``no_reading`` mean "no reading".
 
     Raises:
         LeftOutError: If the file is damaged or has an unsupported format.
@@ -137,9 +133,7 @@ def counts(metres: np.ndarray, unit: float) -> np.ndarray:
 def read(path: Path, unit: float) -> np.ndarray:
     """Read a frame as uint8 [H, W, 3], or as float32 metres [H, W, 1].
 
-    Args:
-        path: The file.
-        unit: Metres per count of a 16-bit PNG.
+    A count of a 16-bit PNG is ``unit`` metres.
 
     Raises:
         LeftOutError: If the file is damaged or has an unsupported format.
@@ -153,12 +147,9 @@ def read(path: Path, unit: float) -> np.ndarray:
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
-    """Check that the assumed unit of depth files is plausible; only a sample of the files is read.
+    """Check that the assumed unit of depth files is plausible, by a sample of the files.
 
-    Args:
-        paths: Depth files (16-bit PNG and NPY).
-        unit: Assumed metres per count of a 16-bit PNG.
-        z_max: Maximum depth of the camera in metres.
+    ``unit`` is the assumed number of metres per count of a 16-bit PNG.
 
     Raises:
         ValueError: If most PNG depth values are at least ``z_max``, or all are less than
@@ -273,16 +264,11 @@ class Plan:
 
 
 def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
-    """Find the frames of the modalities ``kinds``.
+    """Find the frames of the modalities ``kinds`` in ``source`` and its folders.
 
-    A damaged file is skipped, but it also gets a frame number.
-
-    Args:
-        source: The folder, which is searched recursively.
-        out: Folder of the results, or None. It is skipped, even if ``source`` contains a link to
-            it.
-        kinds: "rgb", "depth" or both; their frames are numbered separately.
-        episode: "folder" (each folder is an episode) or "all" (all frames are one episode).
+    The modalities are numbered separately. A damaged file is skipped, but it also gets a frame
+    number. The folder of the results, ``out``, is skipped, even behind a link. ``episode`` is
+    "folder" (each folder is an episode) or "all" (all frames are one episode).
     """
     plan = Plan()
     counts: Counter[tuple[str, str]] = Counter()

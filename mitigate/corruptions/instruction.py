@@ -21,11 +21,9 @@ from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
-# part-of-speech tags of words that the family "capitals" may change
+# part-of-speech tags of words that "capitalize" may change, and that "mask" may hide
 SPOKEN = words.bag("NOUN PROPN VERB ADP")
-SLIGHT = words.bag(
-    "DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ"
-)  # part-of-speech tags of words that the family "masks" may hide
+SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")
 _SLOT = re.compile(
     r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
     re.IGNORECASE,

@@ -120,11 +120,6 @@ def family(name: str) -> str:
     return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
 
 
-def broad_name(modality: str) -> str:
-    """Return the name of the random composition for a modality."""
-    return next(name for name, record in BROAD.items() if record.modality == modality)
-
-
 def record(name: str) -> Record:
     """Return the record of a corruption; raise KeyError for an unknown name."""
     return INCLUDED[name] if name in INCLUDED else plugin_records()[name]

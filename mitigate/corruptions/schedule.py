@@ -10,7 +10,7 @@ from itertools import accumulate
 from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.registry import broad_name, modality
+from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import (
     CLEAN,
     NAMES,
@@ -169,7 +169,7 @@ class Schedule:
         place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
         name = self.names[min(place, len(self.names) - 1)]
         if uniform(value, 3) < self.broad_share:
-            name = broad_name(modality(name))
+            name = f"broad_{modality(name)}"
         return self.corruption(name, uniform(value, 2)), key
 
     def corruption(self, name: str, place: float = 0.5) -> Corruption:

@@ -108,6 +108,8 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
     By default, all frame corruptions are allowed, including plugins.
     """
+    if name in (NAMES if allowed is None else allowed):
+        return name
     allowed = registry.known("rgb", "depth") if allowed is None else allowed
     if name in allowed:
         return name

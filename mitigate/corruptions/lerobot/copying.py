@@ -84,14 +84,15 @@ def run(
     number in the episode. Therefore all cameras get the same random numbers in the same time step.
     The metadata keeps the statistics of the original dataset.
 
+    The format "png" is lossless: images become PNG (depth keeps its format), and videos become
+    H.264 in RGB. With "same", JPEG stays JPEG, and videos keep their codec, with the quality
+    settings of lerobot.
+
     Args:
         source: Folder of the dataset.
         out: Folder of the copy.
-        settings: Corruption, seed and format. The format "png" is lossless: images become PNG
-            (depth keeps its format), and videos become H.264 in RGB. With "same", JPEG stays JPEG,
-            and videos keep their codec, with the quality settings of lerobot.
-        cameras: Cameras to corrupt. None means all cameras of the modality that the corruption
-            changes.
+        settings: Corruption, seed and format.
+        cameras: Cameras to corrupt, by default all of the modality that the corruption changes.
         tolerance: Maximum seconds between a row and its video frame.
 
     Returns:

@@ -146,12 +146,7 @@ class Dataset:
     def instruction(self, rows: Rows, name: str) -> str:
         """Return the task of the first row of an episode, and warn if other rows have other tasks.
 
-        Args:
-            rows: The rows of the episode.
-            name: Name of the episode in messages.
-
-        Raises:
-            ValueError: If the task is unknown.
+        ``name`` is the name of the episode in messages. Raises ValueError for an unknown task.
         """
         first = int(rows.tasks[0])
         if first not in self.tasks:
@@ -192,13 +187,7 @@ def is_dataset(folder: Path | str) -> bool:
 
 
 def open_dataset(folder: Path | str) -> Dataset:
-    """Open a dataset and check its metadata.
-
-    Args:
-        folder: Folder of a dataset of version 3.
-
-    Returns:
-        The dataset.
+    """Open a dataset of version 3 and check its metadata.
 
     Raises:
         FileNotFoundError: If a file of the metadata is missing.

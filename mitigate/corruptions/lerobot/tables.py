@@ -29,12 +29,7 @@ def parquet() -> Any:
 
 
 def check_file(path: Path) -> None:
-    """Check that a file of a dataset exists.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the path is a Git LFS pointer, a FIFO or a device.
-    """
+    """Raise an error if a file is missing, a Git LFS pointer, a FIFO or a device."""
     if not is_regular(path):
         raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
     if pointer := lfs_problem(path):
@@ -43,10 +38,7 @@ def check_file(path: Path) -> None:
 
 @contextmanager
 def open_table(path: Path) -> Iterator[Any]:
-    """Open a parquet file; errors during reading get a message that explains them.
-
-    Yields:
-        A ``pyarrow.parquet.ParquetFile``.
+    """Open a ``pyarrow.parquet.ParquetFile``; errors during reading get an explanation.
 
     Raises:
         FileNotFoundError: If the file is missing.
@@ -61,8 +53,7 @@ def open_table(path: Path) -> Iterator[Any]:
             _check_size(path, file.metadata)
             yield file
     except (pyarrow.ArrowException, OSError, UnicodeDecodeError) as error:
-        # an error of the operating system
-        if isinstance(error, OSError) and error.strerror is not None:
+        if isinstance(error, OSError) and error.strerror is not None:  # of the operating system
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
@@ -89,15 +80,7 @@ def _check_size(path: Path, metadata: Any) -> None:
 
 
 def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = ()) -> Any:
-    """Read columns of a parquet file.
-
-    Args:
-        path: The file.
-        columns: Names of columns that must exist.
-        optional: Names of columns that are read if they exist.
-
-    Returns:
-        A ``pyarrow.Table``.
+    """Read columns of a parquet file, and those of ``optional`` that exist, as ``pyarrow.Table``.
 
     Raises:
         FileNotFoundError: If the file is missing.

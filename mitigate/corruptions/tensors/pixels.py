@@ -29,12 +29,9 @@ def grey_levels(values: Tensor) -> Tensor:
 
 
 def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
-    """Blend RGB with a colour, as in ``masks.cover``.
+    """Blend RGB with one of the ``colours`` (float32 [B or 1, 3]), as in ``masks.cover``.
 
-    Args:
-        views: uint8 [B, V, H, W, 3].
-        opacity: Opacity in [0, 1], float32 [B, V or 1, H, 3 W].
-        colours: float32 [B or 1, 3].
+    ``opacity`` is float32 [B, V or 1, H, 3 W] in [0, 1].
     """
     source = views.flatten(3).float()
     blend = torch.lerp(source, colour_rows(colours, views.shape[3]), opacity)

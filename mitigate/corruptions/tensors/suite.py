@@ -22,7 +22,7 @@ from mitigate.corruptions.suite import (
     check_severity,
     corrupt_views,
 )
-from mitigate.corruptions.tensors import depth, rgb, unseen_depth, unseen_rgb
+from mitigate.corruptions.tensors import depth, rgb
 from mitigate.corruptions.tensors.draws import Rows
 from mitigate.corruptions.tensors.pixels import is_valid
 
@@ -32,7 +32,7 @@ MAX_PIXELS = 1 << 23
 # the functions that are named after a corruption
 FUNCTIONS: dict[str, Callable[[Tensor, Rows], Tensor]] = {
     name: vars(module)[name]
-    for module in (rgb, depth, unseen_rgb, unseen_depth)
+    for module in (rgb, depth)
     for name in registry.INCLUDED
     if name in vars(module)
 }

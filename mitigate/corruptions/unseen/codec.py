@@ -20,9 +20,7 @@ BLOCKS = (4, 8, 16, 32)
 BLOCKS_ACROSS = 28  # number of blocks along the shorter side; at 224 px, a block has 8 px
 DEAD_ZONE = 0.40  # minimum amplitude, as a fraction of white, of patterns that remain at severity 1
 CHROMA = 2.0  # minimum amplitude in the colour channels, relative to the minimum in grey
-SLICES = (
-    14  # number of horizontal slices per frame; at a frame height of 224 px, each is 16 px high
-)
+SLICES = 14  # number of horizontal slices per frame; at a height of 224 px, each has 16 px
 LOST = 0.8  # fraction of lost slices at severity 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
 
