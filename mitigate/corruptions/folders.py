@@ -249,10 +249,9 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def earlier_summary(out: Path, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the summary of an earlier run in ``out``, or an empty dict if the folder is empty.
+    """Return the summary of an earlier run in ``out``, or {} if the folder is empty.
 
-    Raises:
-        ValueError: If ``out`` contains other files, or was written with different settings.
+    Raises ValueError if ``out`` has other files, or was written with different settings.
     """
     if all(path.name[0] == "." for path in out.iterdir()):
         return {}

@@ -53,9 +53,7 @@ class LeftOutError(ValueError):
 def modality(path: Path) -> str:
     """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
-    Raises:
-        LeftOutError: If the file has neither modality, or it is a pipe or a device, which may never
-            end.
+    Raises LeftOutError for other files, and for pipes and devices, which may never end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise LeftOutError("is not a regular file")
@@ -92,10 +90,8 @@ def corrupt_file(
 
     The argument of ``corrupt_frame`` is uint8 [H, W, 3], or float32 metres in the shape of the
     file. Pixels that it does not change keep their stored values. In a 16-bit PNG, a count is
-    ``unit`` metres; 0 and ``no_reading`` mean "no reading".
-
-    Raises:
-        LeftOutError: If the file is damaged or has an unsupported format.
+    ``unit`` metres; 0 and ``no_reading`` mean "no reading". Raises LeftOutError if the file is
+    damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         form = "PNG" if suffix.lower() == ".png" else "JPEG"
@@ -133,10 +129,8 @@ def counts(metres: np.ndarray, unit: float) -> np.ndarray:
 def read(path: Path, unit: float) -> np.ndarray:
     """Read a frame as uint8 [H, W, 3], or as float32 metres [H, W, 1].
 
-    A count of a 16-bit PNG is ``unit`` metres.
-
-    Raises:
-        LeftOutError: If the file is damaged or has an unsupported format.
+    A count of a 16-bit PNG is ``unit`` metres. Raises LeftOutError if the file is damaged or has an
+    unsupported format.
     """
     if modality(path) == RGB:
         return _decode(path)
@@ -149,12 +143,9 @@ def read(path: Path, unit: float) -> np.ndarray:
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
     """Check that the assumed unit of depth files is plausible, by a sample of the files.
 
-    ``unit`` is the assumed number of metres per count of a 16-bit PNG.
-
-    Raises:
-        ValueError: If most PNG depth values are at least ``z_max``, or all are less than
-            ``CLOSEST`` (the unit is probably wrong), or if all NPY depth values are at most 1 (they
-            are probably normalised).
+    ``unit`` is the assumed number of metres per count of a 16-bit PNG. Raises ValueError if most
+    PNG depth values are at least ``z_max``, or all are less than ``CLOSEST`` (the unit is probably
+    wrong), or if all NPY depth values are at most 1 (they are probably normalised).
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.keying import Key, as_key, digest, uniform
 from mitigate.corruptions.language import words
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
@@ -24,10 +23,25 @@ from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 # part-of-speech tags of words that "capitalize" may change, and that "mask" may hide
 SPOKEN = words.bag("NOUN PROPN VERB ADP")
 SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")
+# Misleading sentences by split and kind of attack. No kind of attack occurs in two splits, so a
+# safeguard that is trained on "train" is tested on new kinds. All sentences were written for this
+# project; the kinds of attack follow NavTrust's malicious prompts.
+SPLITS = ("train", "validation", "test")
+_BANK: dict[str, dict[str, list[str]]] = words.read_data("prefixes.json")
 _SLOT = re.compile(
     r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
     re.IGNORECASE,
 )
+
+
+def prefixes(split: str) -> dict[str, tuple[str, ...]]:
+    """Return the misleading sentences of a split by kind of attack; raise ValueError for others."""
+    if split not in _BANK:
+        raise ValueError(
+            f"split must be one of {', '.join(SPLITS)}, got {split!r}. Safeguards are trained on "
+            "train and evaluated on test."
+        )
+    return {kind: tuple(sentences) for kind, sentences in _BANK[split].items()}
 
 
 @dataclass(frozen=True)

@@ -149,6 +149,11 @@ def uniform(value: int, counter: int = 0) -> float:
     return (scramble(value, counter) >> 11) * 2.0**-53
 
 
+def sign(key: Key, name: str) -> float:
+    """Return a random sign, 1 or -1, that is constant in an episode."""
+    return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
+
+
 @njit(inline="always")
 def mix(value, counter):
     """Compute ``scramble`` in compiled code; arguments and result are uint64."""
@@ -165,9 +170,7 @@ def view_streams(key: Key, name: str, views: int) -> np.ndarray:
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """Return the standard normal quantiles at the centres of 2^bits equally likely bins, float64,
-    scaled to unit variance.
-    """
+    """Return normal quantiles of 2^bits equally likely bins, with unit variance, float64."""
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
     table = np.concatenate([half, -half[::-1]])

@@ -82,8 +82,7 @@ def cover(views, alpha, colour):
 
 
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return the terms of ``light_ramp`` per row (float32 [H]) and column (float32 [W]), and a
-    flag.
+    """Return the row (float32 [H]) and column terms (float32 [W]) of ``light_ramp``, and a flag.
 
     The ramp is the sum of both terms, or the square root of the sum if the flag is True.
     """

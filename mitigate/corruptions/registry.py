@@ -92,8 +92,7 @@ def names(*modalities: str) -> tuple[str, ...]:
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
     """Return the unseen corruptions that change one of ``modalities``, of one half or both.
 
-    Raises:
-        ValueError: If ``half`` is unknown.
+    Raises ValueError for an unknown ``half``.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))

@@ -202,11 +202,9 @@ class Schedule:
 
 
 def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-    """Return the corruption and the key of a frame; if ``by`` is a Corruption, it applies to every
-    frame.
+    """Return the corruption and the key of a frame; a Corruption applies to every frame.
 
-    Raises:
-        ValueError: If ``by`` is neither a Corruption nor a Schedule.
+    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return by.draw(seed, episode, frame)
@@ -214,11 +212,9 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 
 
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
-    """Return the names of the corruptions that ``by`` may apply; the tuple is empty if all frames
-    stay clean.
+    """Return the names of the corruptions that ``by`` may apply; () if all frames stay clean.
 
-    Raises:
-        ValueError: If ``by`` is neither a Corruption nor a Schedule.
+    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return () if by.mode == "clean" else by.names

@@ -459,8 +459,7 @@ def corrupt_observation(
 def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
     """Return the names of the entries of an observation that a single corruption changes.
 
-    Raises:
-        ValueError: If the observation has no entry that the corruption could change.
+    Raises ValueError if there is no such entry.
     """
     modalities = registry.record(part.name).modalities
     # each entry is named after its modality

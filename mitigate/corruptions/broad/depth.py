@@ -206,8 +206,7 @@ def ghost(views, strength, rng, now):
 
 
 def _pattern(rng: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
-    """Return a periodic map, float32 [H, W] from -1 to 1: stripes, rings or checks with soft or
-    sharp edges.
+    """Return stripes, rings or checks with soft or sharp edges, float32 [H, W] from -1 to 1.
 
     The period is 0.03 to 0.8 times the shorter side.
     """

@@ -24,7 +24,7 @@ from numba import njit
 
 from mitigate.core.observation import VIEW_STEP_DEGREES
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
-from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.keying import Key, digest, sign, uniform
 from mitigate.corruptions.record import CAMERA, FRAMES, Record
 
 HEIGHT = 0.6  # metres at severity 1
@@ -164,34 +164,29 @@ def _warp_depth(views, rotations, before, after, nearest, z_max, missing, out):
                 out[view, i, j] = z
 
 
-def _sign(key: Key, name: str) -> float:
-    """Return a random sign, 1 or -1, that is constant in an episode."""
-    return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
-
-
 def camera_height(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is mounted higher or lower."""
-    return Mount(height=severity * HEIGHT * _sign(key, "camera_height"))
+    return Mount(height=severity * HEIGHT * sign(key, "camera_height"))
 
 
 def camera_pitch(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that points up or down."""
-    return Mount(pitch=severity * PITCH * _sign(key, "camera_pitch"))
+    return Mount(pitch=severity * PITCH * sign(key, "camera_pitch"))
 
 
 def camera_roll(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is tilted to a side."""
-    return Mount(roll=severity * ROLL * _sign(key, "camera_roll"))
+    return Mount(roll=severity * ROLL * sign(key, "camera_roll"))
 
 
 def camera_yaw(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is turned to a side."""
-    return Mount(yaw=severity * YAW * _sign(key, "camera_yaw"))
+    return Mount(yaw=severity * YAW * sign(key, "camera_yaw"))
 
 
 def camera_fov(severity: float, key: Key) -> Mount:
     """Return a change of the horizontal field of view, which becomes wider or narrower."""
-    return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
+    return Mount(fov=severity * FOV * sign(key, "camera_fov"))
 
 
 DRAWS = (camera_height, camera_pitch, camera_roll, camera_yaw, camera_fov)

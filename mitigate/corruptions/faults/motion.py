@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.keying import Key, digest, sign, uniform
 from mitigate.corruptions.record import ACTION, MOTION, Record
 
 SLIP = 0.8  # maximum fraction of a movement that is lost in a step at severity 1
@@ -44,8 +44,7 @@ def motion_slip(severity: float, key: Key) -> Movement:
 
 def motion_drift(severity: float, key: Key) -> Movement:
     """Return a ``Movement`` that drifts to one side; the side is constant in an episode."""
-    side = 1.0 if uniform(digest(key, "motion_drift")) < 0.5 else -1.0
-    return Movement(drift=severity * side)
+    return Movement(drift=severity * sign(key, "motion_drift"))
 
 
 def motion_gain(severity: float, key: Key) -> Movement:

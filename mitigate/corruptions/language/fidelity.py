@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 
-from mitigate.corruptions.language import directions, landmarks
+from mitigate.corruptions.language import directions
 from mitigate.corruptions.language.directions import at
 from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token, tag
-from mitigate.corruptions.language.words import WORDS, listed
+from mitigate.corruptions.language.words import LONGEST, PHRASES, PLAIN, WORDS, listed, normal
 
 COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
 COLOURS = listed("colours")
@@ -56,11 +56,9 @@ def facts(text: str) -> Facts:
 def check(original: str, rewritten: str) -> list[str]:
     """List the changes of meaning from ``original`` to ``rewritten``.
 
-    Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
-    invented", "landmark order", "number lost", "number invented", "compass lost", "compass
-    invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
-    "denial".
-    Synonyms in ``landmarks.py`` are treated as equal. The order of landmarks may change within a
+    Every entry begins with its kind and a colon: "directions", "landmark order", "denial", or
+    "landmark", "number", "compass", "attribute" or "relation", followed by "lost" or "invented".
+    Synonyms in ``words.json`` are treated as equal. The order of landmarks may change within a
     clause.
     """
     before, after = _read(original), _read(rewritten)
@@ -161,7 +159,7 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
         if phrase:
             names.append((place, phrase, True))
         else:
-            name = landmarks.normal(tokens[place].lower)
+            name = normal(tokens[place].lower)
             names.append((place, name, _is_landmark(tokens, place)))
         place += length
     return names
@@ -169,10 +167,10 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
 
 def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
     """Return the name and length of the longest known phrase at ``place``, or ("", 1)."""
-    for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
+    for length in range(min(LONGEST, len(tokens) - place), 1, -1):
         words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):
-            name = landmarks.PHRASES.get((*words[:-1], last))
+            name = PHRASES.get((*words[:-1], last))
             if name:
                 return name, length
     return "", 1
@@ -181,7 +179,7 @@ def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
 def _is_landmark(tokens: list[Token], place: int) -> bool:
     token = tokens[place]
     word = token.lower
-    if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
+    if token.tag not in ("NOUN", "PROPN") or word in PLAIN or len(word) < 2:
         return False
     # "steps" may mean a distance or stairs; only stairs are a landmark
     if word in ("step", "steps"):

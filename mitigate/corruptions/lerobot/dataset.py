@@ -76,8 +76,7 @@ class Dataset:
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
         """Return the cameras of a kind ("rgb" or "depth"), or those of them in ``names``.
 
-        Raises:
-            ValueError: If a name is unknown, or its camera cannot be used.
+        Raises ValueError if a name is unknown, or its camera cannot be used.
         """
         for name in names or ():
             if name in self.other_cameras:
@@ -93,8 +92,7 @@ class Dataset:
     def choose_camera(self, kind: str, name: str | None, option: str) -> Camera:
         """Return the camera called ``name``, or the only camera of a kind if ``name`` is None.
 
-        Raises:
-            ValueError: If not exactly one camera matches; the message names ``option``.
+        Raises ValueError, which names ``option``, if not exactly one camera matches.
         """
         cameras = self.choose_cameras(kind, name and [name])
         if len(cameras) != 1:
@@ -118,10 +116,8 @@ class Dataset:
     def read_rows(self, data: str) -> Rows:
         """Read the rows of a file in data/.
 
-        Raises:
-            FileNotFoundError: If the file is missing.
-            ValueError: If the file is damaged, or the rows of an episode are incomplete or not in
-                order.
+        Raises FileNotFoundError, or ValueError if the file is damaged or the rows of an episode are
+        incomplete or not in order.
         """
         path = self.path / data
         table = read_columns(path, COLUMNS)
@@ -165,12 +161,8 @@ class Dataset:
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
         """Read the numeric features, such as state and action, from a file in data/.
 
-        Returns:
-            For each feature of ``signals``, an array float64 [N, size].
-
-        Raises:
-            FileNotFoundError: If the file is missing.
-            ValueError: If the file is damaged, or a feature has a different shape.
+        Each feature of ``signals`` is float64 [N, size]. Raises FileNotFoundError, or ValueError if
+        the file is damaged or a feature has a different shape.
         """
         path = self.path / data
         table = read_columns(path, (), list(self.signals))

@@ -125,8 +125,7 @@ def stored_image(
 ) -> tuple[np.ndarray, str]:
     """Return an image (uint8 [H, W, 3], uint16 [H, W] or float32 [H, W]) and its file format.
 
-    Raises:
-        ValueError: If the image is damaged, or its type or size differs from the camera's.
+    Raises ValueError if the image is damaged, or its type or size differs from the camera's.
     """
     place = f"{path}: {camera.name} of frame {number}"
     value = table.column(camera.name)[row].as_py()

@@ -40,9 +40,7 @@ def check_file(path: Path) -> None:
 def open_table(path: Path) -> Iterator[Any]:
     """Open a ``pyarrow.parquet.ParquetFile``; errors during reading get an explanation.
 
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or expands to too many rows or bytes.
+    Raises FileNotFoundError, or ValueError if the file is damaged or expands to too many bytes.
     """
     pq = parquet()
     import pyarrow
@@ -82,9 +80,7 @@ def _check_size(path: Path, metadata: Any) -> None:
 def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = ()) -> Any:
     """Read columns of a parquet file, and those of ``optional`` that exist, as ``pyarrow.Table``.
 
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged or lacks a column.
+    Raises FileNotFoundError, or ValueError if the file is damaged or lacks a column.
     """
     with open_table(path) as file:
         names = file.schema_arrow.names

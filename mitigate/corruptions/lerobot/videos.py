@@ -71,14 +71,10 @@ def video_library() -> Any:
 
 @contextmanager
 def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
-    """Open a video; errors during decoding get a message that explains them.
+    """Open a video and yield its container and stream; decoding errors get an explanation.
 
-    Yields:
-        The container and its video stream.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or its frames have a different size than ``camera``.
+    Raises FileNotFoundError, or ValueError if the file is damaged or its frames do not have the
+    size of ``camera``.
     """
     av = video_library()
     check_file(path)
@@ -124,12 +120,9 @@ def decode(
 ) -> Iterator[np.ndarray]:
     """Yield the nearest frame for each time (seconds, in increasing order).
 
-    Yields:
-        uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or has no frame within ``tolerance`` seconds of a time.
+    Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading. Raises
+    FileNotFoundError, or ValueError if the file is damaged or has no frame within ``tolerance``
+    seconds of a time.
     """
     if not times:
         return

@@ -12,7 +12,7 @@ import numpy as np
 
 from mitigate.corruptions import masks
 from mitigate.corruptions.eld import GAMMA
-from mitigate.corruptions.keying import Key, cached, digest, field, scramble, uniform
+from mitigate.corruptions.keying import Key, cached, digest, field, scramble, sign, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at severity 1, and their relative spread
@@ -102,8 +102,7 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
 
 def hue_degrees(severity: float, key: Key) -> float:
     """Return the angle in degrees by which ``hue_shift`` rotates hues."""
-    sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
-    return sign * HUE_DEGREES * severity
+    return sign(key, "hue_shift") * HUE_DEGREES * severity
 
 
 @lru_cache(maxsize=32)

@@ -58,11 +58,9 @@ def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.n
 
 @njit(cache=True)
 def _displace(view, down, right, out):
-    """Set out[y, x] to the view (uint8 [H, W, 3]) at (y + down, x + right), interpolated
-    bilinearly.
+    """Set out[y, x] to view (uint8 [H, W, 3]) at (y + down, x + right), interpolated bilinearly.
 
-    Edges are repeated. The displacements (float32 [H, W], in pixels) are rounded down to multiples
-    of 1/256.
+    Edges are repeated. Displacements (float32 [H, W], pixels) are rounded down to 1/256 pixel.
     """
     height, width, _ = view.shape
     for y in range(height):
