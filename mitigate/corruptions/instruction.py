@@ -125,8 +125,8 @@ def is_rewritten(manner: str, severity: float, key: Key) -> bool:
 def inject_system_prompt(
     prompt: str | None, severity: float, key: Key | int | str
 ) -> str | NotApplicable:
-    """Insert misleading sentences into a system prompt, before the placeholder for the task or at
-    the end.
+    """Insert misleading sentences into a system prompt, before the task's placeholder or at the
+    end.
 
     The placeholder is the first ``{instruction}``, ``{task}`` or similar. The sentences and
     ``severity`` are those of "black_box". If ``prompt`` is None or empty, the result is

@@ -129,8 +129,7 @@ class Schedule:
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
-        """Recompute the weights from success rates (by name); names that are not in the schedule
-        are ignored.
+        """Recompute the weights from success rates by name; names of other corruptions are ignored.
 
         A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
         rates; the other modes keep uniform weights.

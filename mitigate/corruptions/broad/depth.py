@@ -86,11 +86,7 @@ def swapped(views, strength, rng, now):
 
 
 def holes(views, strength, rng, now):
-    """Remove or replace at most a fraction ``0.7 * strength`` of the pixels.
-
-    The selection is a random mixture of four criteria: a smooth random map, independent noise,
-    distance and edges.
-    """
+    """Remove or replace up to 0.7 * strength of the pixels, by a mixture of four criteria."""
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
     share, fill, out = 0.7 * strength * rng.random(), _fill(rng), views.copy()
@@ -114,11 +110,7 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Set all pixels of some views, or of all views, to no reading or to the maximum range.
-
-    All views are lost with probability 0.6 * strength; otherwise, each view is lost with
-    probability 0.5 * strength.
-    """
+    """Set some or all views to no reading, or to the maximum range."""
     share = 1.0 if rng.random() < 0.6 * strength else 0.5 * strength
     out = views.copy()
     out[now.random(len(views)) < share] = rng.choice((np.nan, np.nan, 1.0))
@@ -173,10 +165,7 @@ def spread(views, strength, rng, now):
 
 
 def torn(views, strength, rng, now):
-    """Shift bands of rows or columns by random distances, or exchange blocks of pixels.
-
-    The bands are the same in all views and frames, or new for each frame.
-    """
+    """Shift bands of rows or columns, or exchange blocks of pixels, per episode or per frame."""
     source = now if rng.random() < 0.5 else rng
     if rng.random() < 0.3:
         return _exchanged(views, strength, source, int(rng.integers(3, 9)))

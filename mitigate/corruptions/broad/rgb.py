@@ -28,10 +28,7 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add the sum of the waves b_n sin(pi n x) to each level x, with random b_n (PRIME).
-
-    The three colours share one curve, or each colour gets its own curve.
-    """
+    """Add waves b_n sin(pi n x) with random b_n to each level x, per colour or in all (PRIME)."""
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -112,10 +109,7 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add noise, or multiply by noise, of random grain size, distribution and colour.
-
-    The noise may form bands.
-    """
+    """Add or multiply by noise of random grain size, distribution and colour, or by bands."""
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -131,10 +125,7 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Blend views with a random colour.
-
-    The opacity is a random map, whose structures are fine in some episodes and coarse in others.
-    """
+    """Blend with a random colour; the opacity is a random map, whose grain is fine or coarse."""
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
@@ -166,10 +157,7 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """With probability 0.8 * strength, remove a view or a part of it.
-
-    The removed pixels are filled with a constant grey level, noise or pixels of another view.
-    """
+    """Fill views, or a part of them, with grey, noise or another view, with 0.8 * strength."""
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
     part = rng.random() < 0.3
