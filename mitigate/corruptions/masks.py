@@ -60,14 +60,13 @@ def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
 
 
 @njit(cache=True)
-def cover(views, alpha, colour):
-    """Blend views (uint8 [V, H, W, 3]) with one colour, and return a new array.
+def cover(views, alpha, colour, out):
+    """Blend views (uint8 [V, H, W, 3]) with one colour, and write the result to ``out``.
 
     ``colour`` (int16 [3 W]) is the result of ``colour_row``; ``alpha`` (int16 [H, 3 W]) is the
     opacity. Two separate loops per row of 16-bit numbers compile to full-width vector code.
     """
     count, height, _, _ = views.shape
-    out = np.empty_like(views)
     flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
     part = np.empty(colour.size, np.int16)
     for v in range(count):
@@ -78,6 +77,12 @@ def cover(views, alpha, colour):
                 part[i] = (np.int32(gap) * np.int32(opacity[i])) >> np.int32(16)
             for i in range(part.size):
                 target[i] = source[i] + ((part[i] + 32) >> 6)
+
+
+def covered(views: np.ndarray, alpha: np.ndarray, colour: np.ndarray) -> np.ndarray:
+    """Return the result of ``cover`` as a new array."""
+    out = np.empty_like(views)
+    cover(views, alpha, colour, out)
     return out
 
 
@@ -207,3 +212,13 @@ def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
     first = np.maximum(0, np.ceil(0.5 * width - half - 0.5))
     end = np.minimum(width, np.floor(0.5 * width + half - 0.5) + 1)
     return np.stack([first, np.where(reach < 0.0, first, end)], axis=1).astype(np.int64)
+
+
+@njit(cache=True)
+def blacken(frames, spans):
+    """Set the pixels of frames (uint8 [V, H, W, 3]) inside the spans (int64 [H, 2]) to black."""
+    count, height, _, _ = frames.shape
+    flat = frames.reshape(count, height, -1)
+    for v in range(count):
+        for y in range(height):
+            flat[v, y, 3 * spans[y, 0] : 3 * spans[y, 1]] = 0

@@ -90,7 +90,7 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     """Darken with a gradient mask, which is the same for all views of the episode."""
     height, width = views.shape[1:3]
     mask = masks.low_light_mask(digest(key, "low_light"), severity, height, width)
-    return masks.cover(views, mask, masks.colour_row(BLACK, width))
+    return masks.covered(views, mask, masks.colour_row(BLACK, width))
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
@@ -98,18 +98,20 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     colour = masks.spatter_colour(digest(key, "spatter_colour"))
-    return masks.cover(views, mask, masks.colour_row(colour, width))
+    return masks.covered(views, mask, masks.colour_row(colour, width))
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Add, by screen blending, the glow of a light whose direction is fixed in the world."""
     count, height, width, _ = views.shape
-    out, white = views.copy(), masks.colour_row(WHITE, width)
+    out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
     for view, centre in enumerate(centres):
-        if centre is not None:
+        if centre is None:
+            out[view] = views[view]
+        else:
             mask = masks.flare_mask(*centre, severity, height, width)
-            out[view : view + 1] = masks.cover(views[view : view + 1], mask, white)
+            masks.cover(views[view : view + 1], mask, white, out[view : view + 1])
     return out
 
 
@@ -153,17 +155,15 @@ def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Draw a black disk of radius 0.5 * severity * min(H, W) at the centre."""
     out = views.copy()
-    for y, (first, end) in enumerate(masks.disk_spans(severity, *views.shape[1:3])):
-        out[:, y, first:end] = 0
+    masks.blacken(out, masks.disk_spans(severity, *views.shape[1:3]))
     return out
 
 
 def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Make each view of each frame black with probability ``severity``."""
-    out = views.copy()
+    out = np.empty_like(views)
     for view, stream in enumerate(view_streams(key, "black_out", len(views))):
-        if uniform(int(stream)) < severity:
-            out[view] = 0
+        out[view] = 0 if uniform(int(stream)) < severity else views[view]
     return out
 
 

@@ -35,23 +35,12 @@ def read_frames(
     times: Sequence[float],
     tolerance: float,
 ) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the frames of an episode, in order.
+    """Yield the frames of an episode, in order, by camera.
 
-    Args:
-        dataset: The dataset.
-        episode: The episode.
-        cameras: Cameras to read.
-        chosen: Frame numbers, in increasing order.
-        times: For each chosen frame, the seconds since the start of the episode.
-        tolerance: Maximum seconds between a row and its video frame.
-
-    Yields:
-        A dict with the frame of each camera: uint8 [H, W, 3], or float32 metres [H, W] with 0 for
-        no reading.
-
-    Raises:
-        FileNotFoundError: If a file is missing.
-        ValueError: If a file is damaged, or a video has no frame near one of the times.
+    ``chosen`` are frame numbers, in increasing order, and ``times`` their seconds since the start
+    of the episode. Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
+    Raises FileNotFoundError, or ValueError if a file is damaged or a video has no frame within
+    ``tolerance`` seconds of one of the times.
     """
     streams = [
         _video_frames(dataset, episode, camera, times, tolerance)

@@ -96,7 +96,7 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
     grey = masks.colour_row(HAZE_COLOUR, width)
     for view in range(count):
         shifted = np.roll(mask, 3 * haze_offset(key, view, width), axis=1)
-        out[view : view + 1] = masks.cover(views[view : view + 1], shifted, grey)
+        masks.cover(views[view : view + 1], shifted, grey, out[view : view + 1])
     return out
 
 

@@ -137,7 +137,7 @@ def scratches(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
     """Draw the first 14 * severity scratches of the episode as bright lines with a glow."""
     height, width = views.shape[1:3]
     mask = scratch_mask(digest(key, "scratches"), severity, height, width)
-    return masks.cover(views, mask, masks.colour_row(SCRATCH_COLOUR, width))
+    return masks.covered(views, mask, masks.colour_row(SCRATCH_COLOUR, width))
 
 
 _validation = partial(Record.of, "rgb", version="1", half=VALIDATION)
