@@ -1,5 +1,4 @@
-"""Compiled blur filters for uint8 panoramas: motion blur along a line, and Gaussian blur. Edges are
-replicated.
+"""Compiled motion and Gaussian blur for uint8 panoramas. Edges are replicated.
 
 All arithmetic works on whole rows of 16-bit integers. Every intermediate value is cast back to 16
 bits, so that LLVM uses full-width vector instructions. This is about three times as fast as 32-bit
@@ -19,9 +18,7 @@ _I16, _I32 = np.int16, np.int32
 
 @njit(cache=True)
 def _pad(view, y, rx, scale, row):
-    """Write row y of the image ``view`` (uint8 [H, W, 3]), multiplied by ``scale``, into the buffer
-    ``row`` [3 (W + 2 rx)]; repeat the edge pixels.
-    """
+    """Write row y of ``view``, times ``scale``, to ``row`` [3 (W + 2 rx)], with repeated edges."""
     height, width, _ = view.shape
     source = view[min(max(y, 0), height - 1)].reshape(-1)
     middle = row[3 * rx : 3 * (rx + width)]
@@ -35,9 +32,7 @@ def _pad(view, y, rx, scale, row):
 
 @njit(cache=True)
 def _hat(row, out):
-    """Smooth a row per colour: out = (left + 2 centre + right) / 4, rounded; ``out`` is 6 entries
-    shorter than ``row``.
-    """
+    """Smooth a row per colour: out = (left + 2 centre + right) / 4, rounded."""
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
         outer = _I16(_I16(left[i]) + _I16(right[i]))
@@ -55,9 +50,7 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 @njit(cache=True)
 def _mix(total, blurred, source, remainder, target):
-    """Compute target = (total * blurred + source * remainder) / 65536, rounded; then set ``total``
-    to zero.
-    """
+    """Set ``target`` to (total * blurred + source * remainder) / 65536, and ``total`` to zero."""
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
         target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * remainder)) + _I32(32768)) >> 16
@@ -122,9 +115,7 @@ def line(views, dy, dx, weights, step, strength, out):
 
 @njit(cache=True)
 def _smooth(row, near, far):
-    """Compute row = (row + 2 near + far) / 4 in place; values are int16 in [0, 2^14], and ``row``
-    must not overlap the other two arrays.
-    """
+    """Compute row = (row + 2 near + far) / 4 in place, for int16 values in [0, 2^14]."""
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
         row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))
@@ -140,9 +131,7 @@ def _add_pairs(total, a, b, wa, c, d, wc):
 
 @njit(cache=True)
 def _weigh(values, centre, step, weights, rounding, total):
-    """Write to ``total`` the weighted sum of ``values`` (int16) around the index ``centre``;
-    neighbouring taps are ``step`` values apart.
-    """
+    """Write the weighted sum of ``values`` around ``centre``, at multiples of ``step``."""
     middle = values[centre:]
     for i in range(total.size):
         twice = _I16(middle[i] + middle[i])

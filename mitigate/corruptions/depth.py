@@ -34,8 +34,7 @@ ECHO_HERTZ = 20e6
 
 
 def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
-    """Return the error of a depth reading at an edge, in metres, if the background is ``gap``
-    metres farther away than the foreground.
+    """Return the error in metres at an edge whose background is ``gap`` metres farther away.
 
     The value is computed from the phasor sum of two light paths.
     """
@@ -46,8 +45,7 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """Return the coefficients (float32 [8], lowest power first) of a polynomial p with
-    echo_shift(gap) = gap * p(gap), accurate to 0.01 mm.
+    """Return p (float32 [8], lowest power first) with echo_shift(gap) = gap * p(gap) to 0.01 mm.
 
     The polynomial interpolates the shift at the Chebyshev nodes of [0, 2.5] m, where the shift is
     smooth. The compiler can vectorise a polynomial, but not table look-ups.
@@ -68,9 +66,7 @@ def larger(row, other):
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace row[i] by the maximum of row[i] to row[i + 2 * reach]; the window is doubled
-    repeatedly.
-    """
+    """Replace row[i] by the maximum of row[i] to row[i + 2 * reach], doubling the window."""
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -82,9 +78,7 @@ def farthest_along(row, spare, reach):
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """Write to ``out`` [H, W], for each pixel, the maximum of sign * z in the square of side 2 *
-    reach + 1 around it, or -inf if no pixel there is valid.
-    """
+    """Write to ``out`` the maximum of sign * z (valid z only) in the square around each pixel."""
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
@@ -155,8 +149,7 @@ _U = np.uint64
 def _add_noise(views, streams, base, square, z_max, table, out):
     """Add noise in blocks of 256 pixels.
 
-    For each block, a first loop reads normal random numbers from the table. The arithmetic is in a
-    second loop, because the compiler can vectorise it only without table look-ups.
+    The look-ups of normal numbers have their own loop, so that the compiler vectorises the other.
     """
     draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):
@@ -174,9 +167,7 @@ def _add_noise(views, streams, base, square, z_max, table, out):
 
 
 def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add severity * (0.02 + 0.02 z^2) * N(0, 1) to each pixel of each frame; z is limited to
-    z_max.
-    """
+    """Add severity * (0.02 + 0.02 z^2) * N(0, 1) to each pixel; z is limited to z_max."""
     base, square = np.float32(severity * NOISE_BASE), np.float32(severity * NOISE_SQUARE)
     out = np.empty_like(views)
     streams, z_max = view_streams(key, "gaussian_noise", len(views)), np.float32(sensor.z_max)
@@ -187,11 +178,9 @@ def gaussian_noise(views: np.ndarray, severity: float, key: Key, sensor: DepthSe
 
 @cached
 def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return a map (uint8 [H, 2 W]) with a code per pixel: 0 keeps depth, 1 removes it, and 2 sets
-    it to z_max.
+    """Return a code per pixel, uint8 [H, 2 W]: 0 keeps depth, 1 removes it, 2 sets it to z_max.
 
-    The array holds two copies of the map, side by side, so that a shifted row is one contiguous
-    slice.
+    The map is stored twice, side by side, so that a shifted row is one contiguous slice.
     """
     smooth, cells = field(value, height, width, HOLE_CORRELATION)
     holes = smooth >= top_share(cells, HOLE_SHARE * severity)
@@ -199,14 +188,10 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
     return np.tile(holes.astype(np.uint8) + far, 2)
 
 
-@lru_cache(maxsize=64)  # several frames have the same holes
-def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
-    return view_streams(Key(seed, episode, placement), "missing_offset", views)
-
-
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
-    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
+    placement = Key(key.seed, key.episode, int(key.frame) // HOLE_FRAMES)
+    return view_streams(placement, "missing_offset", views)
 
 
 @njit(cache=True)

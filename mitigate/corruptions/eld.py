@@ -42,9 +42,7 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Noise:
-    """Noise parameters at one severity: exposure ratio, gain K, Tukey lambda, and the sigmas of
-    read and row noise.
-    """
+    """Exposure ratio, gain K, Tukey lambda, and the sigmas of read and row noise."""
 
     ratio: float
     gain: float
@@ -62,10 +60,7 @@ def noise_at(severity: float) -> Noise:
 
 
 def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
-    """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution.
-
-    For l = 0, this is the logistic distribution.
-    """
+    """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution (l = ``shape``)."""
     if abs(shape) < 1e-9:
         return np.log(u / (1.0 - u))
     return (u**shape - (1.0 - u) ** shape) / shape
@@ -73,11 +68,7 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points].
-
-    They are exact for means up to 64. For larger means, the Cornish-Fisher expansion approximates
-    them.
-    """
+    """Compute Poisson quantiles [means, points], for means above 64 by Cornish-Fisher."""
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -98,8 +89,7 @@ def _photon_table(means, points, deviates, out):
 
 
 class Tables(NamedTuple):
-    """The look-up tables of one severity. int32 tables hold values in units of 1/256 of a sensor
-    unit.
+    """The look-up tables of one severity; int32 values are in units of 1/256 of a sensor unit.
 
     ``photons`` is int32 [LEVELS * 256]; ``read`` and ``row`` are int32 [4096]. ``decode`` (uint8
     [D]) maps the sum of the three values and ``offset``, in whole sensor units, to a grey level.
@@ -142,9 +132,7 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """Sample noisy frames (uint8 [V, H, W, 3]). Unsigned indices avoid numba's check for negative
-    indices.
-    """
+    """Sample noisy frames; unsigned indices avoid numba's check for negative indices."""
     count, height, width, _ = views.shape
     size = 3 * width
     flat, into = views.reshape(count, height, size), out.reshape(count, height, size)

@@ -1,6 +1,4 @@
-"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed, and files are
-written atomically.
-"""
+"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed."""
 
 from __future__ import annotations
 
@@ -114,14 +112,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     that is already in ``out`` is not written again. A temporal fault repeats frames of earlier
     files of the episode.
 
-    Args:
-        source: Folder with frames.
-        out: Folder of the results.
-        settings: The options.
-
     Returns:
-        The summary with settings, counts and skipped files, which is also written to
-        ``out/corrupt.json``.
+        The summary with settings, counts and skipped files, as in ``out/corrupt.json``.
 
     Raises:
         FileNotFoundError: If the folder does not exist or contains no frame.
@@ -215,9 +207,7 @@ def _corrupt_frame(
 
 
 def checksum(*paths: Path) -> str:
-    """Return one checksum for an input file and its output file, or "" if one of them cannot be
-    read.
-    """
+    """Return one checksum for an input and an output file, or "" if one cannot be read."""
     try:
         return short_hash("".join(map(sha256, paths)))
     except OSError:
@@ -234,9 +224,7 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check that an earlier run in ``out`` had the same settings and episodes; then write both
-    there.
-    """
+    """Check that an earlier run in ``out`` had the same settings and episodes; write both."""
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     earlier, episodes = earlier_summary(out, settings_now), plan.episodes()
@@ -261,10 +249,9 @@ def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
 
 
 def earlier_summary(out: Path, settings: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the summary of an earlier run in ``out``, or an empty dict if the folder is empty.
+    """Return the summary of an earlier run in ``out``, or {} if the folder is empty.
 
-    Raises:
-        ValueError: If ``out`` contains other files, or was written with different settings.
+    Raises ValueError if ``out`` has other files, or was written with different settings.
     """
     if all(path.name[0] == "." for path in out.iterdir()):
         return {}

@@ -43,7 +43,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
-from dataclasses import MISSING, fields
+from dataclasses import fields
+from typing import Any
 
 from mitigate.core.errors import command
 from mitigate.core.names import escaped, printable
@@ -58,26 +59,18 @@ MAX_LISTED = 5  # number of skipped files that are printed; the summary lists al
 
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]:
-    """Parse the arguments into IN, OUT, the settings, and those options that are in
-    ``DATASET_OPTIONS``.
-
-    Raises:
-        ValueError: If an argument is invalid.
-    """
+    """Parse the arguments into IN, OUT, the settings, and the given ``DATASET_OPTIONS``."""
     known = [option.name for option in fields(Settings)]
     (source, out), options = paths_and_options(arguments, ("IN", "OUT"), [*known, *DATASET_OPTIONS])
     of_dataset = {name: options.pop(name) for name in DATASET_OPTIONS if name in options}
-    return source, out, _settings(options), of_dataset
-
-
-def _settings(options: dict[str, str]) -> Settings:
-    for option in fields(Settings):
-        if option.default is MISSING and option.name not in options:
+    for name in ("corruption", "severity"):
+        if name not in options:
             raise ValueError(
-                f"The option {option.name}= is missing. An example is corruption=spatter "
-                "severity=0.5. The option --list lists the corruptions."
+                f"The option {name}= is missing. An example is corruption=spatter severity=0.5. "
+                "The option --list lists the corruptions."
             )
-    return Settings(**{name: _value(name, text) for name, text in options.items()})  # type: ignore[arg-type]
+    values: dict[str, Any] = {name: _value(name, text) for name, text in options.items()}
+    return source, out, Settings(**values), of_dataset
 
 
 def _value(name: str, text: str) -> str | int | float:

@@ -15,21 +15,33 @@ from dataclasses import dataclass
 
 from mitigate.corruptions.keying import Key, as_key, digest, uniform
 from mitigate.corruptions.language import words
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS, Rewrite, restyle
 from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
-# part-of-speech tags of words that the family "capitals" may change
+# part-of-speech tags of words that "capitalize" may change, and that "mask" may hide
 SPOKEN = words.bag("NOUN PROPN VERB ADP")
-SLIGHT = words.bag(
-    "DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ"
-)  # part-of-speech tags of words that the family "masks" may hide
+SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")
+# Misleading sentences by split and kind of attack. No kind of attack occurs in two splits, so a
+# safeguard that is trained on "train" is tested on new kinds. All sentences were written for this
+# project; the kinds of attack follow NavTrust's malicious prompts.
+SPLITS = ("train", "validation", "test")
+_BANK: dict[str, dict[str, list[str]]] = words.read_data("prefixes.json")
 _SLOT = re.compile(
     r"\{\{?\s*(?:instruction|task|goal|command|query|input)\s*\}?\}|<task>|<instruction>",
     re.IGNORECASE,
 )
+
+
+def prefixes(split: str) -> dict[str, tuple[str, ...]]:
+    """Return the misleading sentences of a split by kind of attack; raise ValueError for others."""
+    if split not in _BANK:
+        raise ValueError(
+            f"split must be one of {', '.join(SPLITS)}, got {split!r}. Safeguards are trained on "
+            "train and evaluated on test."
+        )
+    return {kind: tuple(sentences) for kind, sentences in _BANK[split].items()}
 
 
 @dataclass(frozen=True)
@@ -106,17 +118,15 @@ def check_options(split: str, mask_token: str, tagger: str) -> None:
 
 
 def is_rewritten(manner: str, severity: float, key: Key) -> bool:
-    """Return whether the instruction of this episode is rewritten; ``severity`` is the
-    probability.
-    """
+    """Return whether this episode's instruction is rewritten, with probability ``severity``."""
     return uniform(digest(key, manner)) < severity
 
 
 def inject_system_prompt(
     prompt: str | None, severity: float, key: Key | int | str
 ) -> str | NotApplicable:
-    """Insert misleading sentences into a system prompt, before the placeholder for the task or at
-    the end.
+    """Insert misleading sentences into a system prompt, before the task's placeholder or at the
+    end.
 
     The placeholder is the first ``{instruction}``, ``{task}`` or similar. The sentences and
     ``severity`` are those of "black_box". If ``prompt`` is None or empty, the result is
@@ -138,9 +148,7 @@ def inject_system_prompt(
 
 
 def stacked(severity: float, key: Key, split: str) -> list[str]:
-    """Sample one misleading sentence per kind of attack, and return a fraction ``severity`` of
-    them.
-    """
+    """Sample a misleading sentence per kind of attack; return a fraction ``severity`` of them."""
     bank, stream = prefixes(split), digest(key, "prefixes")
     drawn = [
         sentences[int(uniform(stream, index) * len(sentences))]

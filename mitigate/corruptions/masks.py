@@ -34,9 +34,7 @@ NEUTRAL = (1.0, 1.0, 1.0)
 
 @njit(cache=True)
 def _expand(share, weight, out):
-    """Write min(share * weight of the channel, 1) to ``out`` (int16 [H, 3 W]) in units of 1/32768;
-    ``share`` is [H, W].
-    """
+    """Write min(share * weight per channel, 1) to ``out`` (int16 [H, 3 W]), unit 1/32768."""
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
         for c in range(3):
@@ -49,11 +47,7 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Return the opacity mask (int16 [H, 3 W]): the product of ``share`` ([H, W]), ``strength`` and
-    ``tint``.
-
-    Values of ``share`` must be at least 0.
-    """
+    """Return share [H, W] (>= 0) * strength * tint as opacity, int16 [H, 3 W], unit 1/32768."""
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
     return out
@@ -67,12 +61,10 @@ def colour_row(colour: tuple[int, int, int], width: int) -> np.ndarray:
 
 @njit(cache=True)
 def cover(views, alpha, colour, out):
-    """Blend views (uint8 [V, H, W, 3]) with one colour.
+    """Blend views (uint8 [V, H, W, 3]) with one colour, and write the result to ``out``.
 
     ``colour`` (int16 [3 W]) is the result of ``colour_row``; ``alpha`` (int16 [H, 3 W]) is the
-    opacity.
-
-    Two separate loops per row of 16-bit numbers compile to full-width vector code.
+    opacity. Two separate loops per row of 16-bit numbers compile to full-width vector code.
     """
     count, height, _, _ = views.shape
     flat, into = views.reshape(count, height, -1), out.reshape(count, height, -1)
@@ -95,11 +87,9 @@ def covered(views: np.ndarray, alpha: np.ndarray, colour: np.ndarray) -> np.ndar
 
 
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return one term per image row and one per column, from which ``light_ramp`` is computed.
+    """Return the row (float32 [H]) and column terms (float32 [W]) of ``light_ramp``, and a flag.
 
-    Returns:
-        One term per row (float32 [H]), one term per column (float32 [W]), and a flag. If the flag
-        is True, the ramp is the square root of the sum of both terms; otherwise, it is the sum.
+    The ramp is the sum of both terms, or the square root of the sum if the flag is True.
     """
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
@@ -122,9 +112,7 @@ def light_ramp(value: int, height: int, width: int) -> np.ndarray:
 
 
 def light_loss(value: int, severity: float, height: int, width: int) -> np.ndarray:
-    """Return the fraction of light that is lost: severity * (0.60 + 0.37 * ramp), float32 [H,
-    W].
-    """
+    """Return the fraction of lost light: severity * (0.60 + 0.37 * ramp), float32 [H, W]."""
     ramp = light_ramp(value, height, width)
     return ramp * np.float32(severity * DARK_RAMP) + np.float32(severity * DARK_BASE)
 
@@ -153,13 +141,12 @@ def spatter_colour(value: int) -> tuple[int, int, int]:
 def flare_centres(
     value: int, views: int, height: int, width: int, heading: float | None
 ) -> tuple[tuple[float, float] | None, ...]:
-    """Return the position (x, y) of the light in each view in pixels, or None for views that do not
-    show the light.
+    """Return the pixel (x, y) of the light in each view, or None if a view does not show it.
 
     The direction of the light is fixed in the world. It is sampled as a position in the image of a
     camera with a random yaw: column U(0.1, 0.9) * W and row U(0, 0.5) * H. View number k has the
-    yaw ``heading`` - 30 * k degrees and no pitch (``heading`` in radians, counter-clockwise), for
-    any number of views. If the heading is unknown, the position is sampled in view 0.
+    yaw ``heading`` - 30 * k degrees and no pitch (``heading`` in radians, counter-clockwise). If
+    the heading is unknown, the position is sampled in view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     # focal length in image widths
@@ -183,9 +170,7 @@ def flare_centres(
 
 @lru_cache(maxsize=1)
 def glow_table() -> np.ndarray:
-    """Return the glow at severity 1 for distances from 0 to 1.5 image diagonals, float32
-    [GLOW_CELLS + 1].
-    """
+    """Return the glow at severity 1 for 0 to 1.5 image diagonals, float32 [GLOW_CELLS + 1]."""
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
     return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
@@ -193,21 +178,16 @@ def glow_table() -> np.ndarray:
 
 @njit(cache=True)
 def _look_up(down, right, table, out):
-    """Set out[y, x] to the table entry whose index is nearest to sqrt(down[y] + right[x]); all
-    arrays are float32.
-    """
+    """Set out[y, x] to the entry of ``table`` that is nearest to sqrt(down[y] + right[x])."""
     for y in range(down.size):
         for x in range(right.size):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
 def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return squared distances to the pixel (x, y) along each axis; the unit is the cell size of
-    ``glow_table``.
+    """Return squared distances to the pixel (x, y), per row (float32 [H]) and column (float32 [W]).
 
-    Returns:
-        The squared vertical distance of each row (float32 [H]), and the squared horizontal distance
-        of each column (float32 [W]).
+    Their unit is the cell size of ``glow_table``.
     """
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
@@ -217,9 +197,7 @@ def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray,
 
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
-    """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W] in units of
-    1/32768.
-    """
+    """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W], unit 1/32768."""
     glow = np.empty((height, width), np.float32)
     _look_up(*glow_terms(x, y, height, width), glow_table(), glow)
     return opacity_mask(glow, severity, FLARE_TINT)
@@ -227,9 +205,7 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
 
 @lru_cache(maxsize=32)
 def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
-    """Return, for each row, the first column of the disk and the column after its last one, int64
-    [H, 2].
-    """
+    """Return the first column of the disk, and the one after its last, per row, int64 [H, 2]."""
     radius = DISK_RADIUS * severity * min(height, width)
     reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
     half = np.sqrt(np.maximum(reach, 0.0))
@@ -240,9 +216,7 @@ def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
 
 @njit(cache=True)
 def blacken(frames, spans):
-    """Set the pixels of frames (uint8 [V, H, W, 3]) inside the spans (int64 [H, 2]) to black, in
-    place.
-    """
+    """Set the pixels of frames (uint8 [V, H, W, 3]) inside the spans (int64 [H, 2]) to black."""
     count, height, _, _ = frames.shape
     flat = frames.reshape(count, height, -1)
     for v in range(count):

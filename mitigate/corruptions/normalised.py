@@ -79,9 +79,7 @@ def check_sensor(sensor: DepthSensor) -> None:
 
 @njit(cache=True)
 def _to_metres(clean, z_min, span, out):
-    """Convert valid depth to metres and all other pixels to 0; return the largest valid value of
-    ``clean``.
-    """
+    """Convert valid depth to metres, other pixels to 0; return the largest valid value."""
     maximum = np.float32(0)
     for i in range(clean.size):
         value = clean[i]

@@ -94,7 +94,7 @@ class Record:
         source: str,
         **fields: Any,
     ) -> Record:
-        """Return the record of a corruption. The record is named after the function ``apply``."""
+        """Return the record of a corruption, named after its function ``apply``."""
         return cls(apply.__name__, modality, apply, severity, source=source, **fields)
 
     @classmethod
@@ -107,9 +107,7 @@ class Record:
         source: str = "heuristic",
         **fields: Any,
     ) -> Record:
-        """Return the record of a fault. The record is named after the function ``draw`` of the
-        fault.
-        """
+        """Return the record of a fault, named after its function ``draw``."""
         more = {"source": source, "version": "1", "family": family, "draw": draw, **fields}
         return cls(draw.__name__, modality, None, severity, **more)
 

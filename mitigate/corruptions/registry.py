@@ -48,16 +48,11 @@ BROAD = {record.name: record for record in broad.RECORDS}
 FAULTS = {record.name: record for record in faults.RECORDS}
 INCLUDED = {**SUITE, **UNSEEN, **SENSORS, **FAULTS, **BROAD}
 AND = "+"  # separator between the names of a pair
-HEAD = ("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")
 
 
 @lru_cache(maxsize=1)
 def plugin_records() -> dict[str, Record]:
-    """Return the records of installed packages.
-
-    An invalid record is skipped with a warning, so that a broken package causes no error if it is
-    not used.
-    """
+    """Return the records of installed packages; an invalid record only causes a warning."""
     records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
         try:
@@ -95,11 +90,9 @@ def names(*modalities: str) -> tuple[str, ...]:
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Return the names of the unseen corruptions that change one of ``modalities``; ``half``
-    restricts them to the validation or the test set.
+    """Return the unseen corruptions that change one of ``modalities``, of one half or both.
 
-    Raises:
-        ValueError: If ``half`` is unknown.
+    Raises ValueError for an unknown ``half``.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
@@ -112,9 +105,8 @@ def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
 
 def known(*modalities: str) -> tuple[str, ...]:
     """Return the names of all corruptions that change one of ``modalities``, except faults."""
-    others = {**SENSORS, **BROAD, **plugin_records()}.items()
-    fixed = names(*modalities) + unseen_names(*modalities)
-    return fixed + tuple(n for n, r in others if r.modality in modalities)
+    records = {**SUITE, **UNSEEN, **SENSORS, **BROAD, **plugin_records()}
+    return tuple(name for name, record in records.items() if record.modality in modalities)
 
 
 def fault_names(*families: str) -> tuple[str, ...]:
@@ -123,16 +115,8 @@ def fault_names(*families: str) -> tuple[str, ...]:
 
 
 def family(name: str) -> str:
-    """Return the family of a fault, or of the first fault in a pair of corruptions.
-
-    The result is "" if there is no fault.
-    """
+    """Return the family of the first fault in a corruption or pair, or "" without a fault."""
     return next((FAULTS[part].family for part in parts(name) if part in FAULTS), "")
-
-
-def broad_name(modality: str) -> str:
-    """Return the name of the random composition for a modality."""
-    return next(name for name, record in BROAD.items() if record.modality == modality)
 
 
 def record(name: str) -> Record:
@@ -141,9 +125,7 @@ def record(name: str) -> Record:
 
 
 def parts(name: str) -> tuple[str, ...]:
-    """Split the name of a pair into its two names; for a single corruption, return a tuple with its
-    name.
-    """
+    """Split the name of a pair into its two names; a single name gives a tuple of one."""
     return tuple(name.split(AND))
 
 
@@ -157,36 +139,27 @@ def title(name: str) -> str:
 
 
 def version(name: str) -> dict[str, str]:
-    """Return the entry ``version`` of a result row as a dict, which is empty if all parts belong to
-    the suite.
-    """
+    """Return the entry ``version`` of a result row; it is empty if all parts are in the suite."""
     others = (part for part in parts(name) if part != "clean" and part not in SUITE)
     versions = [record(part).version for part in others]
     return {"version": AND.join(versions)} if versions else {}
 
 
 def modality(name: str) -> str:
-    """Return the modality that a corruption changes, or "rgb+depth" for a fault that affects
-    both.
-    """
+    """Return the modality that a corruption changes, such as "rgb+depth" for some faults."""
     return record(name).modality
 
 
 def table() -> str:
     """Return a text table of all frame corruptions, in aligned columns with a heading."""
-    records = [*(record(name) for name in known("rgb", "depth")), *FAULTS.values()]
-    records = [record for record in records if record.modality != ACTION]
-    rows = [
-        (r.name, _sensor(r), r.severity, r.episode, r.frame, r.source, _suite(r)) for r in records
-    ]
-    rows = [HEAD, *rows]
+    rows = [("name", "corrupts", "severity s", "per episode", "per frame", "source", "suite")]
+    for r in (*(record(name) for name in known("rgb", "depth")), *FAULTS.values()):
+        if r.modality != ACTION:
+            sensor = "both" if r.modality == FRAMES else r.modality
+            rows.append((r.name, sensor, r.severity, r.episode, r.frame, r.source, _suite(r)))
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     lines = ("  ".join(map(str.ljust, row, widths)).rstrip() for row in rows)
     return "\n".join(lines)
-
-
-def _sensor(record: Record) -> str:
-    return "both" if record.modality == FRAMES else record.modality
 
 
 def _suite(record: Record) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 
 from mitigate.corruptions import blur, masks
 from mitigate.corruptions.eld import low_light_noise
-from mitigate.corruptions.keying import Key, digest, scramble, uniform
+from mitigate.corruptions.keying import Key, digest, uniform, view_streams
 from mitigate.corruptions.record import Record
 
 BLUR_LENGTH = 0.10  # length at severity 1 as a fraction of W; ImageNet-C kernels are 3 to 14 % of W
@@ -75,9 +75,7 @@ def tap_step(length: float) -> int:
 
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a nearly horizontal line blur of length 0.10 * severity * W; lengths below 1 px
-    have no effect.
-    """
+    """Blend with a nearly horizontal line blur of length 0.10 * severity * W, if over 1 px."""
     length, angle = blur_line(severity, key, views.shape[2])
     if length < 1.0:
         return views.copy()
@@ -96,9 +94,7 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Cover a fraction 0.45 * severity of the image with mud or water, where a random field is
-    highest; the field is fixed per episode.
-    """
+    """Cover 0.45 * severity of the image with mud or water, where a random field is highest."""
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     colour = masks.spatter_colour(digest(key, "spatter_colour"))
@@ -106,10 +102,7 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Add the glow of a light, by screen blending, to the views that show the light.
-
-    The direction of the light is fixed in the world if the heading is known.
-    """
+    """Add, by screen blending, the glow of a light whose direction is fixed in the world."""
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
@@ -124,8 +117,7 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
 
 @lru_cache(maxsize=64)
 def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
-    """Return the arguments ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px; the
-    kernel ends at 3 sigma.
+    """Return ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
 
     Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The weighted taps add
     the remaining variance. Smoothing is repeated as long as the remaining sigma is at least
@@ -150,9 +142,7 @@ def defocus_sigma(severity: float, key: Key, height: int, width: int) -> float:
 
 
 def defocus(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blur with a Gaussian of sigma = 5 * severity * u * min(H, W) / 224, with u ~ U(0.8, 1.2) per
-    episode.
-    """
+    """Blur with sigma = 5 * severity * u * min(H, W) / 224, with u ~ U(0.8, 1.2) per episode."""
     sigma = defocus_sigma(severity, key, *views.shape[1:3])
     if sigma < DEFOCUS_LEAST:
         return views.copy()
@@ -171,9 +161,9 @@ def foreign_object(views: np.ndarray, severity: float, key: Key, heading=None) -
 
 def black_out(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
     """Make each view of each frame black with probability ``severity``."""
-    out, value = np.empty_like(views), digest(key, "black_out", frame=True)
-    for view in range(len(views)):
-        out[view] = 0 if uniform(scramble(value, view)) < severity else views[view]
+    out = np.empty_like(views)
+    for view, stream in enumerate(view_streams(key, "black_out", len(views))):
+        out[view] = 0 if uniform(int(stream)) < severity else views[view]
     return out
 
 

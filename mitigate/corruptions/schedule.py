@@ -10,7 +10,7 @@ from itertools import accumulate
 from typing import Any
 
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.corruptions.registry import broad_name, modality
+from mitigate.corruptions.registry import modality
 from mitigate.corruptions.suite import (
     CLEAN,
     NAMES,
@@ -107,9 +107,7 @@ class Schedule:
 
     @classmethod
     def always(cls, name: str, severity: float) -> Schedule:
-        """Return a schedule that applies one corruption at ``severity`` to every frame, as in
-        evaluation.
-        """
+        """Return a schedule that applies one corruption to every frame, as in evaluation."""
         return cls("per_episode", severity, clean_share=0.0, names=(name,))
 
     @property
@@ -131,8 +129,7 @@ class Schedule:
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
-        """Recompute the weights from success rates (by name); names that are not in the schedule
-        are ignored.
+        """Recompute the weights from success rates by name; names of other corruptions are ignored.
 
         A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
         rates; the other modes keep uniform weights.
@@ -158,9 +155,7 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """Sample the corruption and the key of a frame; both depend only on the arguments and the
-        weights.
-        """
+        """Sample the corruption and the key of a frame from the arguments and the weights."""
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -173,7 +168,7 @@ class Schedule:
         place = bisect_right(list(accumulate(self._weights)), uniform(value, 1))
         name = self.names[min(place, len(self.names) - 1)]
         if uniform(value, 3) < self.broad_share:
-            name = broad_name(modality(name))
+            name = f"broad_{modality(name)}"
         return self.corruption(name, uniform(value, 2)), key
 
     def corruption(self, name: str, place: float = 0.5) -> Corruption:
@@ -189,15 +184,11 @@ class Schedule:
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """Return the state as JSON data for a checkpoint, so that a resumed run has the same
-        weights.
-        """
+        """Return the state as JSON data for a checkpoint."""
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
-        """Restore the result of ``state_dict()``; raise ValueError if it lacks a corruption of this
-        schedule.
-        """
+        """Restore the result of ``state_dict()``; raise ValueError for an invalid state."""
         if "success" not in state:
             raise ValueError(
                 f"The state of a Schedule must have the entry 'success', got only the entries "
@@ -210,11 +201,9 @@ class Schedule:
 
 
 def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-    """Return the corruption and the key of a frame; if ``by`` is a Corruption, it applies to every
-    frame.
+    """Return the corruption and the key of a frame; a Corruption applies to every frame.
 
-    Raises:
-        ValueError: If ``by`` is neither a Corruption nor a Schedule.
+    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return by.draw(seed, episode, frame)
@@ -222,11 +211,9 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 
 
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
-    """Return the names of the corruptions that ``by`` may apply; the tuple is empty if all frames
-    stay clean.
+    """Return the names of the corruptions that ``by`` may apply; () if all frames stay clean.
 
-    Raises:
-        ValueError: If ``by`` is neither a Corruption nor a Schedule.
+    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return () if by.mode == "clean" else by.names

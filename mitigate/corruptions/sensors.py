@@ -29,26 +29,17 @@ BIAS = "systematic error"
 
 @dataclass(frozen=True)
 class Profile:
-    """The errors of a depth camera.
+    """The errors of a depth camera."""
 
-    Attributes:
-        sd: Coefficients (a, b, c) of the standard deviation a + b * d + c * d^2 in metres.
-        origin: Depth in metres at which d is 0: d = z - origin.
-        lateral: Standard deviation of the lateral error as a fraction of the image width.
-        disparity: Constant for rounding. Depth takes only the values ``disparity`` / n metres,
-            where n is a whole number. If it is 0, depth is not rounded.
-        offset: Maximum constant error in metres.
-        scale: Maximum error that is proportional to depth, as a fraction of depth.
-        far: Maximum depth that is measured, in metres.
-    """
-
+    # coefficients (a, b, c) of the standard deviation a + b * d + c * d^2 in metres
     sd: tuple[float, float, float]
-    far: float
-    origin: float = 0.0
-    lateral: float = 0.0
+    far: float  # maximum depth that is measured, in metres
+    origin: float = 0.0  # depth in metres at which d is 0: d = z - origin
+    lateral: float = 0.0  # standard deviation of the lateral error, as a fraction of the width
+    # depth takes only the values disparity / n metres for whole n; 0 means no rounding
     disparity: float = 0.0
-    offset: float = 0.0
-    scale: float = 0.0
+    offset: float = 0.0  # maximum constant error in metres
+    scale: float = 0.0  # maximum error that is proportional to depth, as a fraction of depth
 
 
 # The Kinect for Xbox 360 uses structured light.

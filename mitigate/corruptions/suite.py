@@ -1,5 +1,4 @@
-"""Apply corruptions to frames: ``corrupt`` changes one frame, ``corrupt_observation`` changes all
-frames of an observation.
+"""Apply corruptions: ``corrupt`` to one frame, ``corrupt_observation`` to an observation.
 
 Both are pure functions of (frame, name, severity, key, heading).
 """
@@ -54,9 +53,7 @@ def rgb_views(frame: np.ndarray) -> np.ndarray:
 
 
 def depth_views(frame: np.ndarray, sensor: DepthSensor, name: str) -> np.ndarray:
-    """Return a depth frame as contiguous float32 [V, H, W]; raise ValueError for RGB or other
-    dtypes.
-    """
+    """Return a depth frame as contiguous float32 [V, H, W]; raise ValueError for other frames."""
     if frame.ndim > 2 and frame.shape[-1] == 3:
         raise ValueError(
             f"{name} needs a depth frame, but the last axis of {frame.shape} is 3, as in "
@@ -138,11 +135,7 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float.
-
-    Raises:
-        ValueError: If it is a bool, or not a number in [0, 1].
-    """
+    """Return ``severity`` as a float; raise ValueError unless it is a number in [0, 1]."""
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -201,11 +194,7 @@ class Corruption:
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The corrupted modalities: "rgb", "depth", "instruction".
-
-        A fault that affects both sensors has both modalities. It also works if only one of them is
-        available.
-        """
+        """The corrupted modalities. A fault of both sensors also works with one of them."""
         records = [registry.record(part.name) for part in self.parts if part.name != GATE]
         return tuple(dict.fromkeys(m for record in records for m in record.modalities))
 
@@ -244,9 +233,7 @@ CLEAN = Corruption("clean", 0.0)
 
 
 def check_gate(corruption: Corruption) -> Corruption:
-    """Return ``corruption``; raise ValueError if it is ``intermittent`` without a second
-    corruption.
-    """
+    """Return ``corruption``; raise ValueError if it is ``intermittent`` alone."""
     if corruption.name == GATE:
         raise ValueError(
             f"{GATE!r} must be the first name of a pair, such as {GATE}+spatter. The second "
@@ -406,9 +393,7 @@ def corrupt_views(
 
 
 def _check_camera(name: str, mount: Mount, hfov: float | None) -> float:
-    """Return the field of view; raise ValueError if the camera fault cannot be computed from a
-    frame.
-    """
+    """Return ``hfov``; raise ValueError if the camera fault cannot be computed from a frame."""
     if mount.height:
         raise ValueError(
             f"{name!r} needs a world that can render from a different camera height: this view "
@@ -474,8 +459,7 @@ def corrupt_observation(
 def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
     """Return the names of the entries of an observation that a single corruption changes.
 
-    Raises:
-        ValueError: If the observation has no entry that the corruption could change.
+    Raises ValueError if there is no such entry.
     """
     modalities = registry.record(part.name).modalities
     # each entry is named after its modality

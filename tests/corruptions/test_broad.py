@@ -9,7 +9,7 @@ import pytest
 from mitigate.corruptions import NAMES, DepthSensor, Key, Schedule, corrupt
 from mitigate.corruptions.broad import depth, rgb
 from mitigate.corruptions.broad.composition import stream
-from mitigate.corruptions.registry import BROAD, broad_name, modality, names, unseen_names, version
+from mitigate.corruptions.registry import BROAD, modality, names, unseen_names, version
 from tools.pages.gallery import primitives
 
 KEYS = [Key(0, f"episode-{i}", 2) for i in range(60)]
@@ -144,4 +144,4 @@ def test_schedule_without_a_share_draws_no_broad():
 
 
 def test_each_modality_has_one_broad():
-    assert {broad_name(m) for m in ("rgb", "depth")} == set(BROAD)
+    assert {f"broad_{modality}" for modality in ("rgb", "depth")} == set(BROAD)

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from mitigate.corruptions import Key
+from mitigate.corruptions.instruction import SPLITS, prefixes
 from mitigate.corruptions.language import phrases
 from mitigate.corruptions.language.fidelity import check, facts
-from mitigate.corruptions.language.prefixes import SPLITS, prefixes
 from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.worlds.episodes import read_episodes
 from tests.r2r_ce import FOLDER, needs_r2r_ce

@@ -23,9 +23,9 @@ from mitigate.corruptions import (
     corrupt_instruction,
     inject_system_prompt,
 )
+from mitigate.corruptions.instruction import SPLITS, prefixes
 from mitigate.corruptions.language import words
 from mitigate.corruptions.language.fidelity import check
-from mitigate.corruptions.language.prefixes import SPLITS, prefixes
 from mitigate.corruptions.language.style import MANNERS, restyle
 from mitigate.corruptions.language.tagger import tag, tokens
 

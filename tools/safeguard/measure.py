@@ -25,8 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.corruptions.language.fidelity import facts
-from mitigate.corruptions.language.landmarks import normal
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.words import bag, normal
 from mitigate.evaluation.bootstrap import wilson
 
 FRESH = Path(__file__).parent / "data" / "fresh"

@@ -1,10 +1,9 @@
-"""Sample the primitives of a composition and their strengths, and compute random maps for
-primitives.
+"""Sample the primitives of a composition and their strengths, and random maps for primitives.
 
-A primitive is a function that returns a changed copy of views, of the same shape. Its arguments are
-the views, a strength in (0, 1], and two random generators. The generator ``rng`` is for the
-episode, and the generator ``now`` is for the frame. Constants without a source were chosen by this
-project. At that time, no agent trained with them had been evaluated under unseen corruptions.
+A primitive returns a changed copy of views, of the same shape. Its arguments are the views, a
+strength in (0, 1], and two random generators: ``rng`` for the episode, ``now`` for the frame.
+Constants without a source were chosen by this project. At that time, no agent trained with them had
+been evaluated under unseen corruptions.
 """
 
 from __future__ import annotations
@@ -29,9 +28,7 @@ def composed(
     name: str,
     primitives: Sequence[Primitive],
 ) -> np.ndarray:
-    """Apply one to three of ``primitives`` to ``views``; the choice depends on the key's
-    episode.
-    """
+    """Apply one to three of ``primitives``; the choice depends on the key's episode."""
     chosen, rng = drawn(key, name, primitives)
     now = stream(digest(key, name, frame=True))
     for primitive in chosen:
@@ -43,9 +40,7 @@ def composed(
 def drawn(
     key: Key, name: str, primitives: Sequence[Primitive]
 ) -> tuple[list[Primitive], np.random.Generator]:
-    """Return the primitives of the key's episode, in order, and a generator for their
-    parameters.
-    """
+    """Return the episode's primitives, in order, and a generator for their parameters."""
     rng = stream(digest(key, name))
     places = rng.permutation(len(primitives))[: 1 + rng.choice(len(COUNTS), p=COUNTS)]
     return [primitives[place] for place in places], rng
@@ -59,8 +54,7 @@ def stream(value: int) -> np.random.Generator:
 def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
     """Return a smooth random map, float32 [H, W], with mean 0 and standard deviation about 1.
 
-    The map is interpolated from a grid of random values with a spacing of ``cell`` times the
-    shorter side.
+    Its grid of random values has a spacing of ``cell`` times the shorter side.
     """
     height, width = shape
     size = max(1.0, cell * min(height, width))
@@ -76,9 +70,7 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
-    """Return a mask [H, W] of one to eight random shapes, which together cover about a fraction
-    ``area`` of the image.
-    """
+    """Return a mask [H, W] of one to eight random shapes that cover a fraction ``area``."""
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))
@@ -100,9 +92,8 @@ _CIRCLE = np.linspace(0, 2 * np.pi, 24, endpoint=False)
 def displaced(rng: np.random.Generator, shape: tuple[int, int], reach: float) -> tuple:
     """Return the source coordinates x and y of each pixel, float32 [H, W].
 
-    Pixels are displaced by a smooth random map, whose grid spacing is 0.06 to 0.6 times the shorter
-    side. In addition, the whole image is rotated, scaled and shifted. The maximum displacement is
-    about ``reach`` times the shorter side.
+    A smooth random map displaces pixels by up to about ``reach`` times the shorter side. In
+    addition, the whole image is rotated, scaled and shifted.
     """
     (height, width), cell = shape, log_uniform(rng, 0.06, 0.6)
     side = min(height, width)

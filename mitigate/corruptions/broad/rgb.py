@@ -8,13 +8,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from mitigate.corruptions.broad.composition import (
-    composed,
-    displaced,
-    field,
-    log_uniform,
-    shapes,
-)
+from mitigate.corruptions.broad.composition import composed, displaced, field, log_uniform, shapes
 from mitigate.corruptions.keying import Key
 
 NAME = "broad_rgb"
@@ -23,9 +17,7 @@ GAMMA = 2.2  # display gamma: light is proportional to (stored level)^GAMMA
 
 
 def exposure(views, strength, rng, now):
-    """Change the brightness, either uniformly or by a smooth random map; the change is constant or
-    differs between frames.
-    """
+    """Change the brightness, uniformly or by a random map, per episode or per frame."""
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -36,10 +28,7 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add the sum of the waves b_n sin(pi n x) to each level x, with random b_n (PRIME).
-
-    The three colours share one curve, or each colour gets its own curve.
-    """
+    """Add waves b_n sin(pi n x) with random b_n to each level x, per colour or in all (PRIME)."""
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -110,9 +99,7 @@ def coarse(views, strength, rng, now):
 
 
 def warped(views, strength, rng, now):
-    """Displace pixels by a smooth random map (PRIME's diffeomorphisms), and rotate, scale and shift
-    the image.
-    """
+    """Displace pixels by a smooth random map (PRIME), and rotate, scale and shift the image."""
     source = now if rng.random() < 0.3 else rng
     map_x, map_y = displaced(source, views.shape[1:3], 0.12 * strength)
     border = cv2.BORDER_REPLICATE
@@ -122,10 +109,7 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add noise, or multiply by noise, of random grain size, distribution and colour.
-
-    The noise may form bands.
-    """
+    """Add or multiply by noise of random grain size, distribution and colour, or by bands."""
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -141,10 +125,7 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Blend views with a random colour.
-
-    The opacity is a random map, whose structures are fine in some episodes and coarse in others.
-    """
+    """Blend with a random colour; the opacity is a random map, whose grain is fine or coarse."""
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
@@ -159,9 +140,7 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes, which may differ between views, with a colour, noise or other parts of
-    the image.
-    """
+    """Fill random shapes with a colour, noise or other parts of the image."""
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
@@ -178,10 +157,7 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """With probability 0.8 * strength, remove a view or a part of it.
-
-    The removed pixels are filled with a constant grey level, noise or pixels of another view.
-    """
+    """Fill views, or a part of them, with grey, noise or another view, with 0.8 * strength."""
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
     part = rng.random() < 0.3
@@ -210,23 +186,12 @@ def _each(views, change) -> np.ndarray:
 
 
 PRIMITIVES = (
-    exposure,
-    tone,
-    colour_mix,
-    contrast,
-    filtered,
-    coarse,
-    warped,
-    noisy,
-    covered,
-    hidden,
-    lost,
+    *(exposure, tone, colour_mix, contrast, filtered, coarse),
+    *(warped, noisy, covered, hidden, lost),
 )
 
 
 def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
-    """Apply one to three primitives with random strengths up to ``severity``; the choice is fixed
-    per episode.
-    """
+    """Apply one to three primitives of the episode with random strengths up to ``severity``."""
     changed = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
     return np.rint(np.clip(changed, 0.0, 1.0) * 255.0).astype(np.uint8)

@@ -24,7 +24,7 @@ from numba import njit
 
 from mitigate.core.observation import VIEW_STEP_DEGREES
 from mitigate.corruptions.depth_sensor import NEAREST, DepthSensor, is_valid
-from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.keying import Key, digest, sign, uniform
 from mitigate.corruptions.record import CAMERA, FRAMES, Record
 
 HEIGHT = 0.6  # metres at severity 1
@@ -40,28 +40,21 @@ _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the las
 class Mount:
     """A displacement of the camera (or of the rig of a panorama), or a change of its field of view.
 
-    Attributes:
-        height: Metres up.
-        pitch: Degrees up.
-        roll: Degrees clockwise, seen from behind the camera.
-        yaw: Degrees to the left.
-        fov: Degrees by which the horizontal field of view is widened.
+    All values except ``height`` are in degrees.
     """
 
-    height: float = 0.0
-    pitch: float = 0.0
-    roll: float = 0.0
-    yaw: float = 0.0
-    fov: float = 0.0
+    height: float = 0.0  # metres up
+    pitch: float = 0.0  # up
+    roll: float = 0.0  # clockwise, seen from behind the camera
+    yaw: float = 0.0  # to the left
+    fov: float = 0.0  # by which the horizontal field of view is widened
 
     def hfov(self, degrees: float) -> float:
         """Return the new horizontal field of view of a camera that originally had ``degrees``."""
         return min(max(degrees + self.fov, NARROWEST), WIDEST)
 
     def rotation(self) -> np.ndarray:
-        """Return the rotation matrix [3, 3] for the axes (right, forward, up); it applies roll,
-        then pitch, then yaw.
-        """
+        """Return the matrix [3, 3] (right, forward, up) that applies roll, pitch, then yaw."""
         return np.round(
             _turn(UP, self.yaw) @ _turn(RIGHT, self.pitch) @ _turn(FORWARD, self.roll), _DECIMALS
         )
@@ -113,9 +106,7 @@ def warp(
 
 @njit(inline="always")
 def _source(rotation, row, column, height, width, before, after):
-    """Return the source row and column of a pixel and its depth factor, which is 0 if the pixel is
-    behind the original camera.
-    """
+    """Return a pixel's source row and column, and its depth factor (0: behind the camera)."""
     x = (2 * column + 1 - width) / width * after
     z = (height - 1 - 2 * row) / width * after
     right = rotation[0, 0] * x + rotation[0, 1] + rotation[0, 2] * z
@@ -173,34 +164,29 @@ def _warp_depth(views, rotations, before, after, nearest, z_max, missing, out):
                 out[view, i, j] = z
 
 
-def _sign(key: Key, name: str) -> float:
-    """Return a random sign, 1 or -1, that is constant in an episode."""
-    return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
-
-
 def camera_height(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is mounted higher or lower."""
-    return Mount(height=severity * HEIGHT * _sign(key, "camera_height"))
+    return Mount(height=severity * HEIGHT * sign(key, "camera_height"))
 
 
 def camera_pitch(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that points up or down."""
-    return Mount(pitch=severity * PITCH * _sign(key, "camera_pitch"))
+    return Mount(pitch=severity * PITCH * sign(key, "camera_pitch"))
 
 
 def camera_roll(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is tilted to a side."""
-    return Mount(roll=severity * ROLL * _sign(key, "camera_roll"))
+    return Mount(roll=severity * ROLL * sign(key, "camera_roll"))
 
 
 def camera_yaw(severity: float, key: Key) -> Mount:
     """Return the displacement of a camera that is turned to a side."""
-    return Mount(yaw=severity * YAW * _sign(key, "camera_yaw"))
+    return Mount(yaw=severity * YAW * sign(key, "camera_yaw"))
 
 
 def camera_fov(severity: float, key: Key) -> Mount:
     """Return a change of the horizontal field of view, which becomes wider or narrower."""
-    return Mount(fov=severity * FOV * _sign(key, "camera_fov"))
+    return Mount(fov=severity * FOV * sign(key, "camera_fov"))
 
 
 DRAWS = (camera_height, camera_pitch, camera_roll, camera_yaw, camera_fov)

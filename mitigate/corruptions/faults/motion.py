@@ -14,7 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import partial
 
-from mitigate.corruptions.keying import Key, digest, uniform
+from mitigate.corruptions.keying import Key, digest, sign, uniform
 from mitigate.corruptions.record import ACTION, MOTION, Record
 
 SLIP = 0.8  # maximum fraction of a movement that is lost in a step at severity 1
@@ -25,22 +25,15 @@ LOST = 0.5  # probability that an action is dropped, or repeated, at severity 1
 
 @dataclass(frozen=True)
 class Movement:
-    """How the action of a step is executed.
+    """How the action of a step is executed."""
 
-    Attributes:
-        gain: Factor of the length of a forward step, or of a continuous action.
-        turn: Factor of the angle of a turn.
-        drift: Drift to the left, from -1 to 1, in units of ``DRIFT`` degrees per forward step. For
-            continuous actions, the drift is a bias.
-        dropped: Whether the robot stands still instead of executing the action.
-        repeated: Whether the previous action is executed again instead of this one.
-    """
-
-    gain: float = 1.0
-    turn: float = 1.0
+    gain: float = 1.0  # factor of the length of a forward step, or of a continuous action
+    turn: float = 1.0  # factor of the angle of a turn
+    # drift to the left, from -1 to 1, in units of DRIFT degrees per forward step; for continuous
+    # actions, the drift is a bias
     drift: float = 0.0
-    dropped: bool = False
-    repeated: bool = False
+    dropped: bool = False  # whether the robot stands still instead of executing the action
+    repeated: bool = False  # whether the previous action is executed instead of this one
 
 
 def motion_slip(severity: float, key: Key) -> Movement:
@@ -51,15 +44,11 @@ def motion_slip(severity: float, key: Key) -> Movement:
 
 def motion_drift(severity: float, key: Key) -> Movement:
     """Return a ``Movement`` that drifts to one side; the side is constant in an episode."""
-    side = 1.0 if uniform(digest(key, "motion_drift")) < 0.5 else -1.0
-    return Movement(drift=severity * side)
+    return Movement(drift=severity * sign(key, "motion_drift"))
 
 
 def motion_gain(severity: float, key: Key) -> Movement:
-    """Return a ``Movement`` with wrong gains for forward steps and for turns.
-
-    The two errors are sampled separately, and are constant in an episode.
-    """
+    """Return a ``Movement`` with wrong gains for steps and turns, constant in an episode."""
     value = digest(key, "motion_gain")
     gain, turn = (1.0 + severity * GAIN * (2.0 * uniform(value, i) - 1.0) for i in range(2))
     return Movement(gain=gain, turn=turn)

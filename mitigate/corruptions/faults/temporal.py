@@ -36,18 +36,10 @@ GATE = "intermittent"
 
 
 def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) -> int:
-    """Return the number of frames of the current interval so far, including this one, or 0 outside
-    of intervals.
+    """Return the number of frames of the current interval so far, or 0 outside of intervals.
 
-    Time is divided into periods, and each period contains one interval. The first frame of an
-    interval does not depend on the interval's length.
-
-    Args:
-        name: Name that is hashed with the key to get the random numbers of this fault.
-        period: Length of a period in frames.
-        longest: Maximum length of an interval in frames.
-        length: Length of an interval in frames.
-        key: Key of the current time step.
+    Time is divided into periods of ``period`` frames, and each contains one interval of ``length``
+    <= ``longest`` frames. The first frame of an interval does not depend on its length.
     """
     phase = int(period * uniform(digest(key, name)))
     number, place = divmod(key.frame + phase, period)
@@ -100,10 +92,7 @@ def exposure_flicker(
 
 
 def intermittent(severity: float, key: Key) -> bool:
-    """Return whether the corruption that is paired with ``intermittent`` is active in this frame.
-
-    The result does not depend on the severity.
-    """
+    """Return whether the other corruption of the pair is active, at any severity."""
     return _frames_inside(GATE, ACTIVE_PERIOD, ACTIVE, ACTIVE, key) > 0
 
 
@@ -111,34 +100,16 @@ _drawn = partial(Record.drawn, TEMPORAL)
 _applied = partial(Record.of, source="heuristic", version="1", family=TEMPORAL)
 # the random values from which the position of an interval is computed
 _INTERVALS = {"episode": "phase", "frame": "start"}
+_FREEZE = f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}"
+_BURST = f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}"
+_LAG = f"frames that depth is older than RGB, up to {DELAY}"
+_EXPOSURE = f"range of the exposure, up to {STOPS:g} stops"
 RECORDS = (
-    _drawn(
-        FRAMES,
-        frozen_frame,
-        f"frames per freeze, up to {LONGEST_FREEZE} of {FREEZE_PERIOD}",
-        **_INTERVALS,
-    ),
-    _drawn(
-        FRAMES,
-        repeated_frames,
-        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        **_INTERVALS,
-    ),
-    _applied(
-        FRAMES,
-        dropped_frames,
-        f"frames per burst, up to {LONGEST_BURST} of {BURST_PERIOD}",
-        **_INTERVALS,
-    ),
+    _drawn(FRAMES, frozen_frame, _FREEZE, **_INTERVALS),
+    _drawn(FRAMES, repeated_frames, _BURST, **_INTERVALS),
+    _applied(FRAMES, dropped_frames, _BURST, **_INTERVALS),
     _drawn(FRAMES, frame_delay, f"delay, up to {DELAY} frames"),
-    _drawn(
-        "depth",
-        depth_lag,
-        f"frames that depth is older than RGB, up to {DELAY}",
-        label="Depth behind RGB",
-    ),
-    _applied(
-        "rgb", exposure_flicker, f"range of the exposure, up to {STOPS:g} stops", frame="exposure"
-    ),
+    _drawn("depth", depth_lag, _LAG, label="Depth behind RGB"),
+    _applied("rgb", exposure_flicker, _EXPOSURE, frame="exposure"),
     _drawn(FRAMES, intermittent, "of the other corruption of the pair", **_INTERVALS),
 )

@@ -43,18 +43,14 @@ _NO_COMMAND_AFTER = listed("no_command_after")
 
 @dataclass(frozen=True)
 class Clause:
-    """One command (``main``) and its condition (``when``), such as "once you reach the bed", or
-    "".
-    """
+    """One command (``main``) and its condition (``when``), such as "once you reach the bed"."""
 
     when: str
     main: str
 
 
 def clauses(text: str) -> list[Clause]:
-    """Return the clauses of ``text`` in order, without words that join clauses and without final
-    punctuation.
-    """
+    """Return the clauses in order, without words that join them and final punctuation."""
     parsed = []
     for sentence in _SENTENCE.split(text.strip()):
         pending = ""
@@ -86,9 +82,7 @@ def _led(text: str) -> str:
 
 
 def _divided(body: str) -> tuple[str, str] | None:
-    """Split text such as "at the bench, turn left" into (condition, command); return None for other
-    text.
-    """
+    """Split "at the bench, turn left" into (condition, command); return None for other text."""
     if not _BEGINS_CONDITION.match(body):
         return None
     for match in _COMMAND.finditer(body):

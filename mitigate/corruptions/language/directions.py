@@ -39,9 +39,7 @@ _AROUND = re.compile(
 
 
 def about_turns(tokens: list[Token]) -> dict[int, int]:
-    """For every phrase that means turning around, map the index of its first token to the index of
-    its last one.
-    """
+    """Map the first to the last token of every phrase that means turning around."""
     text, starts = "", {}
     for index, token in enumerate(tokens):
         starts[len(text)] = index
@@ -54,8 +52,7 @@ def about_turns(tokens: list[Token]) -> dict[int, int]:
 
 
 def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the directions in order. A direction that is repeated without a movement in between
-    counts once.
+    """Return the directions in order; one that is repeated without a movement counts once.
 
     ``turned`` is the result of :func:`about_turns`.
     """
@@ -103,9 +100,7 @@ def _direction(tokens: list[Token], place: int) -> str | None:
 
 
 def _vertical(tokens: list[Token], place: int, before: str) -> str | None:
-    """Return "up" or "down" if the word means another floor, or None if it means "along" or
-    "near".
-    """
+    """Return "up" or "down" if the word means another floor, else None ("up to the wall")."""
     if before in _NO_CLIMB:
         return None
     for token in tokens[place + 1 : place + 7]:
@@ -147,11 +142,9 @@ _LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
 
 
 def quantities(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the numbers, ordinals and distances in order, such as "two", "first", "two step",
-    "meter".
+    """Return numbers, ordinals and distances in order: "two", "first", "two step", "meter".
 
-    ``turned`` is the result of :func:`about_turns`; numbers in these phrases (180 degrees) are
-    skipped.
+    Numbers inside phrases of ``turned`` (:func:`about_turns`), such as 180 degrees, are skipped.
     """
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     names = []
@@ -175,9 +168,7 @@ def _unit(word: str) -> str:
 
 
 def _orders_sentences(tokens: list[Token], place: int) -> bool:
-    """Return whether an ordinal orders steps ("first, turn left") instead of objects ("the first
-    door").
-    """
+    """Return whether an ordinal orders steps ("first, turn left") instead of objects."""
     before, after = at(tokens, place - 1), tokens[place + 1] if place + 1 < len(tokens) else None
     loose = after is None or not after.is_word or after.tag in ("VERB", "PRON", "ADV")
     begins = place == 0 or before in SENTENCE_ENDS or before in ("and", ",", "at")

@@ -13,10 +13,10 @@ from dataclasses import dataclass
 from functools import lru_cache
 from itertools import accumulate
 
-from mitigate.corruptions.language import directions, landmarks
+from mitigate.corruptions.language import directions
 from mitigate.corruptions.language.directions import at
 from mitigate.corruptions.language.tagger import SENTENCE_ENDS, Token, tag
-from mitigate.corruptions.language.words import WORDS, listed
+from mitigate.corruptions.language.words import LONGEST, PHRASES, PLAIN, WORDS, listed, normal
 
 COMPASS = re.compile(r"(?:north|south|east|west)(?:east|west)?(?:ern|erly|wards?|bound)?$|o'clock$")
 COLOURS = listed("colours")
@@ -28,32 +28,20 @@ _RELATIONS = {word: name for name, forms in WORDS["relations"].items() for word 
 
 @dataclass(frozen=True)
 class Facts:
-    """The facts that are extracted from a text.
+    """The facts that are extracted from a text."""
 
-    Attributes:
-        directions: left, right, around, straight, up, down and stop, in order.
-        landmarks: canonical nouns in order, with repetitions.
-        numbers: numbers, ordinals and distances ("two", "first", "two step").
-        compass: compass words.
-        attributes: colours, shapes and sizes.
-        relations: into, out, past, between, behind and similar words, in order.
-        denials: number of negations (not, never, avoid and similar words).
-    """
-
-    directions: tuple[str, ...]
-    landmarks: tuple[str, ...]
-    numbers: tuple[str, ...]
-    compass: tuple[str, ...]
-    attributes: tuple[str, ...]
-    relations: tuple[str, ...]
-    denials: int
+    directions: tuple[str, ...]  # left, right, around, straight, up, down and stop, in order
+    landmarks: tuple[str, ...]  # canonical nouns in order, with repetitions
+    numbers: tuple[str, ...]  # numbers, ordinals and distances ("two", "first", "two step")
+    compass: tuple[str, ...]  # compass words
+    attributes: tuple[str, ...]  # colours, shapes and sizes
+    relations: tuple[str, ...]  # into, out, past, between, behind and similar words, in order
+    denials: int  # number of negations (not, never, avoid and similar words)
 
 
 @dataclass(frozen=True)
 class _Reading:
-    """The facts of a text, its words in canonical form, and the number of the clause in which each
-    landmark first occurs.
-    """
+    """The facts of a text, its canonical words, and the first clause of each landmark."""
 
     facts: Facts
     words: frozenset[str]
@@ -68,11 +56,9 @@ def facts(text: str) -> Facts:
 def check(original: str, rewritten: str) -> list[str]:
     """List the changes of meaning from ``original`` to ``rewritten``.
 
-    Every entry begins with its kind and a colon: "directions", "landmark lost", "landmark
-    invented", "landmark order", "number lost", "number invented", "compass lost", "compass
-    invented", "attribute lost", "attribute invented", "relation lost", "relation invented",
-    "denial".
-    Synonyms in ``landmarks.py`` are treated as equal. The order of landmarks may change within a
+    Every entry begins with its kind and a colon: "directions", "landmark order", "denial", or
+    "landmark", "number", "compass", "attribute" or "relation", followed by "lost" or "invented".
+    Synonyms in ``words.json`` are treated as equal. The order of landmarks may change within a
     clause.
     """
     before, after = _read(original), _read(rewritten)
@@ -103,9 +89,7 @@ def _absent(change: str, names: Iterable[str], others: Collection[str]) -> list[
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """List names that occur less often in ``new`` than in ``old``, and names that occur only in
-    ``new``.
-    """
+    """List names that occur less often in ``new``, and names that occur only there."""
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + _absent(f"{kind} invented", new, old)
 
@@ -167,9 +151,7 @@ def _same(token: Token) -> str:
 
 
 def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return, for every word or known phrase, its index, its canonical name, and whether it is a
-    landmark.
-    """
+    """Return the index, the canonical name and whether it is a landmark, for every name."""
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(tokens):
@@ -177,20 +159,18 @@ def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
         if phrase:
             names.append((place, phrase, True))
         else:
-            name = landmarks.normal(tokens[place].lower)
+            name = normal(tokens[place].lower)
             names.append((place, name, _is_landmark(tokens, place)))
         place += length
     return names
 
 
 def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
-    """Return the canonical name and the length of the longest known phrase that starts at
-    ``place``.
-    """
-    for length in range(min(landmarks.LONGEST, len(tokens) - place), 1, -1):
+    """Return the name and length of the longest known phrase at ``place``, or ("", 1)."""
+    for length in range(min(LONGEST, len(tokens) - place), 1, -1):
         words = [token.lower for token in tokens[place : place + length]]
         for last in (words[-1], words[-1].removesuffix("s")):
-            name = landmarks.PHRASES.get((*words[:-1], last))
+            name = PHRASES.get((*words[:-1], last))
             if name:
                 return name, length
     return "", 1
@@ -199,7 +179,7 @@ def _phrase(tokens: list[Token], place: int) -> tuple[str, int]:
 def _is_landmark(tokens: list[Token], place: int) -> bool:
     token = tokens[place]
     word = token.lower
-    if token.tag not in ("NOUN", "PROPN") or word in landmarks.PLAIN or len(word) < 2:
+    if token.tag not in ("NOUN", "PROPN") or word in PLAIN or len(word) < 2:
         return False
     # "steps" may mean a distance or stairs; only stairs are a landmark
     if word in ("step", "steps"):

@@ -78,21 +78,13 @@ PATTERNS = {
 
 @dataclass(frozen=True)
 class Voice:
-    """The phrases of one style.
+    """The phrases of one style."""
 
-    Attributes:
-        openers: Phrases that can begin the instruction.
-        frames: Phrases around a clause, such as "Then {}", by position of the clause.
-        commands: Templates that replace a clause, by kind of clause (``PATTERNS``).
-        closers: Phrases that can end the instruction.
-        nouns: Synonyms of nouns.
-    """
-
-    openers: list[str]
-    frames: dict[str, list[str]]
-    commands: dict[str, list[str]]
-    closers: list[str]
-    nouns: dict[str, str]
+    openers: list[str]  # can begin the instruction
+    frames: dict[str, list[str]]  # around a clause, such as "Then {}", by position of the clause
+    commands: dict[str, list[str]]  # templates for a clause, by kind of clause (PATTERNS)
+    closers: list[str]  # can end the instruction
+    nouns: dict[str, str]  # synonyms
 
 
 def swap_nouns(text: str, nouns: dict[str, str]) -> str:

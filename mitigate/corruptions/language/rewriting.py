@@ -55,7 +55,7 @@ class Rewriter:
             raise ValueError(
                 f"cache must be a file, got the folder {cache}. Name a file for the answers."
             )
-        self._known = dict(_read(self._cache))
+        self._known = _read(self._cache)
 
     def __call__(self, text: str, manner: str) -> str:
         """Return ``text`` rewritten in the style ``manner``.
@@ -103,9 +103,9 @@ def _is_valid(answer: object) -> bool:
     return isinstance(answer, str) and bool(answer.strip()) and not _HALF.search(answer)
 
 
-def _read(cache: Path) -> list[tuple[str, str]]:
-    """Return the pair (key, answer) for every valid line."""
-    answers: list[tuple[str, str]] = []
+def _read(cache: Path) -> dict[str, str]:
+    """Return the answers of all valid lines, by key."""
+    answers: dict[str, str] = {}
     if not cache.is_file():
         return answers
     with open(cache, "rb") as file:
@@ -116,5 +116,5 @@ def _read(cache: Path) -> list[tuple[str, str]]:
             except (ValueError, KeyError, AttributeError, RecursionError):
                 continue
             if _is_valid(answer):
-                answers.append((_key(entry), answer))
+                answers[_key(entry)] = answer
     return answers

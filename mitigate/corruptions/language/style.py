@@ -28,21 +28,13 @@ Draw = Callable[[Sequence[str]], str]  # makes a random choice
 
 @dataclass(frozen=True)
 class Restyled:
-    """A rewritten instruction, and what the fidelity gate decided.
-
-    Attributes:
-        text: the rewritten instruction, or the original one.
-        tries: number of rewrites that the gate checked.
-        passed: whether a rewrite was accepted; if not, ``text`` is the original.
-        plain: number of clauses whose words were not replaced by a template.
-        clauses: number of clauses.
-    """
+    """A rewritten instruction, and what the fidelity gate decided."""
 
     text: str
-    tries: int
-    passed: bool
-    plain: int
-    clauses: int
+    tries: int  # number of rewrites that the gate checked
+    passed: bool  # whether a rewrite was accepted; if not, ``text`` is the original
+    plain: int  # number of clauses whose words were not replaced by a template
+    clauses: int  # number of clauses
 
 
 def restyle(text: str, manner: str, key: Key, rewrite: Rewrite | None = None) -> Restyled:
@@ -97,9 +89,7 @@ def _speak(text: str, manner: str, stream: int, attempt: int) -> tuple[str, int,
 
 
 def _say(clause: Clause, voice: phrases.Voice, draw: Draw, attempt: int) -> str | None:
-    """Rewrite the command of ``clause`` in the style; return None if the command must keep its
-    words.
-    """
+    """Rewrite the command in the style; return None if it must keep its words."""
     if attempt >= 2:
         return None
     for kind, pattern in phrases.PATTERNS.items():

@@ -47,9 +47,7 @@ NOTHING = Token("", 0, "")  # placeholder for the token before the first and aft
 
 
 def tokens(text: str) -> list[Token]:
-    """Split ``text`` into untagged tokens: words, punctuation and special tokens such as
-    ``[MASK]``.
-    """
+    """Split ``text`` into untagged words, punctuation and tokens such as ``[MASK]``."""
     return [
         Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
         for m in TOKEN.finditer(text)
@@ -98,9 +96,7 @@ def _spacy() -> Any:
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
-    """Return the tokens of the built-in tagger with the tags of ``pipeline``; words that the
-    pipeline often tags wrongly keep the built-in tag.
-    """
+    """Return tokens with the tags of ``pipeline``, except for ``OVERRIDES``."""
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
@@ -138,9 +134,7 @@ def _tag(token: Token, before: Token, after: Token) -> str:
 
 
 def _by_context(word: str, before: Token, after: Token) -> str:
-    """Choose between the two classes of a word by its neighbours: after a determiner, for example,
-    it is a noun.
-    """
+    """Choose a word's class by its neighbours: after a determiner, it is a noun."""
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)

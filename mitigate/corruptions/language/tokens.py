@@ -4,27 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from typing import Any, Protocol, TypeGuard
+from typing import Any, TypeGuard
 
 VOCABULARY = "vocabulary"
 _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
-class Tokenizer(Protocol):
-    """Interface of tokenizers, which convert text to the token ids that an agent reads."""
-
-    mask_token: str | None
-
-    def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Return the token ids and whether they were truncated; if ``length`` is set, they are
-        padded or truncated to this length.
-        """
-        ...
-
-
 class FileVocabulary:
-    """Tokenizer that uses the ``instruction_vocab`` of an R2R-CE file: lower-case words and
-    punctuation.
+    """Tokenizer with the ``instruction_vocab`` of an R2R-CE file: words and punctuation.
 
     The vocabulary has no mask token, so "[MASK]" gets the id of unknown words.
     """
@@ -36,8 +23,9 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text``; unknown words get the id of unknown words, and unknown punctuation is
-        removed.
+        """Return the token ids, padded or cut to ``length``, and whether they were cut.
+
+        Unknown words get the id of unknown words; unknown punctuation is removed.
         """
         ids = [
             self._numbers.get(word, self._unknown)
@@ -75,6 +63,9 @@ class NamedTokenizer:
         if cut:
             ids = list(self._tokenizer(text, truncation=True, max_length=length)["input_ids"])
         return _fitted(ids, length, self._tokenizer.pad_token_id or 0)[0], cut
+
+
+Tokenizer = FileVocabulary | NamedTokenizer
 
 
 def tokenizer_for(name: str, extras: Mapping[str, Any]) -> Tokenizer:

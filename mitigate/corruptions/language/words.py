@@ -1,4 +1,4 @@
-"""Define the classes of navigation words, and the words that are never masked.
+"""Define the classes of navigation words, the words that are never masked, and landmarks.
 
 All word lists are in ``words.json``. They were written for this project and for indoor
 instructions.
@@ -49,8 +49,43 @@ SPATIAL = (bag(_CLASSES["ADP"]) - bag("of for with like per about during")) | li
 
 
 def is_kept(word: str) -> bool:
-    """Return whether ``word`` must not be masked: it is in ``SPATIAL``, or it ends in "n't".
-
-    The word must be in lower case, with a straight apostrophe.
-    """
+    """Return whether a word (lower case, straight apostrophe) must not be masked."""
     return word in SPATIAL or word.endswith("n't")
+
+
+# Landmarks are nouns for visible things.
+# maps a canonical name to its synonyms; phrases are matched before single nouns
+SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
+# nouns that are not landmarks, such as parts of a route and words in polite phrases
+PLAIN = listed("no_landmarks")
+
+CANONICAL = {form: name for name, forms in SYNONYMS.items() for form in forms if " " not in form}
+PHRASES = {
+    tuple(form.split()): name
+    for name, forms in SYNONYMS.items()
+    for form in (name, *forms)
+    if " " in form
+}
+LONGEST = max(map(len, PHRASES))
+_KEEP_S = ("ss", "us", "is", "as", "os")
+
+
+def normal(noun: str) -> str:
+    """Return the canonical name of a noun: the main word of its group, singular, lower case."""
+    word = noun.lower().removesuffix("'s").removesuffix("s'")
+    if word in CANONICAL or word in SYNONYMS:
+        return CANONICAL.get(word, word)
+    single = _singular(word)
+    return CANONICAL.get(single, single)
+
+
+def _singular(word: str) -> str:
+    if len(word) < 4 or not word.endswith("s") or word.endswith(_KEEP_S):
+        return word
+    if word.endswith("ies"):
+        return word[:-3] + "y"
+    if word.endswith(("ches", "shes", "sses", "xes", "zes")):
+        return word[:-2]
+    if word.endswith("lves"):
+        return word[:-3] + "f"
+    return word[:-1]

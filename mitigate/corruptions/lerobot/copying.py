@@ -37,9 +37,9 @@ from mitigate.corruptions.folders import (
 )
 from mitigate.corruptions.frame_files import encode
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.lerobot import images, videos
+from mitigate.corruptions.lerobot import videos
 from mitigate.corruptions.lerobot.dataset import TOLERANCE, Dataset, open_dataset, rows_of
-from mitigate.corruptions.lerobot.frames import check_images, stored_image
+from mitigate.corruptions.lerobot.frames import as_frame, check_images, store_depth, stored_image
 from mitigate.corruptions.lerobot.metadata import EPISODES, INFO, VIDEO, Camera
 from mitigate.corruptions.lerobot.tables import FIX, check_file, integers, open_table, parquet
 from mitigate.corruptions.lerobot.videos import Encoding
@@ -58,29 +58,17 @@ Instant = tuple[float, int, int]
 
 @dataclass
 class Copy:
-    """A copy in progress.
+    """A copy in progress."""
 
-    Attributes:
-        dataset: The original.
-        out: Folder of the copy.
-        settings: Corruption and format.
-        cameras: Cameras to corrupt.
-        tolerance: Maximum seconds between a row and its video frame.
-        encodings: Encoding of the videos of each camera.
-        frames: Number of frames to corrupt, by file name.
-        progress: Progress bar that counts corrupted frames.
-        summary: Content of ``corrupt.json``.
-    """
-
-    dataset: Dataset
+    dataset: Dataset  # the original
     out: Path
     settings: Settings
-    cameras: Sequence[Camera]
-    tolerance: float
-    encodings: Mapping[str, Encoding]
-    frames: Counter[str]
-    progress: Progress
-    summary: dict[str, Any] = field(default_factory=dict)
+    cameras: Sequence[Camera]  # the cameras to corrupt
+    tolerance: float  # maximum seconds between a row and its video frame
+    encodings: Mapping[str, Encoding]  # by camera, for cameras with videos
+    frames: Counter[str]  # number of frames to corrupt, by file name
+    progress: Progress  # counts corrupted frames
+    summary: dict[str, Any] = field(default_factory=dict)  # content of corrupt.json
 
 
 def run(
@@ -96,14 +84,15 @@ def run(
     number in the episode. Therefore all cameras get the same random numbers in the same time step.
     The metadata keeps the statistics of the original dataset.
 
+    The format "png" is lossless: images become PNG (depth keeps its format), and videos become
+    H.264 in RGB. With "same", JPEG stays JPEG, and videos keep their codec, with the quality
+    settings of lerobot.
+
     Args:
         source: Folder of the dataset.
         out: Folder of the copy.
-        settings: Corruption, seed and format. The format "png" is lossless: images become PNG
-            (depth keeps its format), and videos become H.264 in RGB. With "same", JPEG stays JPEG,
-            and videos keep their codec, with the quality settings of lerobot.
-        cameras: Cameras to corrupt. None means all cameras of the modality that the corruption
-            changes.
+        settings: Corruption, seed and format.
+        cameras: Cameras to corrupt, by default all of the modality that the corruption changes.
         tolerance: Maximum seconds between a row and its video frame.
 
     Returns:
@@ -221,9 +210,7 @@ def _frames_per_file(dataset: Dataset, cameras: Sequence[Camera]) -> Counter[str
 
 
 def _files(source: Path) -> Iterator[str]:
-    """Yield the relative paths of the files of a dataset, except hidden files, ``INFO`` and
-    ``SUMMARY``.
-    """
+    """Yield the relative paths of files that are not hidden, except ``INFO`` and ``SUMMARY``."""
     listed = (Path(at, name) for at, inner, files in os.walk(source) for name in (*inner, *files))
     for path in sorted(listed):
         relative = path.relative_to(source)
@@ -289,8 +276,7 @@ def _corrupt_video(
 ) -> None:
     """Write a corrupted video.
 
-    Frames that belong to no episode are corrupted and kept too, so that no other frame gets a new
-    number.
+    Frames outside all episodes are corrupted too, so that no other frame gets a new number.
     """
     source = work.dataset.path / name
     used: set[int] = set()
@@ -346,9 +332,9 @@ def _replace_images(work: Copy, source: Path, rows: Any, camera: Camera) -> Any:
     values = []
     for row, (episode, number) in enumerate(zip(episodes, numbers, strict=True)):
         stored, form = stored_image(source, rows, row, camera, number)
-        clean = images.as_frame(stored, camera)
+        clean = as_frame(stored, camera)
         corrupted = _corrupt(work, camera, clean, _name(episode), number)
-        pixels = corrupted if camera.kind == RGB else images.store_depth(corrupted, stored, camera)
+        pixels = corrupted if camera.kind == RGB else store_depth(corrupted, stored, camera)
         if form == "JPEG" and work.settings.format == "png":
             form = "PNG"
         work.progress.advance()

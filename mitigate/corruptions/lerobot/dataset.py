@@ -39,40 +39,24 @@ MAX_SIGNAL = 1 << 12  # maximum number of values per row of a feature that is re
 
 @dataclass(frozen=True)
 class Rows:
-    """Rows of one file of data/, in the order of the file.
+    """Rows of one file of data/, in the order of the file."""
 
-    Attributes:
-        episodes: int64 [N], number of the episode.
-        frames: int64 [N], number of the frame in its episode.
-        times: float64 [N], seconds since the start of the episode.
-        tasks: int64 [N], number of the task.
-    """
-
-    episodes: np.ndarray
-    frames: np.ndarray
-    times: np.ndarray
-    tasks: np.ndarray
+    episodes: np.ndarray  # int64 [N], number of the episode
+    frames: np.ndarray  # int64 [N], number of the frame in its episode
+    times: np.ndarray  # float64 [N], seconds since the start of the episode
+    tasks: np.ndarray  # int64 [N], number of the task
 
 
 @dataclass(frozen=True)
 class Dataset:
-    """An opened dataset.
-
-    Attributes:
-        path: The folder.
-        info: Content of meta/info.json.
-        cameras: Cameras by name.
-        other_cameras: For each camera that cannot be used, the reason.
-        episodes: The episodes, by their number.
-        tasks: Text of each task, by its number.
-    """
+    """An opened dataset."""
 
     path: Path
-    info: Mapping[str, Any]
+    info: Mapping[str, Any]  # content of meta/info.json
     cameras: Mapping[str, Camera]
-    other_cameras: Mapping[str, str]
-    episodes: Mapping[int, Episode]
-    tasks: Mapping[int, str]
+    other_cameras: Mapping[str, str]  # the reason why a camera cannot be used, by name
+    episodes: Mapping[int, Episode]  # by their number
+    tasks: Mapping[int, str]  # text of each task, by its number
 
     @property
     def features(self) -> Mapping[str, Any]:
@@ -81,9 +65,7 @@ class Dataset:
 
     @cached_property
     def signals(self) -> dict[str, int]:
-        """The number of values per row, for each feature that contains numbers, except
-        ``COLUMNS``.
-        """
+        """The number of values per row of each numeric feature, except ``COLUMNS``."""
         sizes = {
             name: math.prod(feature["shape"])
             for name, feature in self.features.items()
@@ -92,11 +74,9 @@ class Dataset:
         return {name: size for name, size in sizes.items() if size <= MAX_SIGNAL}
 
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
-        """Return the cameras of a kind ("rgb" or "depth"); if ``names`` is given, only those in
-        ``names``.
+        """Return the cameras of a kind ("rgb" or "depth"), or those of them in ``names``.
 
-        Raises:
-            ValueError: If a name is unknown, or its camera cannot be used.
+        Raises ValueError if a name is unknown, or its camera cannot be used.
         """
         for name in names or ():
             if name in self.other_cameras:
@@ -112,8 +92,7 @@ class Dataset:
     def choose_camera(self, kind: str, name: str | None, option: str) -> Camera:
         """Return the camera called ``name``, or the only camera of a kind if ``name`` is None.
 
-        Raises:
-            ValueError: If not exactly one camera matches; the message names ``option``.
+        Raises ValueError, which names ``option``, if not exactly one camera matches.
         """
         cameras = self.choose_cameras(kind, name and [name])
         if len(cameras) != 1:
@@ -124,9 +103,7 @@ class Dataset:
         return cameras[0]
 
     def choose_episodes(self, numbers: Sequence[int] | None) -> list[Episode]:
-        """Return the episodes with these numbers, or all episodes if ``numbers`` is None. Raise
-        ValueError for an unknown number.
-        """
+        """Return the episodes with these numbers (None: all); raise ValueError for others."""
         for number in numbers or ():
             if number not in self.episodes:
                 raise ValueError(
@@ -139,10 +116,8 @@ class Dataset:
     def read_rows(self, data: str) -> Rows:
         """Read the rows of a file in data/.
 
-        Raises:
-            FileNotFoundError: If the file is missing.
-            ValueError: If the file is damaged, or the rows of an episode are incomplete or not in
-                order.
+        Raises FileNotFoundError, or ValueError if the file is damaged or the rows of an episode are
+        incomplete or not in order.
         """
         path = self.path / data
         table = read_columns(path, COLUMNS)
@@ -150,32 +125,24 @@ class Dataset:
         episodes, frames, tasks = whole
         rows = Rows(episodes, frames, np.array(numbers(table, "timestamp", path)), tasks)
         for episode in self.episodes.values():
-            if episode.data == data:
-                self._check_rows(path, episode, rows)
+            if episode.data != data:
+                continue
+            mine = rows.episodes == episode.index
+            if not np.array_equal(rows.frames[mine], np.arange(episode.length)):
+                raise ValueError(
+                    f"{path} must hold the rows of episode {episode.index} in order (frame_index "
+                    f"0 to {episode.length - 1}), got {int(mine.sum())} rows. {FIX}"
+                )
+            if (np.diff(rows.times[mine]) <= 0).any():
+                raise ValueError(
+                    f"{path}: the timestamps of episode {episode.index} must increase. {FIX}"
+                )
         return rows
-
-    def _check_rows(self, path: Path, episode: Episode, rows: Rows) -> None:
-        mine = rows.episodes == episode.index
-        expected = np.arange(episode.length)
-        if not np.array_equal(rows.frames[mine], expected):
-            raise ValueError(
-                f"{path} must hold the rows of episode {episode.index} in order (frame_index 0 to "
-                f"{episode.length - 1}), got {int(mine.sum())} rows. {FIX}"
-            )
-        if len(expected) > 1 and np.diff(rows.times[mine]).min() <= 0:
-            raise ValueError(
-                f"{path}: the timestamps of episode {episode.index} must increase. {FIX}"
-            )
 
     def instruction(self, rows: Rows, name: str) -> str:
         """Return the task of the first row of an episode, and warn if other rows have other tasks.
 
-        Args:
-            rows: The rows of the episode.
-            name: Name of the episode in messages.
-
-        Raises:
-            ValueError: If the task is unknown.
+        ``name`` is the name of the episode in messages. Raises ValueError for an unknown task.
         """
         first = int(rows.tasks[0])
         if first not in self.tasks:
@@ -194,12 +161,8 @@ class Dataset:
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
         """Read the numeric features, such as state and action, from a file in data/.
 
-        Returns:
-            For each feature of ``signals``, an array float64 [N, size].
-
-        Raises:
-            FileNotFoundError: If the file is missing.
-            ValueError: If the file is damaged, or a feature has a different shape.
+        Each feature of ``signals`` is float64 [N, size]. Raises FileNotFoundError, or ValueError if
+        the file is damaged or a feature has a different shape.
         """
         path = self.path / data
         table = read_columns(path, (), list(self.signals))
@@ -216,13 +179,7 @@ def is_dataset(folder: Path | str) -> bool:
 
 
 def open_dataset(folder: Path | str) -> Dataset:
-    """Open a dataset and check its metadata.
-
-    Args:
-        folder: Folder of a dataset of version 3.
-
-    Returns:
-        The dataset.
+    """Open a dataset of version 3 and check its metadata.
 
     Raises:
         FileNotFoundError: If a file of the metadata is missing.
@@ -252,9 +209,7 @@ def open_dataset(folder: Path | str) -> Dataset:
 
 
 def _flatten(column: Any, size: int, name: str, path: Path) -> np.ndarray:
-    """Convert a column, whose entries are numbers or lists of ``size`` numbers, to float64 [N,
-    size].
-    """
+    """Convert a column of numbers, or of lists of ``size`` numbers, to float64 [N, size]."""
     import pyarrow
 
     array = pyarrow.chunked_array(column).combine_chunks() if column.num_chunks else column
@@ -281,9 +236,7 @@ def _is_list(kind: Any) -> bool:
 def rows_of(
     dataset: Dataset, episodes: Sequence[Episode]
 ) -> Iterator[tuple[Episode, Rows, np.ndarray]]:
-    """Yield each episode, its rows, and a mask that marks these rows in their file (bool [rows of
-    the file]).
-    """
+    """Yield each episode, its rows, and a mask of its rows in their file (bool [N])."""
     read: dict[str, Rows] = {}
     for episode in episodes:
         if episode.data not in read:

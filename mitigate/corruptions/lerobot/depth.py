@@ -25,25 +25,18 @@ class DepthCode:
 
     Here, code 0 means no reading. lerobot writes this code both for pixels without a reading and
     for depth up to ``near``.
-
-    Attributes:
-        near: Minimum depth in metres (code 0).
-        far: Maximum depth in metres (code ``MAX_CODE``).
-        shift: Metres that are added before the logarithm is taken.
-        log: Whether codes are logarithmic.
     """
 
-    near: float = 0.01
-    far: float = 10.0
-    shift: float = 3.5
-    log: bool = True
+    near: float = 0.01  # minimum depth in metres (code 0)
+    far: float = 10.0  # maximum depth in metres (code MAX_CODE)
+    shift: float = 3.5  # metres that are added before the logarithm is taken
+    log: bool = True  # whether codes are logarithmic
 
     @classmethod
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
         """Return the depth encoding that the ``info`` of a feature describes.
 
-        Raises:
-            ValueError: If a parameter is invalid; the message begins with ``place``.
+        Raises ValueError, which begins with ``place``, for an invalid parameter.
         """
         names = ("depth_min", "depth_max", "shift")
         defaults = (cls.near, cls.far, cls.shift)

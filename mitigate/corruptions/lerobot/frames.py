@@ -1,17 +1,30 @@
-"""Read the frames of an episode of a LeRobot dataset."""
+"""Read the frames of an episode of a LeRobot dataset, from videos or from images in rows.
+
+RGB images are PNG or JPEG; depth images are TIFF or 16-bit PNG.
+"""
 
 from __future__ import annotations
 
+import io
+import math
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from PIL import Image
 
-from mitigate.corruptions.lerobot import images, videos
+from mitigate.core.observation import RGB
+from mitigate.corruptions.frame_files import MAX_PIXELS, counts
+from mitigate.corruptions.lerobot import videos
 from mitigate.corruptions.lerobot.dataset import Dataset
 from mitigate.corruptions.lerobot.metadata import VIDEO, Camera, Episode
 from mitigate.corruptions.lerobot.tables import BATCH_ROWS, FIX, check_columns, integers, open_table
+
+FORMATS = {"rgb": ("PNG", "JPEG"), "depth": ("PNG", "TIFF")}
+# Pillow modes of lerobot's depth images: I;16 is uint16, F is float32
+MODES = {"rgb": ("RGB",), "depth": ("I;16", "F")}
+MILLIMETRE = 0.001
 
 
 def read_frames(
@@ -22,23 +35,12 @@ def read_frames(
     times: Sequence[float],
     tolerance: float,
 ) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the frames of an episode, in order.
+    """Yield the frames of an episode, in order, by camera.
 
-    Args:
-        dataset: The dataset.
-        episode: The episode.
-        cameras: Cameras to read.
-        chosen: Frame numbers, in increasing order.
-        times: For each chosen frame, the seconds since the start of the episode.
-        tolerance: Maximum time in seconds between a row and its video frame.
-
-    Yields:
-        A dict with the frame of each camera: uint8 [H, W, 3], or float32 metres [H, W] with 0 for
-        no reading.
-
-    Raises:
-        FileNotFoundError: If a file is missing.
-        ValueError: If a file is damaged, or a video has no frame near one of the times.
+    ``chosen`` are frame numbers, in increasing order, and ``times`` their seconds since the start
+    of the episode. Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
+    Raises FileNotFoundError, or ValueError if a file is damaged or a video has no frame within
+    ``tolerance`` seconds of one of the times.
     """
     streams = [
         _video_frames(dataset, episode, camera, times, tolerance)
@@ -75,7 +77,7 @@ def _image_frames(
                 if pending and is_in_episode[row] and number == pending[-1]:
                     pending.pop()
                     yield {
-                        c.name: images.as_frame(stored_image(path, batch, row, c, number)[0], c)
+                        c.name: as_frame(stored_image(path, batch, row, c, number)[0], c)
                         for c in cameras
                     }
     if pending:
@@ -98,30 +100,67 @@ def check_images(path: Path, schema: Any, cameras: Sequence[Camera]) -> None:
     check_columns(path, schema.names, [camera.name for camera in cameras])
     for camera in cameras:
         kind = schema.field(camera.name).type
-        is_image = types.is_struct(kind) and kind.get_field_index("bytes") >= 0
-        if not (is_image and _is_binary(kind.field("bytes").type)):
+        has_bytes = types.is_struct(kind) and kind.get_field_index("bytes") >= 0
+        stored = kind.field("bytes").type if has_bytes else kind
+        if not has_bytes or not (types.is_binary(stored) or types.is_large_binary(stored)):
             raise ValueError(
                 f"{path}: the column {camera.name} must hold images (a struct with bytes), got "
                 f"{str(kind)[:80]}. {FIX}"
             )
 
 
-def _is_binary(kind: Any) -> bool:
-    from pyarrow import types
-
-    return types.is_binary(kind) or types.is_large_binary(kind)
-
-
 def stored_image(
     path: Path, table: Any, row: int, camera: Camera, number: int
 ) -> tuple[np.ndarray, str]:
-    """Return an image from a table, as it is stored, and its file format.
+    """Return an image (uint8 [H, W, 3], uint16 [H, W] or float32 [H, W]) and its file format.
 
-    Raises:
-        ValueError: If the image is damaged, or its type or size differs from the camera's.
+    Raises ValueError if the image is damaged, or its type or size differs from the camera's.
     """
+    place = f"{path}: {camera.name} of frame {number}"
     value = table.column(camera.name)[row].as_py()
+    data = value and value.get("bytes")
+    if not isinstance(data, bytes):
+        raise ValueError(
+            f"{place} must contain the bytes of an image; images in separate files are not "
+            f"supported. {FIX}"
+        )
     try:
-        return images.decode(value and value.get("bytes"), camera)
-    except ValueError as error:
-        raise ValueError(f"{path}: {camera.name} of frame {number} {error}. {FIX}") from error
+        with Image.open(io.BytesIO(data), formats=FORMATS[camera.kind]) as image:
+            if math.prod(image.size) > MAX_PIXELS:
+                raise ValueError(f"it has {image.size[0]} x {image.size[1]} pixels")
+            size, mode, form = image.size, image.mode, str(image.format)
+            if size == (camera.width, camera.height) and mode in MODES[camera.kind]:
+                image.load()
+                return np.array(image), form
+    except Exception as error:  # decoders raise many kinds of errors for untrusted files
+        formats = " or ".join(FORMATS[camera.kind])
+        cause = " ".join(str(error).split())[:200]
+        raise ValueError(f"{place} cannot be decoded as {formats}: {cause}. {FIX}") from error
+    raise ValueError(
+        f"{place} must have {camera.width} x {camera.height} pixels of type "
+        f"{' or '.join(MODES[camera.kind])}, got {size[0]} x {size[1]} of type {mode}. {FIX}"
+    )
+
+
+def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:
+    """Convert a stored image to a frame: uint8 [H, W, 3], or float32 metres (0: no reading)."""
+    if camera.kind == RGB:
+        return stored
+    depth = stored.astype(np.float32) * np.float32(_unit(stored, camera))
+    return np.where(np.isfinite(depth) & (depth > 0), depth, 0)
+
+
+def store_depth(depth: np.ndarray, stored: np.ndarray, camera: Camera) -> np.ndarray:
+    """Convert corrupted depth from metres to the type and unit of ``stored``.
+
+    Pixels that the corruption did not change keep their stored values.
+    """
+    unit = _unit(stored, camera)
+    new = counts(depth, unit) if stored.dtype == np.uint16 else depth / np.float32(unit)
+    return np.where(depth == as_frame(stored, camera), stored, new).astype(stored.dtype)
+
+
+def _unit(stored: np.ndarray, camera: Camera) -> float:
+    if camera.unit is not None:
+        return camera.unit
+    return MILLIMETRE if stored.dtype == np.uint16 else 1.0

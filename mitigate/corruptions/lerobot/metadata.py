@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -42,48 +41,33 @@ MAX_TASK = 1 << 16  # maximum length of a task in characters
 MAX_INDEX = 10**6  # maximum index of chunks and files
 MAX_FPS = 1000.0
 
-_FIELD = re.compile(r"\{(chunk_index|file_index|video_key)(?::0([1-9])d)?\}")
+# the fields of a path template, which ``str.format`` fills
+_FIELD = re.compile(r"\{(?:(?:chunk_index|file_index)(?::0[1-9]d)?|video_key)\}")
 CONVERTER = "python -m lerobot.scripts.convert_dataset_v21_to_v30 --repo-id=USER/NAME --root=FOLDER"
 
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera of a dataset.
+    """A camera of a dataset."""
 
-    Attributes:
-        name: Name of the feature, such as "observation.images.front".
-        kind: "rgb" or "depth".
-        stored: "video", or "image" for encoded images in the rows of data/.
-        height: Pixels.
-        width: Pixels.
-        code: How a depth video encodes metres, or None for other cameras.
-        unit: Metres per unit of depth images. None means 0.001 for integer images and 1 for others.
-    """
-
-    name: str
-    kind: str
-    stored: str
-    height: int
+    name: str  # of the feature, such as "observation.images.front"
+    kind: str  # "rgb" or "depth"
+    stored: str  # "video", or "image" for encoded images in the rows of data/
+    height: int  # in pixels
     width: int
-    code: DepthCode | None = None
+    code: DepthCode | None = None  # how a depth video encodes metres
+    # metres per unit of depth images; None means 0.001 for integer images and 1 for others
     unit: float | None = None
 
 
 @dataclass(frozen=True)
 class Episode:
-    """The files that contain an episode.
-
-    Attributes:
-        index: Number of the episode.
-        length: Number of frames.
-        data: Path of the file with the episode's rows, relative to the dataset.
-        videos: For each camera that is stored as video, the path of the file and the time in
-            seconds at which the episode starts in it.
-    """
+    """The files that contain an episode; their paths are relative to the dataset."""
 
     index: int
-    length: int
-    data: str
+    length: int  # number of frames
+    data: str  # the file with the episode's rows
+    # by camera: the file, and the time in seconds at which the episode starts in it
     videos: Mapping[str, tuple[str, float]]
 
 
@@ -137,11 +121,7 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | str:
-    """Return the camera of a feature, or the reason why it cannot be used.
-
-    The reason begins with a verb ("has 2 dimensions instead of 3"), so that it can follow the name
-    of the camera.
-    """
+    """Return the camera, or the reason why it cannot be used, which begins with a verb."""
     shape, names = feature["shape"], feature.get("names")
     info = {
         key: value
@@ -218,9 +198,11 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
         columns = {name: integers(table, name, table_path) for name in whole}
         times = {name: numbers(table, name, table_path) for name in starts}
         for row in range(table.num_rows):
-            place = partial(_place, columns, row, table_path)
             parts = {
-                video: (place(video_path, f"videos/{video}", video), times[start][row])
+                video: (
+                    _fill(video_path, columns, row, f"videos/{video}", table_path),
+                    times[start][row],
+                )
                 for video, start in zip(videos, starts, strict=True)
             }
             number, length = columns["episode_index"][row], columns["length"][row]
@@ -229,7 +211,8 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
                     f"{table_path}: each episode must have its own number and at least 1 frame, "
                     f"got episode {number} with {length} frames. {FIX}"
                 )
-            episodes[number] = Episode(number, length, place(data_path, "data"), parts)
+            data = _fill(data_path, columns, row, "data", table_path)
+            episodes[number] = Episode(number, length, data, parts)
     total = info.get("total_episodes")
     if total != len(episodes) or not episodes:
         raise ValueError(
@@ -240,11 +223,10 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
 
 
 def _template(file: Path, key: str, template: object) -> str:
-    """Check a path template that meta/info.json contains, and return it.
+    """Return a path template of meta/info.json.
 
-    Raises:
-        ValueError: If the template is not a relative path, leads outside of the dataset, or has a
-            field other than chunk_index, file_index and (for videos) video_key.
+    Raises ValueError unless it is a relative path inside the dataset with no other field than
+    chunk_index, file_index and (for videos) video_key.
     """
     is_video = key == "video_path"
     fields = "{chunk_index:03d}, {file_index:03d}" + ", {video_key}" * is_video
@@ -260,35 +242,19 @@ def _template(file: Path, key: str, template: object) -> str:
     )
 
 
-def _place(
-    columns: Mapping[str, list[int]],
-    row: int,
-    path: Path,
-    template: str,
-    prefix: str,
-    video: str = "",
+def _fill(
+    template: str, columns: Mapping[str, list[int]], row: int, prefix: str, path: Path
 ) -> str:
-    """Return the path of the file that contains an episode's rows, or its frames of one camera.
+    """Return the path of a data file (``prefix`` "data") or a video ("videos/" and its camera).
 
-    Args:
-        columns: Columns of a file in meta/episodes.
-        row: Row of the episode.
-        path: The file that contains the columns.
-        template: A checked template.
-        prefix: "data", or "videos/" and the name of the camera.
-        video: Name of the camera.
-
-    Raises:
-        ValueError: If the index of a chunk or file is out of range.
+    ``template`` is a checked template; ``columns`` are those of the file ``path``.
     """
-    values = {name: columns[f"{prefix}/{name}"][row] for name in ("chunk_index", "file_index")}
-    if not all(0 <= value < MAX_INDEX for value in values.values()):
+    chunk = columns[f"{prefix}/chunk_index"][row]
+    file = columns[f"{prefix}/file_index"][row]
+    if not (0 <= chunk < MAX_INDEX and 0 <= file < MAX_INDEX):
         raise ValueError(
             f"{path}: chunk_index and file_index must be between 0 and {MAX_INDEX - 1}, got "
-            f"{values['chunk_index']} and {values['file_index']}. {FIX}"
+            f"{chunk} and {file}. {FIX}"
         )
-
-    def value(match: re.Match[str]) -> str:
-        return video if match[1] == "video_key" else f"{values[match[1]]:0{match[2] or 1}d}"
-
-    return _FIELD.sub(value, template)
+    video = prefix.removeprefix("videos/")
+    return template.format(chunk_index=chunk, file_index=file, video_key=video)

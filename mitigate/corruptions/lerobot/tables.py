@@ -29,12 +29,7 @@ def parquet() -> Any:
 
 
 def check_file(path: Path) -> None:
-    """Check that a file of a dataset exists.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the path is a Git LFS pointer, a FIFO or a device.
-    """
+    """Raise an error if a file is missing, a Git LFS pointer, a FIFO or a device."""
     if not is_regular(path):
         raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
     if pointer := lfs_problem(path):
@@ -43,14 +38,9 @@ def check_file(path: Path) -> None:
 
 @contextmanager
 def open_table(path: Path) -> Iterator[Any]:
-    """Open a parquet file; errors during reading get a message that explains them.
+    """Open a ``pyarrow.parquet.ParquetFile``; errors during reading get an explanation.
 
-    Yields:
-        A ``pyarrow.parquet.ParquetFile``.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or expands to too many rows or bytes.
+    Raises FileNotFoundError, or ValueError if the file is damaged or expands to too many bytes.
     """
     pq = parquet()
     import pyarrow
@@ -61,8 +51,7 @@ def open_table(path: Path) -> Iterator[Any]:
             _check_size(path, file.metadata)
             yield file
     except (pyarrow.ArrowException, OSError, UnicodeDecodeError) as error:
-        # an error of the operating system
-        if isinstance(error, OSError) and error.strerror is not None:
+        if isinstance(error, OSError) and error.strerror is not None:  # of the operating system
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
@@ -72,9 +61,7 @@ def open_table(path: Path) -> Iterator[Any]:
 
 
 def _check_size(path: Path, metadata: Any) -> None:
-    """Raise ValueError if a file has too many rows, or would expand to far more bytes than it
-    has.
-    """
+    """Raise ValueError if a file has too many rows, or expands to far more bytes."""
     if metadata.num_rows > MAX_ROWS:
         raise ValueError(f"{path} must have at most {MAX_ROWS} rows, got {metadata.num_rows}.")
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
@@ -91,19 +78,9 @@ def _check_size(path: Path, metadata: Any) -> None:
 
 
 def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = ()) -> Any:
-    """Read columns of a parquet file.
+    """Read columns of a parquet file, and those of ``optional`` that exist, as ``pyarrow.Table``.
 
-    Args:
-        path: The file.
-        columns: Names of columns that must exist.
-        optional: Names of columns that are read if they exist.
-
-    Returns:
-        A ``pyarrow.Table``.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged or lacks a column.
+    Raises FileNotFoundError, or ValueError if the file is damaged or lacks a column.
     """
     with open_table(path) as file:
         names = file.schema_arrow.names
@@ -124,9 +101,7 @@ def check_columns(path: Path, names: Sequence[str], columns: Sequence[str]) -> N
 
 
 def integers(table: Any, column: str, path: Path) -> list[int]:
-    """Return an integer column as a list; raise ValueError for another type or for missing
-    values.
-    """
+    """Return an integer column as a list; raise ValueError for any other value."""
     import pyarrow
 
     values = table.column(column)

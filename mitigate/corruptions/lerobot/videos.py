@@ -25,21 +25,13 @@ GROUP = "2"  # frames between key frames, as in lerobot; the small number makes 
 
 
 class Encoding(NamedTuple):
-    """How frames are encoded.
+    """How frames are encoded."""
 
-    Attributes:
-        codec: Name of the encoder in FFmpeg.
-        name: Name of the codec in meta/info.json.
-        pixels: Pixel format of the frames that the encoder receives.
-        stored: Pixel format of the video, for meta/info.json.
-        options: Options of the encoder.
-    """
-
-    codec: str
-    name: str
-    pixels: str
-    stored: str
-    options: dict[str, str]
+    codec: str  # name of the encoder in FFmpeg
+    name: str  # name of the codec in meta/info.json
+    pixels: str  # pixel format of the frames that the encoder receives
+    stored: str  # pixel format of the video, for meta/info.json
+    options: dict[str, str]  # of the encoder
 
 
 # H.264 in RGB with quantiser 0 keeps every pixel, and the fastest preset is used.
@@ -79,14 +71,10 @@ def video_library() -> Any:
 
 @contextmanager
 def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
-    """Open a video; errors during decoding get a message that explains them.
+    """Open a video and yield its container and stream; decoding errors get an explanation.
 
-    Yields:
-        The container and its video stream.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or its frames have a different size than ``camera``.
+    Raises FileNotFoundError, or ValueError if the file is damaged or its frames do not have the
+    size of ``camera``.
     """
     av = video_library()
     check_file(path)
@@ -130,20 +118,11 @@ def read_codec(path: Path, camera: Camera) -> str:
 def decode(
     path: Path, camera: Camera, times: Sequence[float], tolerance: float
 ) -> Iterator[np.ndarray]:
-    """Yield the nearest frame for each time, in the order of ``times``.
+    """Yield the nearest frame for each time (seconds, in increasing order).
 
-    Args:
-        path: The video.
-        camera: Its camera.
-        times: Times in seconds, in increasing order.
-        tolerance: Maximum seconds between a time and its frame.
-
-    Yields:
-        uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
-
-    Raises:
-        FileNotFoundError: If the file is missing.
-        ValueError: If the file is damaged, or has no frame near one of the times.
+    Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading. Raises
+    FileNotFoundError, or ValueError if the file is damaged or has no frame within ``tolerance``
+    seconds of a time.
     """
     if not times:
         return
@@ -187,9 +166,7 @@ def _as_frame(path: Path, camera: Camera, frame: Any) -> np.ndarray:
 
 
 def read_codes(path: Path, frame: Any) -> np.ndarray:
-    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for another pixel
-    format.
-    """
+    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for others."""
     name = frame.format.name
     if not frame.format.components[0].bits == 12:
         raise ValueError(
@@ -203,15 +180,7 @@ def read_codes(path: Path, frame: Any) -> np.ndarray:
 def encode(
     target: Path, frames: Iterable[np.ndarray], camera: Camera, encoding: Encoding, fps: int
 ) -> None:
-    """Write a video.
-
-    Args:
-        target: The file to write.
-        frames: uint8 [H, W, 3], or float32 metres [H, W].
-        camera: The camera.
-        encoding: How the frames are encoded.
-        fps: Frames per second.
-    """
+    """Write a video of frames, which are uint8 [H, W, 3] or float32 metres [H, W]."""
     av = video_library()
     with open_output(target, "wb") as file, av.open(file, "w", format=CONTAINER) as output:
         output_stream = _add_stream(output, camera, encoding, fps)
@@ -237,16 +206,8 @@ def corrupt_video(
 ) -> None:
     """Write a video with corrupted frames and the times of the original frames.
 
-    Args:
-        source: The original.
-        target: The file to write.
-        camera: Its camera.
-        encoding: How the frames are encoded.
-        corrupt: Function that corrupts a frame. Its arguments are the frame (uint8 [H, W, 3] or
-            float32 metres [H, W]), the time in seconds, and the frame number in the video.
-
-    Raises:
-        ValueError: If the original is damaged.
+    The arguments of ``corrupt`` are a frame (uint8 [H, W, 3] or float32 metres [H, W]), its time in
+    seconds, and its number in the video. Raises ValueError if the original is damaged.
     """
     av = video_library()
     with (

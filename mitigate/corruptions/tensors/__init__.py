@@ -2,11 +2,8 @@
 
 ``corrupt_tensors`` applies one corruption to a batch of frames. ``corrupt_observations`` applies a
 different corruption to each row of a batch of RGB and depth frames. No other package in
-``mitigate.corruptions`` imports torch.
-
-Each function of ``rgb``, ``depth``, ``unseen_rgb`` and ``unseen_depth`` has the name of a
-corruption and computes it for a batch on the device. All other corruptions are computed on the
-host.
+``mitigate.corruptions`` imports torch. Functions of ``rgb`` and ``depth`` are named after the
+corruptions that they compute. All other corruptions are computed on the host.
 """
 
 from mitigate.corruptions.tensors.observations import corrupt_observations

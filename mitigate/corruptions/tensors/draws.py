@@ -1,11 +1,10 @@
-"""Generate keyed random numbers on a device, with the same bits as
-``mitigate/corruptions/keying.py``.
+"""Generate keyed random numbers on a device, with the same bits as ``corruptions/keying.py``.
 
 There are few random numbers per row or view, such as angles and offsets, so the functions of the
 numpy suite sample them on the host. Random numbers per pixel are computed on the device with an
 integer hash. Devices have no unsigned 64-bit integers, so a word is stored as an int64 with the
-same bits. Sums and products wrap around, so their bits are those of unsigned integers. A right
-shift would copy the sign bit, so ``shifted`` sets the new bits to 0.
+same bits. Sums and products wrap around like unsigned integers. A right shift would copy the sign
+bit, so ``shifted`` sets the new bits to 0.
 """
 
 from __future__ import annotations
@@ -38,18 +37,11 @@ T = TypeVar("T")
 
 @dataclass(frozen=True)
 class Rows:
-    """The parameters of one corruption for each row of a batch.
+    """The parameters of one corruption for each row of a batch."""
 
-    Attributes:
-        severities: Severity of each row, in (0, 1].
-        keys: Key of each row.
-        headings: Heading of each row in radians, or None for rows without a known heading.
-        sensor: Depth range, and the value that marks missing depth.
-    """
-
-    severities: Sequence[float]
+    severities: Sequence[float]  # in (0, 1]
     keys: Sequence[Key]
-    headings: Sequence[float | None]
+    headings: Sequence[float | None]  # in radians, or None if unknown
     sensor: DepthSensor
 
     def only(self, chosen: Sequence[int]) -> Rows:
@@ -94,13 +86,10 @@ def mix(streams: Tensor, counters: Tensor) -> Tensor:
 
 
 def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) -> Tensor:
-    """Copy numbers to the device of ``like``.
+    """Copy numbers, or arrays of equal shape, to the device of ``like``.
 
-    Args:
-        values: One number per row, or one array per row; all arrays have the same shape. float64
-            becomes float32, and uint64 becomes int64 with the same bits.
-        like: A tensor on the device.
-        trailing: Number of axes of length 1 that are appended, for broadcasting.
+    float64 becomes float32, and uint64 becomes int64 with the same bits. ``trailing`` axes of
+    length 1 are appended, for broadcasting.
     """
     array = np.asarray(values)
     if array.dtype == np.uint64:
@@ -112,18 +101,13 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return the 64-bit words of the random stream ``name`` for each view.
-
-    There is one word per counter; the result is int64 [B, V, *counters.shape].
-    """
+    """Return one word per counter for each view, int64 [B, V, *counters.shape]."""
     streams = np.stack([view_streams(key, name, views.shape[1]) for key in rows.keys])
     return mix(on_device(streams, views, counters.dim()), counters)
 
 
 def pixel_words(rows: Rows, name: str, views: Tensor) -> Tensor:
-    """Return one random word per pixel, int64 [B, V, H, W]; the index of the pixel is the
-    counter.
-    """
+    """Return one random word per pixel, int64 [B, V, H, W]."""
     size = views.shape[2:4]
     counters = torch.arange(size.numel(), device=views.device).reshape(size)
     return view_words(rows, name, views, counters)
@@ -135,10 +119,7 @@ def _normal_table(device: torch.device) -> Tensor:
 
 
 def normals(words: Tensor, count: int) -> Tensor:
-    """Convert random words to ``count`` standard normal numbers, float32 [..., count].
-
-    Each word (int64) gives four numbers.
-    """
+    """Convert int64 words to ``count`` normal numbers, four per word, float32 [..., count]."""
     quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits of a word come first
     places = (quarters >> 4) & 0xFFF
     return _normal_table(words.device).index_select(0, places.flatten()).reshape(places.shape)
@@ -156,9 +137,7 @@ def _smoothing(cells: int, correlation: float, device: torch.device) -> Tensor:
 
 @lru_cache(maxsize=32)
 def _resizing(cells: int, pixels: int, device: torch.device) -> Tensor:
-    """Return the matrix of linear interpolation on a torus along one axis, float32 [pixels,
-    cells].
-    """
+    """Return the matrix of linear interpolation along a torus axis, float32 [pixels, cells]."""
     place = (np.arange(pixels) + 0.5) * cells / pixels - 0.5 + cells
     first = place.astype(int)
     share = (place - first).astype(np.float32)
@@ -174,8 +153,7 @@ def fields(
     """Compute ``keying.field`` for each row.
 
     Returns:
-        The fields (float32 [B, H, W]), and for each row its cells in ascending order (float32 [B,
-        n]).
+        The fields (float32 [B, H, W]), and their cells in ascending order (float32 [B, n]).
     """
     rows, columns = field_grid(height, width)
     streams = on_device(np.array(values, np.uint64), like, 1)
@@ -189,9 +167,7 @@ def fields(
 
 
 def levels(cells: Tensor, shares: Sequence[float] | np.ndarray) -> Tensor:
-    """Compute ``keying.top_share`` for each row from sorted cells [B, n]; the result is float32 [B,
-    1, 1].
-    """
+    """Compute ``keying.top_share`` for each row of sorted cells [B, n], float32 [B, 1, 1]."""
     count = cells.shape[1]
     places = [top_place(count, share) for share in shares]
     reached = cells.gather(1, on_device(np.minimum(places, count - 1), cells, 1))

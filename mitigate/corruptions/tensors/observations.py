@@ -63,8 +63,8 @@ def corrupt_observations(
     parts = [check_corruption(corruption).parts for corruption in corruptions]
     depth_rows = [row for row, c in enumerate(corruptions) if DEPTH in c.modalities]
     if normalised and DEPTH in frames and depth_rows:
-        _check_normalised(frames[DEPTH][depth_rows], sensor)
-        result[DEPTH] = _to_metres(frames[DEPTH], sensor)
+        check_sensor(sensor)
+        result[DEPTH] = _to_metres(frames[DEPTH], depth_rows, sensor)
     metres = result.get(DEPTH)
     for position in range(max(map(len, parts), default=0)):
         groups: dict[str, list[int]] = {}
@@ -90,23 +90,20 @@ def corrupt_observations(
     return result
 
 
-def _check_normalised(depth: Tensor, sensor: DepthSensor) -> None:
-    """Raise ValueError if depth is above 1 or ``sensor.missing`` cannot be normalised."""
-    check_sensor(sensor)
-    most = float(depth.masked_fill(~is_valid(depth), 0.0).amax())
+def _to_metres(depth: Tensor, rows: Sequence[int], sensor: DepthSensor) -> Tensor:
+    """Convert normalised depth to metres, with 0 at invalid pixels.
+
+    Raises ValueError if depth in one of the ``rows`` is above 1.
+    """
+    invalid = ~is_valid(depth)
+    most = float(depth.masked_fill(invalid, 0.0)[rows].amax())
     if most > 1.0:
         raise ValueError(
             f"Normalised depth must be between 0 and 1, got {most:g}. For depth in metres, set "
             "normalised=False."
         )
-
-
-def _to_metres(depth: Tensor, sensor: DepthSensor) -> Tensor:
-    """Convert normalised depth to metres, with 0 at invalid pixels, as in
-    ``corrupt_normalised``.
-    """
     metres = sensor.z_min + depth * (sensor.z_max - sensor.z_min)
-    return metres.masked_fill(~is_valid(depth), 0.0)
+    return metres.masked_fill(invalid, 0.0)
 
 
 def _normalise(corrupted: Tensor, metres: Tensor, clean: Tensor, sensor: DepthSensor) -> Tensor:

@@ -1,8 +1,7 @@
 """Pixel operations on batches of views, which several corruptions use.
 
-Batches of RGB are uint8 [B, V, H, W, 3]. Batches of depth are float32 metres [B, V, H, W]. Several
-functions work on image rows of 3 * W colour values, because broadcasting over a last axis of size 3
-is slow.
+RGB is uint8 [B, V, H, W, 3], depth is float32 metres [B, V, H, W]. Several functions work on image
+rows of 3 * W colour values, because broadcasting over a last axis of size 3 is slow.
 """
 
 from __future__ import annotations
@@ -30,12 +29,9 @@ def grey_levels(values: Tensor) -> Tensor:
 
 
 def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
-    """Blend RGB with a colour, as in ``masks.cover``.
+    """Blend RGB with one of the ``colours`` (float32 [B or 1, 3]), as in ``masks.cover``.
 
-    Args:
-        views: uint8 [B, V, H, W, 3].
-        opacity: Opacity in [0, 1], float32 [B, V or 1, H, 3 W].
-        colours: float32 [B or 1, 3].
+    ``opacity`` is float32 [B, V or 1, H, 3 W] in [0, 1].
     """
     source = views.flatten(3).float()
     blend = torch.lerp(source, colour_rows(colours, views.shape[3]), opacity)
@@ -48,9 +44,7 @@ def look_up(table: Tensor, places: Tensor) -> Tensor:
 
 
 def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
-    """Return the pixels of ``views`` [B, V, H, W, ...] at ``rows`` and ``columns``, which are
-    broadcast to [B, V, h, w].
-    """
+    """Return ``views`` [B, V, H, W, ...] at rows and columns that are broadcast to [B, V, h, w]."""
     batch, count = views.shape[:2]
     row = torch.arange(batch, device=views.device).reshape(-1, 1, 1, 1)
     view = torch.arange(count, device=views.device).reshape(1, -1, 1, 1)
@@ -58,10 +52,9 @@ def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
 
 
 def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return, for each pixel (y, x) of ``views`` [B, V, H, W, ...], the pixel at (y + down, x +
-    right); edges are repeated.
+    """Return, for each pixel (y, x), the pixel at (y + down, x + right); edges are repeated.
 
-    ``down`` and ``right`` are int64 [B, 1, 1, 1].
+    ``views`` is [B, V, H, W, ...]; ``down`` and ``right`` are int64 [B, 1, 1, 1].
     """
     height, width = views.shape[2:4]
     rows = torch.arange(height, device=views.device).reshape(-1, 1) + down
@@ -70,8 +63,7 @@ def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return, for each pixel (y, x) of each view, the value of ``maps`` [B, H, W] at (y + down, x +
-    right) on a torus, as [B, V, H, W].
+    """Return [B, V, H, W] with ``maps`` [B, H, W] at (y + down, x + right) on a torus.
 
     ``down`` and ``right`` are int64 [B, V, 1, 1].
     """
@@ -83,8 +75,7 @@ def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def displaced(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return, for each pixel (y, x), the RGB value at (y + down, x + right), interpolated
-    bilinearly as in ``unseen.optics.displaced``.
+    """Return RGB at (y + down, x + right), interpolated as in ``unseen.optics.displaced``.
 
     ``down`` and ``right`` are float32, in pixels, and are broadcast to [B, V, H, W].
     """
@@ -107,30 +98,22 @@ def is_valid(depth: Tensor) -> Tensor:
 
 
 def clip_valid(views: Tensor, changed: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return ``changed``, clipped to the sensor's range, where ``views`` is valid, and ``views``
-    elsewhere.
-    """
+    """Return ``changed``, clipped to the range, where ``views`` is valid, else ``views``."""
     return torch.where(is_valid(views), changed.clamp(float(NEAREST), sensor.z_max), views)
 
 
 def farthest(views: Tensor, reach: int) -> Tensor:
-    """Return, for each pixel, the maximum of valid depth [B, V, H, W] in the square of side 2 *
-    reach + 1 around it, or -inf if no depth there is valid.
-    """
+    """Return the maximum of valid depth in the square around each pixel, or -inf."""
     return _largest(views.masked_fill(~is_valid(views), -torch.inf), reach)
 
 
 def nearest(views: Tensor, reach: int) -> Tensor:
-    """Return, for each pixel, the minimum of valid depth [B, V, H, W] in the square of side 2 *
-    reach + 1 around it, or inf if no depth there is valid.
-    """
+    """Return the minimum of valid depth in the square around each pixel, or inf."""
     return -_largest((-views).masked_fill(~is_valid(views), -torch.inf), reach)
 
 
 def _largest(values: Tensor, reach: int) -> Tensor:
-    """Return, for each pixel, the maximum in the square of side 2 * reach + 1; the window is
-    doubled repeatedly.
-    """
+    """Return the maximum in the square of side 2 * reach + 1, doubling the window repeatedly."""
     values = functional.pad(values, (reach,) * 4, value=-torch.inf)
     for axis in (2, 3):
         window = 1

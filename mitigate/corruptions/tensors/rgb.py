@@ -1,11 +1,13 @@
-"""The eight RGB corruptions of the standard suite for uint8 batches [B, V, H, W, 3].
+"""The RGB corruptions of the standard suite and the unseen ones, for uint8 [B, V, H, W, 3].
 
-Each function that is named after a corruption takes the views and the parameters of each row
-(``Rows``), and returns a new batch. The formulas are in ``mitigate/corruptions/rgb.py``, which also
-samples the random numbers per row.
+Each function that is named after a corruption maps the views and the parameters of each row
+(``Rows``) to a new batch. ``mitigate/corruptions/rgb.py`` and the files of ``unseen`` have the
+formulas and sample the random numbers per row.
 """
 
 from __future__ import annotations
+
+import math
 
 import numpy as np
 import torch
@@ -23,7 +25,17 @@ from mitigate.corruptions.tensors.draws import (
     shifted,
     view_words,
 )
-from mitigate.corruptions.tensors.pixels import cover, grey_levels, look_up, per_colour
+from mitigate.corruptions.tensors.pixels import (
+    colour_rows,
+    cover,
+    displaced,
+    grey_levels,
+    look_up,
+    moved,
+    per_colour,
+    rolled,
+)
+from mitigate.corruptions.unseen import codec, light, optics, signal
 
 UNIT = 32768  # opacity of 1 in the masks of the numpy suite
 HAT = np.array([[0.25, 0.5, 0.25]])
@@ -32,9 +44,7 @@ ONE_TAP = np.array([0]), np.array([0]), np.array([1])
 
 
 def motion_blur(views: Tensor, rows: Rows) -> Tensor:
-    """Blend views with a line blur. float32 is exact here, because all sums are integers below
-    2^24.
-    """
+    """Blend with a line blur. float32 is exact: all sums are integers below 2^24."""
     lines = rows.draw(rgb.blur_line, views.shape[3])
     steps = np.array([rgb.tap_step(length) for length, _ in lines])
     taps = [
@@ -62,16 +72,12 @@ def motion_blur(views: Tensor, rows: Rows) -> Tensor:
 
 
 def _planes(views: Tensor) -> Tensor:
-    """Return one plane per view and colour, as channels of one image: float32 [1, B * V * 3, H,
-    W].
-    """
+    """Return one plane per view and colour, float32 [1, B * V * 3, H, W]."""
     return views.permute(0, 1, 4, 2, 3).flatten(0, 2).float().unsqueeze(0)
 
 
 def _per_plane(values: np.ndarray, views: Tensor) -> Tensor:
-    """Copy one value per row [B, ...] to the device, and repeat it for each plane: [B * V * 3,
-    ...].
-    """
+    """Copy a value per row [B, ...] to the device for each plane, [B * V * 3, ...]."""
     return on_device(values, views).repeat_interleave(3 * views.shape[1], 0)
 
 
@@ -134,9 +140,7 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def spatter(views: Tensor, rows: Rows) -> Tensor:
-    """Cover a fraction 0.45 * severity of the image with mud or water, where a random field is
-    highest.
-    """
+    """Cover the image with mud or water where a random field is highest."""
     height, width = views.shape[2:4]
     digests = rows.digests("spatter")
     smooth, cells = fields(digests, height, width, masks.SPATTER_CORRELATION, views)
@@ -172,8 +176,7 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
     """Return the kernel of ``blur.gaussian`` along one axis, without its first smoothing levels.
 
-    If an image was smoothed at the levels below ``first``, this kernel (float64 [n]) adds the
-    remaining blur. Its taps are 2^first pixels apart, and their sum is 1.
+    Its taps (float64 [n], sum 1) are 2^first pixels apart.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)
@@ -236,3 +239,145 @@ def black_out(views: Tensor, rows: Rows) -> Tensor:
         for value, severity in zip(values, rows.severities, strict=True)
     ]
     return views * on_device(visible, views, 3).to(torch.uint8)
+
+
+def _by_tables(views: Tensor, tables: list[list[np.ndarray]]) -> Tensor:
+    """Map each colour channel of each row by its own table of 256 grey levels."""
+    first = torch.arange(0, 768 * len(views), 256, dtype=torch.int32, device=views.device)
+    places = views.flatten(3).int() + colour_rows(first.reshape(-1, 3), views.shape[3])
+    return look_up(on_device(np.array(tables), views).flatten(), places).reshape(views.shape)
+
+
+def white_balance(views: Tensor, rows: Rows) -> Tensor:
+    """Multiply red, green and blue by different gains."""
+    return _by_tables(views, rows.draw(light.balance_tables))
+
+
+def overexposure(views: Tensor, rows: Rows) -> Tensor:
+    """Multiply light by a factor, and clip it at white."""
+    return _by_tables(views, rows.draw(light.exposure_tables))
+
+
+def haze(views: Tensor, rows: Rows) -> Tensor:
+    """Blend each view with haze."""
+    count, height, width = views.shape[1:4]
+    total = torch.zeros((), device=views.device)
+    for octave, (correlation, weight) in enumerate(light.HAZE_OCTAVES):
+        values = [scramble(value, octave) for value in rows.digests("haze")]
+        total = total + weight * fields(values, height, width, correlation, views)[0]
+    spread = light.HAZE_UNEVEN / math.hypot(*(weight for _, weight in light.HAZE_OCTAVES))
+    density = (1.0 + spread * total).clamp(light.HAZE_THIN, light.HAZE_THICK)
+    strength = on_device([-light.HAZE_DEPTH * severity for severity in rows.severities], views, 2)
+    opacity = 1.0 - (strength * density).exp()
+    offsets = [[-light.haze_offset(key, view, width) for view in range(count)] for key in rows.keys]
+    right = on_device(offsets, views, 2)
+    opacity = per_colour(rolled(opacity, torch.zeros_like(right), right))
+    return cover(views, opacity, on_device([light.HAZE_COLOUR], views).float())
+
+
+def hue_shift(views: Tensor, rows: Rows) -> Tensor:
+    """Rotate all hues."""
+    matrices = [light.hue_matrix(degrees) for degrees in rows.draw(light.hue_degrees)]
+    source = views.int()
+    rotated = torch.full_like(source, 2048)
+    columns = on_device(np.stack(matrices), views)[:, None, None, None].unbind(-1)
+    for colour, column in enumerate(columns):
+        rotated += source[..., colour : colour + 1] * column
+    return (rotated >> 12).clamp(0, 255).to(torch.uint8)
+
+
+def ghosting(views: Tensor, rows: Rows) -> Tensor:
+    """Blend each view with a shifted copy of itself."""
+    offsets = [optics.ghost_offset(key, *views.shape[2:4]) for key in rows.keys]
+    down, right = on_device(offsets, views, 3).unbind(1)
+    weight = on_device([optics.ghost_weight(severity) for severity in rows.severities], views, 4)
+    gap = moved(views, down, right).int() - views
+    return (views + ((gap * weight + 32768) >> 16)).to(torch.uint8)
+
+
+def refraction(views: Tensor, rows: Rows) -> Tensor:
+    """Displace pixels by the slope of a wet pane's surface."""
+    height, width = views.shape[2:4]
+    surface = fields(rows.digests("refraction"), height, width, optics.DROPS, views)[0]
+    slopes = torch.stack([surface.roll(-1, axis) - surface.roll(1, axis) for axis in (1, 2)])
+    rms = slopes.square().sum(0).mean((1, 2), keepdim=True).sqrt()
+    reach = on_device([optics.BEND * s * min(height, width) for s in rows.severities], views, 2)
+    down, right = (slopes / rms.clamp(min=1e-9) * reach).unsqueeze(2)
+    return displaced(views, down, right)
+
+
+def scratches(views: Tensor, rows: Rows) -> Tensor:
+    """Draw bright lines with a glow."""
+    height, width = views.shape[2:4]
+    side = min(height, width)
+    values = rows.digests("scratches")
+    y = (torch.arange(height, device=views.device) + 0.5).reshape(-1, 1) / side
+    x = (torch.arange(width, device=views.device) + 0.5) / side
+    clear = torch.ones((len(views), height, width), device=views.device)
+    for number in range(optics.SCRATCHES):
+        strengths = [optics.scratch_strength(severity, number) for severity in rows.severities]
+        if max(strengths) == 0.0:
+            break
+        lines = np.array([optics.scratch_line(value, number) for value in values])
+        row, column, _, half = on_device(lines, views, 2).unbind(1)
+        cosine, sine = (on_device(f(lines[:, 2]), views, 2) for f in (np.cos, np.sin))
+        down, right = y - row * (height / side), x - column * (width / side)
+        beyond = ((right * cosine + down * sine).abs() - half).clamp(min=0.0)
+        squared = (down * cosine - right * sine).square() + beyond.square()
+        for reach, most in optics.SCRATCH_PARTS:
+            strength = on_device(np.array(strengths) * most, views, 2)
+            clear *= 1.0 - strength * (squared * (-0.5 / reach**2)).exp()
+    opacity = per_colour(1.0 - clear).unsqueeze(1)
+    return cover(views, opacity, on_device([optics.SCRATCH_COLOUR], views).float())
+
+
+def rolling_shutter(views: Tensor, rows: Rows) -> Tensor:
+    """Shift each image row sideways."""
+    shifts = rows.draw(signal.wobble, *views.shape[2:4])
+    right = on_device(np.stack(shifts), views, 1)[:, None]
+    return displaced(views, torch.zeros_like(right), right)
+
+
+def flicker_bands(views: Tensor, rows: Rows) -> Tensor:
+    """Scale the brightness of each image row."""
+    gains = rows.draw(signal.band_gains, *views.shape[1:3])
+    scaled = (views.int() * on_device(np.stack(gains), views, 2) + 2048) >> 12
+    return scaled.clamp(max=255).to(torch.uint8)
+
+
+def impulse_noise(views: Tensor, rows: Rows) -> Tensor:
+    """Set the colours of random pixels to 0 or 255."""
+    words = pixel_words(rows, "impulse_noise", views).unsqueeze(-1)
+    limits = on_device([signal.impulse_limit(severity) for severity in rows.severities], views, 4)
+    noise = 255 * ((words >> torch.arange(3, device=views.device)) & 1)
+    return torch.where(shifted(words, 32) < limits, noise.to(torch.uint8), views)
+
+
+def compression(views: Tensor, rows: Rows) -> Tensor:
+    """Set small DCT coefficients of image blocks to 0."""
+    batch, count, height, width, _ = views.shape
+    side = codec.block_side(height, width)
+    colours = on_device(codec.opponents(), views)
+    matrix = on_device(codec.cosines(side), views)
+    planes = (views.float() @ colours.T).permute(0, 1, 4, 2, 3).flatten(0, 1)
+    padded = functional.pad(planes, (0, -width % side, 0, -height % side), mode="replicate")
+    blocks = padded.unflatten(3, (-1, side)).unflatten(2, (-1, side)).transpose(3, 4)
+    cells = (matrix @ blocks @ matrix.T).unflatten(0, (batch, count))
+    zones = [codec.dead_zones(severity, side) for severity in rows.severities]
+    least = on_device(np.stack(zones), views, 4)[:, None]
+    strong = torch.where(cells.abs() >= least, cells, 0.0)
+    strong[..., 0, 0] = cells[..., 0, 0]
+    decoded = (matrix.T @ strong @ matrix).transpose(4, 5).flatten(5, 6).flatten(3, 4)
+    decoded = decoded[..., :height, :width].permute(0, 1, 3, 4, 2) @ colours
+    return grey_levels(decoded.clamp(0.0, 255.0))
+
+
+def lost_slices(views: Tensor, rows: Rows) -> Tensor:
+    """Replace parts of image rows by grey."""
+    width = views.shape[3]
+    first = np.full(views.shape[:3], width)
+    for starts, parts in zip(first, rows.draw(codec.lost_parts, *views.shape[1:4]), strict=True):
+        for view, lines, start in parts:
+            starts[view, lines] = start
+    lost = torch.arange(width, device=views.device) >= on_device(first, views, 1)
+    return views.flatten(3).masked_fill(per_colour(lost), codec.NOTHING).reshape(views.shape)

@@ -1,6 +1,4 @@
-"""Apply one corruption to a batch of views, either on the device of the batch or with the numpy
-suite on the host.
-"""
+"""Apply one corruption to a batch of views, on its device or with the numpy suite on the host."""
 
 from __future__ import annotations
 
@@ -24,7 +22,7 @@ from mitigate.corruptions.suite import (
     check_severity,
     corrupt_views,
 )
-from mitigate.corruptions.tensors import depth, rgb, unseen_depth, unseen_rgb
+from mitigate.corruptions.tensors import depth, rgb
 from mitigate.corruptions.tensors.draws import Rows
 from mitigate.corruptions.tensors.pixels import is_valid
 
@@ -34,7 +32,7 @@ MAX_PIXELS = 1 << 23
 # the functions that are named after a corruption
 FUNCTIONS: dict[str, Callable[[Tensor, Rows], Tensor]] = {
     name: vars(module)[name]
-    for module in (rgb, depth, unseen_rgb, unseen_depth)
+    for module in (rgb, depth)
     for name in registry.INCLUDED
     if name in vars(module)
 }
@@ -191,10 +189,7 @@ def _check_frames(frames: Tensor, name: str, modality: str) -> None:
 
 
 def _check_unit(frames: Tensor, sensor: DepthSensor) -> None:
-    """Raise ValueError if nearly all depth values of a row are far beyond z_max.
-
-    This is ``depth_sensor.check_unit`` for a batch.
-    """
+    """Apply ``depth_sensor.check_unit`` to each row of a batch."""
     pixels = frames.flatten(1)
     sample = pixels[:, :: pixels.shape[1] // UNIT_SAMPLES + 1]
     valid = is_valid(sample)

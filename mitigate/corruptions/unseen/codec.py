@@ -20,9 +20,7 @@ BLOCKS = (4, 8, 16, 32)
 BLOCKS_ACROSS = 28  # number of blocks along the shorter side; at 224 px, a block has 8 px
 DEAD_ZONE = 0.40  # minimum amplitude, as a fraction of white, of patterns that remain at severity 1
 CHROMA = 2.0  # minimum amplitude in the colour channels, relative to the minimum in grey
-SLICES = (
-    14  # number of horizontal slices per frame; at a frame height of 224 px, each is 16 px high
-)
+SLICES = 14  # number of horizontal slices per frame; at a height of 224 px, each has 16 px
 LOST = 0.8  # fraction of lost slices at severity 1
 NOTHING = 128  # grey level that a decoder shows if there is no earlier frame
 
@@ -37,27 +35,21 @@ def cosines(side: int) -> np.ndarray:
 
 
 def block_side(height: int, width: int) -> int:
-    """Return the block side in ``BLOCKS`` that is nearest, by ratio, to 1/28 of the frame's shorter
-    side.
-    """
+    """Return the side in ``BLOCKS`` that is nearest, by ratio, to 1/28 of the shorter side."""
     target = math.log(min(height, width) / BLOCKS_ACROSS)
     return min(BLOCKS, key=lambda side: abs(math.log(side) - target))
 
 
 @lru_cache(maxsize=1)
 def opponents() -> np.ndarray:
-    """Return an orthonormal colour matrix, float32 [3, 3]; its rows are grey, red minus blue, and
-    green minus red and blue.
-    """
+    """Return orthonormal rows: grey, red - blue, and green - (red, blue); float32 [3, 3]."""
     rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
     return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
 
 
 @njit(cache=True)
 def _both_ways(matrix, cells, spare):
-    """Replace each of the n blocks in ``cells`` ([b, b, n]), in place, by matrix @ block @
-    matrix^T.
-    """
+    """Replace each block in ``cells`` [b, b, n] by matrix @ block @ matrix^T, in place."""
     side, _, count = cells.shape
     for k in range(side):
         for x in range(side):
@@ -91,11 +83,7 @@ def _lose(cells, least):
 
 @njit(cache=True)
 def _gather(view, weights, cells):
-    """Fill ``cells`` ([b, b, n]) with the blocks of one opponent colour of ``view`` (uint8 [H, W,
-    3]).
-
-    Blocks that extend beyond the view repeat its edge pixels.
-    """
+    """Fill ``cells`` [b, b, n] with blocks of one opponent colour; repeat edge pixels."""
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])
     for y in range(-(-height // side) * side):
@@ -130,19 +118,13 @@ def _code(views, colours, matrix, back, least, out):
 
 
 def dead_zones(severity: float, side: int) -> np.ndarray:
-    """Return, for each opponent colour, the smallest magnitude of DCT coefficients that are kept,
-    float32 [3].
-    """
+    """Return the smallest magnitude of kept DCT coefficients per colour, float32 [3]."""
     zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
     return zones.astype(np.float32)
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Remove patterns with an amplitude below 0.4 * severity (1 is white) from image blocks.
-
-    The DCT coefficients of these patterns are set to 0. In the two colour channels, the
-    threshold is twice as high.
-    """
+    """Remove patterns of amplitude below 0.4 * severity (colour: 0.8) from image blocks."""
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)
     matrix, out = cosines(side), np.empty_like(views)
@@ -163,10 +145,7 @@ def lost_parts(
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Fill each of the 14 slices of a view with grey, with a probability of 0.8 * severity.
-
-    A slice is filled from a random column to its end.
-    """
+    """Fill each of 14 slices, from a random column, with grey with probability 0.8 * severity."""
     out = views.copy()
     for view, rows, start in lost_parts(severity, key, *views.shape[:3]):
         out[view, rows, start:] = NOTHING

@@ -12,7 +12,7 @@ import numpy as np
 
 from mitigate.corruptions import masks
 from mitigate.corruptions.eld import GAMMA
-from mitigate.corruptions.keying import Key, cached, digest, field, scramble, uniform
+from mitigate.corruptions.keying import Key, cached, digest, field, scramble, sign, uniform
 from mitigate.corruptions.record import TEST, VALIDATION, Record
 
 STOPS, STOPS_SPREAD = 2.0, 0.2  # stops of exposure at severity 1, and their relative spread
@@ -36,9 +36,7 @@ def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _amplified(stops: float) -> np.ndarray:
-    """Return a table (uint8 [256]) that maps grey levels to levels with ``stops`` more light,
-    clipped at white.
-    """
+    """Return a table (uint8 [256]) of levels with ``stops`` more light, clipped at white."""
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
@@ -51,9 +49,7 @@ def balance_tables(severity: float, key: Key) -> list[np.ndarray]:
 
 
 def white_balance(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply red, green and blue by gains that are fixed per episode, as if the white balance
-    were wrong.
-    """
+    """Multiply red, green and blue by wrong gains, which are fixed per episode."""
     return _by_table(views, balance_tables(severity, key))
 
 
@@ -64,9 +60,7 @@ def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply light by 2^(2 * severity * u), with u ~ U(0.8, 1.2) per episode, and clip it at
-    white.
-    """
+    """Multiply light by 2^(2 * severity * u), with u ~ U(0.8, 1.2) per episode; clip it."""
     return _by_table(views, exposure_tables(severity, key))
 
 
@@ -95,9 +89,7 @@ def haze_offset(key: Key, view: int, width: int) -> int:
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend each view with haze, as from smoke: out = x * t + A * (1 - t); views show different
-    parts of the random field.
-    """
+    """Blend with haze: x * t + A * (1 - t); views show different parts of the random field."""
     count, height, width, _ = views.shape
     out = np.empty_like(views)
     mask = haze_mask(digest(key, "haze"), severity, height, width)
@@ -110,15 +102,12 @@ def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarr
 
 def hue_degrees(severity: float, key: Key) -> float:
     """Return the angle in degrees by which ``hue_shift`` rotates hues."""
-    sign = 1.0 if uniform(digest(key, "hue_shift")) < 0.5 else -1.0
-    return sign * HUE_DEGREES * severity
+    return sign(key, "hue_shift") * HUE_DEGREES * severity
 
 
 @lru_cache(maxsize=32)
 def hue_matrix(degrees: float) -> np.ndarray:
-    """Return the matrix that rotates colours about the grey axis (Rodrigues' formula), int32 [3, 3]
-    in units of 1/4096.
-    """
+    """Return Rodrigues' rotation about the grey axis, int32 [3, 3] in units of 1/4096."""
     angle = math.radians(degrees)
     third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
     cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
@@ -127,9 +116,7 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Rotate all hues by +-180 * severity degrees, with a sign that is fixed per episode; grey does
-    not change.
-    """
+    """Rotate all hues by +-180 * severity degrees, with a sign that is fixed per episode."""
     matrix = hue_matrix(hue_degrees(severity, key))
     colours = [views[..., c].astype(np.int32) for c in range(3)]
     out = np.empty_like(views)

@@ -43,9 +43,7 @@ def ghost_weight(severity: float) -> int:
 
 
 def shifted(views: np.ndarray, down: int, right: int) -> np.ndarray:
-    """Return, for each pixel (y, x) of views [V, H, W, ...], the pixel at (y + down, x + right);
-    edges are repeated.
-    """
+    """Return the pixels of views [V, H, W, ...] at (y + down, x + right), with edges repeated."""
     height, width = views.shape[1:3]
     rows = np.clip(np.arange(height) + down, 0, height - 1)
     columns = np.clip(np.arange(width) + right, 0, width - 1)
@@ -53,20 +51,16 @@ def shifted(views: np.ndarray, down: int, right: int) -> np.ndarray:
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend each view x with a shifted copy x' (with repeated edges): out = (1 - a) * x + a * x',
-    where a = 0.5 * severity.
-    """
+    """Blend with a shifted copy x': (1 - a) * x + a * x', where a = 0.5 * severity."""
     gap = shifted(views, *ghost_offset(key, *views.shape[1:3])).astype(np.int32) - views
     return (views + ((gap * ghost_weight(severity) + 32768) >> 16)).astype(np.uint8)
 
 
 @njit(cache=True)
 def _displace(view, down, right, out):
-    """Displace a view: out[y, x] is the view at (y + down, x + right), interpolated bilinearly,
-    with repeated edges.
+    """Set out[y, x] to view (uint8 [H, W, 3]) at (y + down, x + right), interpolated bilinearly.
 
-    ``view`` is uint8 [H, W, 3]. The displacements are float32 [H, W], in pixels, and are rounded
-    down to multiples of 1/256.
+    Edges are repeated. Displacements (float32 [H, W], pixels) are rounded down to 1/256 pixel.
     """
     height, width, _ = view.shape
     for y in range(height):
@@ -91,9 +85,7 @@ def displaced(views: np.ndarray, down: np.ndarray, right: np.ndarray) -> np.ndar
 
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return the vertical and horizontal slopes of a random surface, both float32 [H, W]; their
-    joint rms is 1.
-    """
+    """Return vertical and horizontal slopes of a random surface, float32 [H, W], joint rms 1."""
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
     scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
@@ -101,9 +93,7 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Displace pixels by the slope of a wet pane's surface; the rms displacement is 0.045 *
-    severity times the shorter side.
-    """
+    """Displace pixels by the slope of a wet pane; the rms is 0.045 * severity * min(H, W)."""
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)

@@ -40,9 +40,7 @@ def wobble(severity: float, key: Key, height: int, width: int) -> np.ndarray:
 
 
 def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Shift each image row sideways by 0.05 * severity * W * sin(...), as if the camera vibrated
-    during read-out.
-    """
+    """Shift each image row sideways by 0.05 * severity * W * sin(...), as from vibration."""
     _, height, width, _ = views.shape
     right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
     return displaced(views, np.zeros_like(right), right)
@@ -59,19 +57,14 @@ def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray
 
 
 def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply the brightness of each image row by 1 + 0.8 * severity * cos(...), as under lamps on
-    mains power.
-    """
+    """Multiply image rows by 1 + 0.8 * severity * cos(...), as under lamps on mains power."""
     gain = band_gains(severity, key, *views.shape[:2])[:, :, None, None]
     return np.minimum((views * gain + 2048) >> 12, 255).astype(np.uint8)
 
 
 @njit(cache=True)
 def _strike(views, streams, least, out):
-    """Set the colours of a pixel to 0 or 255 if its 32-bit hash is below the threshold ``least``.
-
-    ``views`` is uint8 [V, P, 3].
-    """
+    """Set pixels [V, P, 3] to 0 or 255 per colour if their 32-bit hash is below ``least``."""
     for v in range(views.shape[0]):
         for i in range(views.shape[1]):
             word = mix(streams[v], _U(i))
@@ -87,10 +80,7 @@ def impulse_limit(severity: float) -> int:
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set random pixels to 0 or 255, separately per channel.
-
-    The fraction of changed pixels is 0.3 * severity in every frame.
-    """
+    """Set 0.3 * severity of the pixels to 0 or 255, separately per channel."""
     out, count = np.empty_like(views), len(views)
     least = _U(impulse_limit(severity))
     streams = view_streams(key, "impulse_noise", count)

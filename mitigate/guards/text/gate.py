@@ -12,8 +12,7 @@ import re
 from collections import Counter
 
 from mitigate.corruptions.language.fidelity import check, facts
-from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.words import CANONICAL, bag
 from mitigate.guards.text.learning.route_words import WORDS
 
 _PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))

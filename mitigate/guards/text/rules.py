@@ -9,8 +9,7 @@ from typing import Any
 
 from mitigate.core.seeding import generator
 from mitigate.corruptions.language.directions import MOTION, STOPS, TURN_VERBS
-from mitigate.corruptions.language.landmarks import CANONICAL
-from mitigate.corruptions.language.words import bag
+from mitigate.corruptions.language.words import CANONICAL, bag
 from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")

@@ -9,7 +9,7 @@ import re
 import pytest
 
 from mitigate.core.seeding import generator
-from mitigate.corruptions.language.prefixes import prefixes
+from mitigate.corruptions.instruction import prefixes
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning import data, routes
 from mitigate.guards.text.learning.data import KINDS, Pair, draw_pair, read_chats

@@ -18,12 +18,11 @@ import numpy as np
 
 from mitigate.core.files import open_text
 from mitigate.core.seeding import digest, generator
-from mitigate.corruptions.instruction import corrupt_instruction
+from mitigate.corruptions.instruction import corrupt_instruction, prefixes
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.clauses import clauses
 from mitigate.corruptions.language.fidelity import check
 from mitigate.corruptions.language.phrases import VOICES
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.corruptions.language.text import is_english
 from mitigate.guards.text.learning import spoken

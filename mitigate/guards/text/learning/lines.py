@@ -11,9 +11,8 @@ from pathlib import Path
 from typing import Any
 
 from mitigate.core.seeding import generator
-from mitigate.corruptions.instruction import corrupt_instruction
+from mitigate.corruptions.instruction import corrupt_instruction, prefixes
 from mitigate.corruptions.keying import Key
-from mitigate.corruptions.language.prefixes import prefixes
 from mitigate.corruptions.language.style import MANNERS
 from mitigate.guards.text.learning.routes import draw_route
 from mitigate.guards.text.learning.styler import draw_styled
