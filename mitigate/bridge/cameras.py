@@ -133,19 +133,16 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
         shape,
         description["dtype"],
         hfov,
-        None if position is None else tuple(map(float, position)),
-        yaw,
-        abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
-        sensor,
-        kind == DEPTH and bool(description.get("normalize_depth")),
+        place=None if position is None else tuple(map(float, position)),
+        yaw=yaw,
+        level=abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
+        sensor=sensor,
+        normalised=kind == DEPTH and bool(description.get("normalize_depth")),
     )
 
 
 def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
-    """Return pitch and roll in radians and yaw in degrees to the left.
-
-    If there is no orientation, the yaw is read from the camera's name.
-    """
+    """Return pitch and roll (radians) and yaw (degrees to the left), which may be in the name."""
     if orientation is not None and len(orientation) == 3:
         pitch, yaw, roll = map(float, orientation)
         return pitch, round(math.degrees(yaw), 3) % 360, roll
@@ -212,9 +209,7 @@ class Rig:
         self.streams = {} if streams is None else streams
 
     def describe(self) -> dict[str, dict[str, Any]]:
-        """Describe each camera: kind, field of view, yaw (degrees to the right), and whether it is
-        level.
-        """
+        """Return kind, field of view, yaw (degrees to the right) and ``level`` of each camera."""
         sign = 1 if self.turn == "right" else -1
         return {
             camera.name: {
@@ -229,8 +224,7 @@ class Rig:
     def lay_out(self, kinds: Collection[str]) -> tuple[dict[str, int], int]:
         """Return the memory offset of each camera of the given ``kinds``, and the total size.
 
-        Raises:
-            ValueError: If the size is above ``MAX_BYTES``.
+        Raises ValueError if the size is above ``MAX_BYTES``.
         """
         offsets: dict[str, int] = {}
         size = 0
@@ -343,9 +337,7 @@ class Frame:
         self.views[...] = frame.reshape(self.views.shape).astype(self.views.dtype, copy=False)
 
     def geometry(self) -> tuple:
-        """Return the properties that are equal for an RGB frame and a depth frame of the same
-        view.
-        """
+        """Return the properties that RGB and depth frames of the same view have in common."""
         first = self.cameras[0]
         poses = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
         return (*poses, first.hfov, first.shape[:2])
@@ -361,11 +353,7 @@ def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
 
 
 def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
-    """Group frames into observations.
-
-    An RGB frame and a depth frame form one observation if they have the same geometry, both are
-    level, and no other frame has this geometry. Each remaining frame forms a separate observation.
-    """
+    """Group an RGB frame with the depth frame of the same view, if both are level and unique."""
     by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:
         by_geometry.setdefault(frame.geometry(), []).append(frame)
@@ -385,9 +373,7 @@ def corrupt_group(
     heading: float | None,
     stream: FrameStream,
 ) -> np.ndarray:
-    """Return the corrupted views of a group; parts of the corruption for other modalities are
-    ignored.
-    """
+    """Return the corrupted views of a group; parts for other modalities are ignored."""
     first = group.cameras[0]
     dtype = np.float32 if first.kind == DEPTH else np.uint8
     frames: dict[str, Any] = {first.kind: views.astype(dtype, copy=False)}

@@ -129,11 +129,7 @@ def _sensors(part: Corruption) -> list[str]:
 
 
 def _shows_past(part: Corruption) -> bool:
-    """Return whether a corruption is a temporal fault that cannot be shown with a single frame.
-
-    Most of these faults repeat earlier frames. The fault ``intermittent`` has no effect of its own:
-    it determines when another corruption acts.
-    """
+    """Return whether this is a temporal fault, which needs more than one frame to be seen."""
     return record(part.name).family == TEMPORAL and record(part.name).draw is not None
 
 
@@ -206,10 +202,7 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
 
 
 def entry_name(camera: str) -> str:
-    """Return the name of the array in ``first.npz`` that contains a camera's frame.
-
-    The name must not be the name of an argument of ``numpy.savez``.
-    """
+    """Return the name in ``first.npz``; the prefix avoids names of arguments of ``numpy.savez``."""
     return f"camera {camera}"
 
 

@@ -93,9 +93,7 @@ class Condition:
     observer: Observer = field(default_factory=Observer)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Return the key for random numbers: the seed, the scene file with the episode id, and the
-        number of the call.
-        """
+        """Return the key for random numbers of one call in an episode."""
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
@@ -181,33 +179,21 @@ class Words:
         if tokens is not None:
             if self.tokenizer is None:
                 raise ValueError(NO_TOKENIZER)
-            length = self.length or padded_length(tokens)
+            # a dataset that pads its tokens repeats the token 0 or 1 at the end
+            padded = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
+            length = self.length or (len(tokens) if padded else None)
             tokens = list(self.tokenizer.encode(changed, length)[0])
         return {"text": changed, "tokens": tokens}
 
 
 def load_tokenizer(name: str) -> Tokenizer:
-    """Load a tokenizer from a folder, a hub name or an R2R-CE file.
+    """Load a tokenizer from a folder, a hub name, or the vocabulary of an R2R-CE file.
 
-    Args:
-        name: A folder, a hub name, or a ``.json`` or ``.json.gz`` file with a vocabulary.
-
-    Raises:
-        ValueError: If the file or folder contains no tokenizer.
-        FileNotFoundError: If there is no such file or folder.
+    Raises ValueError if there is no tokenizer, or FileNotFoundError if there is no file or folder.
     """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))
     return tokenizer_for(name, {})
-
-
-def padded_length(tokens: list[Any]) -> int | None:
-    """Return the length to which a dataset pads its tokens, or None if it does not pad.
-
-    Padding means that the token 0 or 1 is repeated at the end.
-    """
-    repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
-    return len(tokens) if repeated else None
 
 
 def hash_episode(name: str) -> float:
@@ -249,11 +235,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _choice(self) -> dict[str, Any] | None:
-        """Return the stored choice of episodes, or None if no choice is stored.
-
-        Its entry "bound" is the largest hash of a chosen episode. The entry "episodes" is the
-        requested number of episodes, and "of" is the number of episodes to choose from.
-        """
+        """Return the stored bound of hashes, request ("episodes") and total ("of"), or None."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -273,9 +255,7 @@ class Subset:
         return choice
 
     def least(self) -> int:
-        """Return the number of episodes that the program must run, or 0 before episodes are
-        chosen.
-        """
+        """Return how many episodes the program must run; 0 before episodes are chosen."""
         choice = self._choice()
         return min(self.count, choice["of"]) if choice else 0
 
@@ -306,9 +286,7 @@ def is_count(value: object) -> bool:
 
 
 def _read_name(line: str, file: Path) -> str:
-    """Return the episode name in a ``line`` of ``file``. Raises ValueError if the line is
-    damaged.
-    """
+    """Return the episode name in a ``line`` of ``file``."""
     try:
         name: object = json.loads(line)
     except (ValueError, RecursionError):

@@ -113,8 +113,7 @@ def episode_name(scene: str, episode: str) -> str:
 def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     """Return the scene and the id from the message that begins an episode.
 
-    Raises:
-        ValueError: If the episode's name is not allowed in result rows.
+    Raises ValueError if the episode's name is not allowed in result rows.
     """
     scene, episode = str(message["scene"]), str(message["id"])
     constraint = allowed("episode_id", episode_name(scene, episode))
@@ -143,10 +142,7 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
-    """Check the report about the end of an episode, and return it without unknown values.
-
-    Raises the same errors as :func:`read_end`.
-    """
+    """Check the report about the end of an episode; return it without unknown values."""
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
         raise ValueError("metrics that do not map names to numbers")

@@ -105,9 +105,7 @@ class Command:
         return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 
     def left(self) -> list[str]:
-        """Wait up to ``GRACE`` seconds until all processes of the command end; describe those that
-        remain.
-        """
+        """Wait up to ``GRACE`` seconds for all processes to end; describe those that remain."""
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
             time.sleep(PAUSE)
@@ -141,10 +139,7 @@ class Command:
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the content of the supervisor's next line, or {} if there is no new line.
-
-        The supervisor writes a whole line in one call, so a part of a line is never read.
-        """
+        """Return the supervisor's next line, or {} if there is none (lines are never partial)."""
         line = b"" if self._pipe.closed else self._pipe.readline()
         message: dict[str, Any] = json.loads(line) if line else {}
         return message
@@ -172,9 +167,7 @@ def _describe(pid: int) -> str:
 
 
 def processes() -> dict[int, tuple[int, bool]]:
-    """Map the pid of each process to its parent's pid and whether it runs; a zombie does not
-    run.
-    """
+    """Map each pid to its parent's pid and whether it runs (a zombie does not)."""
     states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
@@ -206,9 +199,7 @@ def descendants(root: int) -> list[int]:
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; ignore processes that have ended or belong to a different
-    user.
-    """
+    """Send a signal to processes; ignore those that have ended or belong to another user."""
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
@@ -255,11 +246,7 @@ def _report(pipe: int, **message: object) -> None:
 
 
 def _reap(child: int, pipe: int) -> bool:
-    """Reap ended processes; return whether any process still runs.
-
-    The forked process ``child`` reports the exit status of the program. If the forked process
-    itself failed or was killed, this function reports the status of the forked process instead.
-    """
+    """Reap ended processes, report a failure of ``child``, and return whether any process runs."""
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)

@@ -137,12 +137,7 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete unfinished episodes in the recording of a condition.
-
-    An unfinished episode is deleted if the process that was recording it has ended.
-
-    Args:
-        folder: The folder of the recording.
+    """Delete the episodes in a recording whose process ended before it finished them.
 
     Raises:
         UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO

@@ -129,14 +129,7 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
 
 
 def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None:
-    """Add one event to the reports.
-
-    Args:
-        reports: The reports from all earlier events.
-        event: One line of the events.
-        began: For each connection, the number of episodes that had ended when its current episode
-            began.
-    """
+    """Add one event; ``began`` maps each connection to the number of ends before its episode."""
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
     if kind == "hello":
@@ -208,20 +201,14 @@ def rows(
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
-    """Return the requested success rule and the common success rule.
-
-    The common rule is omitted in each of these cases:
-
-    - The task has no common rule. An example is PointNav, which has neither words nor objects.
-    - An episode can be judged by the agent's own rule, but not by the common rule.
-    - Neither this condition nor the clean condition reports a distance.
-    """
+    """Return the requested success rule and, if it can judge the episodes, the common rule."""
     requested = [RULES[rule]] if rule else []
     task = next((name for name in COMMON if reports.first.get(name)), None)
-    if task is None:
+    if task is None:  # such as PointNav
         return requested
     ends = [*reports.ends.values()]
     with_success = [end for end in ends if "success" in end.get("metrics", {})]
+    # the agent's own rule can judge an episode that the common rule cannot
     partial = any(_missing(end, COMMON[task]) for end in with_success)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
@@ -250,33 +237,22 @@ def _goal_distance(end: dict[str, Any]) -> Any:
 
 
 def _missing(end: dict[str, Any], rule: Rule) -> str:
-    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or "".
-
-    A reported failure without a distance is a failure by every rule. An episode that ends too far
-    from the goal is also a failure, with or without STOP.
-    """
+    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or ""."""
     metres = _goal_distance(end)
+    # a failure without a distance, or too far from the goal, is a failure by every rule
     if metres is None:
         return "" if end.get("metrics", {}).get("success", 1) <= 0 else "distance_to_goal"
     return "stopped" if end.get("stopped") is None and rule.stop and rule.met(metres, True) else ""
 
 
 def count_missing(reports: Reports, rule: str) -> dict[str, int]:
-    """Count the episodes that lack an argument that ``rule`` needs.
-
-    Returns:
-        A dict that maps each missing argument to the number of episodes that lack it.
-    """
+    """Count the episodes that lack an argument that ``rule`` needs, by argument."""
     counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
     return {name: count for name, count in counts.most_common() if name}
 
 
 def _spl(end: dict[str, Any], success: bool) -> float:
-    """Return the SPL of the reported path, or else the SPL that the agent reported.
-
-    The SPL of a successful episode is 1 if the agent reported neither a path nor an SPL. Such
-    episodes are counted by :func:`count_without_path`.
-    """
+    """Return the SPL of the reported path, else the reported SPL, else 1 for a success."""
     start, length = _shortest_path(end), _path_length(end)
     if not success:
         return 0.0
@@ -313,9 +289,7 @@ def maybe_normalised(reports: Reports) -> list[str]:
 
 
 def _shortest_path(end: dict[str, Any]) -> float | None:
-    """Return the length of the shortest path in metres, or None if it is unknown or does not
-    exist.
-    """
+    """Return the length of the shortest path in metres, or None without a (known) path."""
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 
