@@ -104,10 +104,7 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``).
-
-    The result of a chain is a text: the description of its problem, or "" after success.
-    """
+    """Task that runs chains in workers; the result of a chain is its problem, or ""."""
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 

@@ -111,10 +111,7 @@ def results(
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Wait until the SLURM jobs have ended after their last result, and then remove their folder.
-
-    If a job has not ended after ``LATE`` seconds, the folder is kept.
-    """
+    """Wait up to ``LATE`` seconds until the SLURM jobs have ended, and then remove their folder."""
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -190,10 +187,7 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield each new result of a SLURM job; an incomplete last line is read later.
-
-    If the job reported an error instead of a result, the function raises a ValueError.
-    """
+    """Yield each new result of a SLURM job. Raises ValueError if the job reported an error."""
     if not share.lines.is_file():
         return
     with open(share.lines, "rb") as file:
@@ -228,10 +222,7 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Return the number of the next attempt to run the unfinished jobs of ``share``.
-
-    Raises WorkersDied after too many attempts.
-    """
+    """Return the number of the next attempt to run the unfinished jobs of ``share``."""
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit has its own errors for jobs without a result

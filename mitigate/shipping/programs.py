@@ -97,10 +97,7 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """Wrapper around ``network`` that stores a tensor as float16 if this loses no precision.
-
-    Only tensors that the network uses are stored.
-    """
+    """Stores the tensors that ``network`` uses, as float16 where this loses no precision."""
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
@@ -118,10 +115,7 @@ class Stored(nn.Module):
 
 
 def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
-    """Return the two networks of ``agent`` in eager mode (not exported), by name.
-
-    The networks share the weights of the agent.
-    """
+    """Return the two networks of ``agent`` in eager mode, by name. They share its weights."""
     return {PERCEIVE: Perceive(agent), DECIDE: Decide(agent)}
 
 
@@ -306,10 +300,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the checks of tensor types from the exported ``program``.
-
-    A program contains more than a hundred of these checks, and none of them can fail.
-    """
+    """Remove the checks of tensor types, of which a program has over 100 and none can fail."""
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -323,10 +314,7 @@ def _smallest(tensor: Tensor) -> Tensor:
 
 
 def _free(shape: str) -> dict[int, Any]:
-    """Return the dynamic dimensions of a shape in :data:`INPUTS`.
-
-    Dynamic dimensions are named by single letters or by sums that contain letters.
-    """
+    """Return the dynamic dimensions of a shape in :data:`INPUTS`: those with capital letters."""
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:

@@ -138,10 +138,7 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the initial weights cover all parts of the agent.
-
-        In that case, the agent is also evaluated with its initial weights.
-        """
+        """Whether the agent is also evaluated with its initial weights, which cover all parts."""
         return bool(self.init and not self.init_parts)
 
 

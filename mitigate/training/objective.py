@@ -238,13 +238,10 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """For each part of ``batch``, run the forward pass in precision ``kind``, then the backward
-    pass.
+    """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
 
-    If the loss of a part is not finite, no gradient is computed for that part.
-
-    Returns:
-        The values that ``forward`` returned, summed over the parts.
+    If the loss of a part is not finite, no gradient is computed for that part. Returns the sums of
+    the values that ``forward`` returned.
     """
     values: dict[str, Tensor] = {}
     for part in objective.micro_batches(batch):
@@ -345,10 +342,9 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and the arguments of its source.
+    """Return the arguments of the objective ``kind`` and of its source; both may take the same one.
 
-    An argument that both constructors declare is in both of the returned dicts. Raises ValueError
-    for an argument that neither of them declares.
+    Raises ValueError for an argument that neither constructor declares.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
@@ -376,10 +372,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the name of the parameter of ``kind`` that takes the data source.
-
-    Returns "" if there is no such parameter or if ``arguments`` already sets it.
-    """
+    """Return the parameter of ``kind`` that takes the source; "" without one, or if it is set."""
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -387,10 +380,7 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a subclass of Objective.
-
-    For a function that builds an objective, the result is False.
-    """
+    """Return whether ``kind`` is a subclass of Objective, and not a function that builds one."""
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
@@ -403,10 +393,7 @@ def not_an_objective(target: str) -> str:
 
 
 def check_weights(**weights: float) -> None:
-    """Raise ValueError unless each weight of a loss is from 0 to ``WEIGHT``.
-
-    A loss with the weight 0 is not used.
-    """
+    """Raise ValueError unless each weight of a loss is from 0 (disabled) to ``WEIGHT``."""
     for name, value in weights.items():
         if not in_range(value, 0, WEIGHT):
             raise ValueError(
@@ -423,10 +410,7 @@ def check_counts(**counts: int) -> None:
 
 
 def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
-    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
-
-    Each job is a tuple (step, index of the job, number of jobs, number of items).
-    """
+    """Divide ``count`` items evenly: return jobs (step, index, number of jobs, number of items)."""
     parts = np.array_split(np.arange(count), pieces)
     return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
 

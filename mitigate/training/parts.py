@@ -79,10 +79,7 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 
 
 def refuse_gates(module: nn.Module) -> None:
-    """Raise ValueError if adapters of ``module`` have a gate.
-
-    Gates can be trained only on pairs of corrupted and clean views (``recipes/adapt.py``).
-    """
+    """Raise ValueError if adapters of ``module`` have a gate, which needs pairs of views."""
     if any(isinstance(adapter, FrameGate) for adapter in adapters_of(module)):
         raise ValueError(
             "This recipe cannot train the gates of agent.adapters.gates. Leave them out, or choose "
@@ -127,12 +124,8 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
 
     Args:
         agent: the agent.
-        weights: a file or folder with the weights of the teacher, or "start" for the current
-            weights.
-
-    Raises:
-        ValueError: If the weights contain only adapters, or do not match the agent.
-        FileNotFoundError: If the weights do not exist.
+        weights: a file or folder of complete weights that fit the agent, or "start" for the
+            current weights. Others raise ValueError or FileNotFoundError.
     """
     if weights is None:
         raise ValueError(

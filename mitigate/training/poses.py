@@ -130,11 +130,9 @@ class Poses(DrawsBySuccess):
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        panoramas, state of the schedule).
+        """Return jobs (step, index, number of jobs, number of panoramas, state of the schedule).
 
-        If the schedule needs success rates but has none, this method measures them with ``workers``
-        processes.
+        If the schedule has no success rates yet, ``workers`` processes measure them.
         """
         if self.schedule.mode == "success_distributed" and self.schedule.success is None:
             self.refresh(step, workers)
@@ -197,9 +195,7 @@ class Poses(DrawsBySuccess):
     def _put(
         self, xy: np.ndarray, heading: float, views: list[int] | None, key: Key
     ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return the frames of the undisplaced camera, the frames of the possibly displaced camera,
-        and the labels.
-        """
+        """Return frames of the undisplaced and the possibly displaced camera, and the labels."""
         rgb = self.sensor == RGB
         clean, truth = self.placed.put(xy, heading, views=views, rgb=rgb)
         if uniform(digest(key, "camera_share")) >= self.camera_share:
@@ -225,7 +221,5 @@ class OnViews(OnSource):
         return self.poses.collate(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of panoramas in the batch, or the number of views if there is a single
-        camera.
-        """
+        """Return the number of panoramas (of views, with a single camera) in the batch."""
         return float(len(batch["frames"]))

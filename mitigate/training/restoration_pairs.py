@@ -24,9 +24,7 @@ GROUP = 12
 
 
 class PosePairs(Poses):
-    """Source of corrupted and clean panoramas, or single views, at random poses
-    (``training/poses.py``).
-    """
+    """Source of corrupted and clean panoramas, or single views, at random poses."""
 
     ring = False  # whether the views of a time step form a panorama
 
@@ -84,9 +82,7 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state to pickle, which omits the frames. Workers receive only the frames of
-        their jobs.
-        """
+        """Leave out the frames: workers receive only those of their jobs."""
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -143,9 +139,7 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs`` in which a fraction ``share`` of the frames stays clean. Call this
-    function before ``start``.
-    """
+    """Return a copy of ``pairs``, not started yet, in which ``share`` of the frames stays clean."""
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

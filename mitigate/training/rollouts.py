@@ -66,9 +66,7 @@ class Rollouts(DrawsBySuccess):
         self.picture: np.ndarray | None = None
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Also keep the clean observations, from which ``teachers`` compute their fixed features in
-        advance.
-        """
+        """Also keep clean observations, from which ``teachers`` compute features in advance."""
         self.clean = True
         self.teachers = teachers
 
@@ -83,10 +81,9 @@ class Rollouts(DrawsBySuccess):
         return dict(getattr(self.training, "identity", dict)())
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        episodes, state of the schedule).
+        """Return jobs (step, index, number of jobs, number of episodes, state of the schedule).
 
-        If new success rates are due, this method measures them with ``workers`` processes.
+        If new success rates are due, ``workers`` processes measure them.
         """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
@@ -95,9 +92,7 @@ class Rollouts(DrawsBySuccess):
         return [(*job, state) for job in divided(step, self.episodes, self.pieces)]
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
-        """Run the episodes of a job; return their decisions and a picture of the last
-        observation.
-        """
+        """Run the episodes of a job; return their decisions and a picture of the last frame."""
         step, piece, pieces, count, state = job
         self.schedule.load_state_dict(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]

@@ -134,9 +134,7 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
 def check_same(
     folder: Path, old: dict[str, Any], new: dict[str, Any], advice: str = OTHER_FOLDER
 ) -> None:
-    """Raise ValueError if the run in ``folder`` has a config (``old``) that differs from
-    ``new``. The message ends with ``advice``.
-    """
+    """Raise ValueError, with ``advice``, if the run in ``folder`` has another config."""
     different = differences(old, new)
     if different:
         raise ValueError(

@@ -17,9 +17,7 @@ from mitigate.worlds.world import TrainingEpisodes
 
 
 class DrawsBySuccess:
-    """Base class of batch sources whose schedule may sample corruptions by the agent's success
-    rates.
-    """
+    """Base class of batch sources whose schedule may sample corruptions by success rate."""
 
     agent: Any
     world: Callable[[], Any]
@@ -65,9 +63,7 @@ class DrawsBySuccess:
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError if ``schedule`` samples by success rate, because the calling recipe measures
-    no success rates.
-    """
+    """Raise ValueError if ``schedule`` needs success rates, which the calling recipe lacks."""
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "

@@ -64,9 +64,7 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Compute the cells and write the report into ``out``. Raises the same errors as
-    :func:`make_table`.
-    """
+    """Compute the cells and write the report into ``out``."""
     failed = make(table_cells, config) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
@@ -96,11 +94,7 @@ def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write a report that summarizes the rows found under ``paths``.
-
-    ``table.md`` contains all tables and plots. ``overview.md`` contains short tables that also show
-    the results of the paper.
-    """
+    """Write ``table.md`` with all tables, and ``overview.md`` with the paper's results."""
     from mitigate.evaluation import report  # imports matplotlib
 
     rows = gather(paths)
@@ -128,11 +122,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_additional_reports(
     table_cells: Sequence[Cell], config: TablesConfig, out: Path
 ) -> list[Path]:
-    """Write ``NAME/table.md`` and its pictures for each additional evaluation, and return the
-    paths.
-
-    Each evaluation has its own table, because evaluations may use different episodes.
-    """
+    """Write ``NAME/table.md`` for each additional evaluation; their episodes may differ."""
     from mitigate.evaluation import report  # brings matplotlib
 
     reports = []
@@ -144,11 +134,10 @@ def write_additional_reports(
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Plot episodes in which the first column of ``config.walks`` fails and the last column
-    succeeds.
+    """Plot episodes in which the first column of ``config.walks`` fails and the last succeeds.
 
-    These episodes are run again with the agents of the first training seed, each with the guards of
-    its column. Nothing is plotted if one of these columns has no cell.
+    The agents of the first training seed run these episodes again, with the guards of their
+    columns. Nothing is plotted if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
@@ -185,10 +174,7 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
 
 
 def _named(folder: Path) -> str:
-    """Return the agent name in the result rows of a cell. The name includes guards.
-
-    If the cell has no rows, return the name of its folder.
-    """
+    """Return the name in a cell's rows (with guards), or without rows the name of its folder."""
     rows = _rows(folder / "evaluation")
     return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]
 
