@@ -14,7 +14,7 @@ import threading
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mitigate.core.errors import missing_package_message
 from mitigate.core.names import printable, unknown
@@ -141,10 +141,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # add the current folder, as python -m does, so that the user's modules can be imported
     if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
-    name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
-    options = options[:-1]
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        status = _run(name, options)
+        status = _run(words[0] if words else "", words[1:])
         sys.stdout.flush()
     except BrokenPipeError:  # the program that reads the output (for example ``head``) has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -196,15 +195,9 @@ def _prepare_streams() -> None:
 _default_format = warnings.formatwarning
 
 
-def _format_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    line: str | None = None,
-) -> str:
+def _format_warning(message: Warning | str, *details: Any, **more: Any) -> str:
     """Format a warning without control characters, because it may quote names from files."""
-    return _default_format(printable(str(message)), category, filename, lineno, line)
+    return _default_format(printable(str(message)), *details, **more)
 
 
 def usage() -> str:

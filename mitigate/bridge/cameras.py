@@ -250,12 +250,8 @@ class Rig:
     ) -> list[str]:
         """Corrupt the frames in ``memory`` in place; return the names of the cameras that changed.
 
-        Args:
-            memory: Shared memory.
-            offsets: Offset of each camera in ``memory``.
-            corruption: Corruption to apply; parts for other modalities are ignored.
-            key: Key from which all random numbers are derived.
-            heading: The agent's heading in radians; None if unknown.
+        Parts of the corruption for other modalities are ignored. ``offsets`` are those of
+        :meth:`lay_out`, and ``heading`` is in radians, or None if it is unknown.
         """
         changed: list[str] = []
         for group in (g for g in self.groups if g.cameras[0].kind in corruption.modalities):
@@ -277,13 +273,8 @@ class Rig:
 
         A panorama of 12 cameras is one frame; each camera outside a panorama has its own frame. An
         RGB frame and a depth frame with the same position, direction and size form one observation.
-
-        Args:
-            memory: Frames of the current call.
-            offsets: Position of each camera's frame in ``memory``.
-            guards: Guards of the condition.
-            started: Guards of the current episode. The key is the tuple of camera names of the
-                observation that the guard processes. This method adds guards for new observations.
+        ``started`` maps the camera names of an observation to its guards in the current episode;
+        this method adds guards for new observations.
         """
         frames = [
             frame

@@ -150,15 +150,9 @@ class Words:
     ) -> dict[str, Any]:
         """Return ``text`` and ``tokens`` for the agent, or an empty dict if nothing changes.
 
-        Args:
-            message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
-                ``category``.
-            corruption: The corruption of the condition.
-            key: Key from which all random numbers are derived.
-            guards: Guards that change the corrupted instruction.
-
-        Raises:
-            ValueError: If the corrupted instruction cannot be passed to the agent.
+        ``message`` begins the episode, with ``text``, ``tokens``, ``language`` and ``category``.
+        ``guards`` change the corrupted instruction. Raises ValueError if the result cannot be
+        passed to the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]

@@ -87,12 +87,8 @@ class SharedMemory:
 class Connection:
     """Serves one environment. Each kind of message has a method that computes the answer.
 
-    Args:
-        channel: The socket.
-        condition: Corrupts frames and instructions.
-        folder: The folder in which events are written.
-        token: The secret token that the other side must send.
-        memory: The folder for shared-memory files.
+    The other side must send ``token``. Events are written in ``folder``, and files for shared
+    memory in ``memory``.
     """
 
     def __init__(

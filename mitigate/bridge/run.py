@@ -51,10 +51,6 @@ def split_command(arguments: list[str]) -> tuple[list[str], list[str]]:
 def run(config: RunConfig, command: Sequence[str]) -> Path:
     """Run ``command`` under all conditions; return the output folder.
 
-    Args:
-        config: The options.
-        command: The user's command and its arguments.
-
     Raises:
         ValueError: If an option is invalid, or the command failed under some conditions. In that
             case, the error is raised after all other conditions have been measured.

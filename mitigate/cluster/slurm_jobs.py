@@ -38,23 +38,14 @@ TASK = "task.pickle"  # only this file, which the submitting process wrote, is u
 
 @dataclass
 class _Share:
-    """A submitted SLURM job and its part of the work.
+    """A submitted SLURM job and its part of the work."""
 
-    Attributes:
-        job: the job object of submitit.
-        groups: groups of (number, job).
-        lines: the file to which the SLURM job writes results.
-        left: the jobs that have no result yet, by number.
-        attempt: number of the attempt.
-        read: number of bytes of ``lines`` that were read.
-    """
-
-    job: Any
-    groups: Sequence[Sequence[tuple[int, Any]]]
-    lines: Path
-    left: dict[int, Any]
+    job: Any  # of submitit
+    groups: Sequence[Sequence[tuple[int, Any]]]  # of (number, job)
+    lines: Path  # file to which the SLURM job writes results
+    left: dict[int, Any]  # jobs that have no result yet, by number
     attempt: int
-    read: int = 0
+    read: int = 0  # number of bytes of ``lines`` that were read
 
 
 def results(

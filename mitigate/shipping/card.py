@@ -70,7 +70,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 
 def reference(weights: str) -> dict[str, str]:
-    """Return the path of ``weights`` and its sha256. Paths below the current folder are relative."""
+    """Return the path of ``weights`` (relative below the current folder) and its sha256."""
     path = find(weights)
     adapters_only = loading.adapters_only(path)
     file = path / adapters.WEIGHTS if adapters_only else checkpoint.weights_file(path)
@@ -107,7 +107,7 @@ def weights_of(row: Row) -> str:
 def metrics(rows: Iterable[Row]) -> list[dict[str, Any]]:
     """Return SR, SPL and PRS with 95 % intervals, from the rows of one agent.
 
-    There is one entry per split, suite, success rule and severity. Intervals are [value, low, high].
+    One entry per split, suite, success rule and severity; intervals are [value, low, high].
     """
     mine = [{**row, "name": "agent", "agent": "agent"} for row in rows]
     return [_entry(section) for section in sections(mine)] if mine else []

@@ -145,12 +145,8 @@ class TrainConfig:
 conf.register("train", TrainConfig)
 
 
-def either(first: Any, second: Any) -> Any:
-    """Resolve ``${either:a,b}`` to the first value, or to the second if the first is None."""
-    return second if first is None else first
-
-
-OmegaConf.register_new_resolver("either", either, replace=True)
+# ``${either:a,b}`` is the first value, or the second if the first is None
+OmegaConf.register_new_resolver("either", lambda a, b: b if a is None else a, replace=True)
 
 
 def read(cfg: DictConfig) -> TrainConfig:

@@ -27,17 +27,12 @@ class DrawsBySuccess:
     refresh_episodes: int
 
     def refresh(self, step: int, workers: int | None = None) -> None:
-        """Measure the success rate under every corruption on training episodes, and update the
-        schedule.
+        """Measure the success rate under every corruption, and update the schedule.
 
-        The same episodes, which are sampled from (seed, step), are run under every corruption. The
-        agent is in training mode afterwards.
-
-        Args:
-            step: training step.
-            workers: number of processes, which does not affect the rates; with 0, only this process
-                is used. None means one process per core if that saves time, but only this process
-                if the agent is on a GPU.
+        The same training episodes, which are sampled from (seed, step), are run under every
+        corruption. The agent is in training mode afterwards. The rates do not depend on
+        ``workers``, the number of processes: with 0, only this process is used; None means one
+        process per core if that saves time, but only this process if the agent is on a GPU.
         """
         rng = generator(self.seed, "refresh", step)
         episodes = [self.training.draw(rng, (0, 1)) for _ in range(self.refresh_episodes)]

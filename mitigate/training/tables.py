@@ -65,7 +65,10 @@ def make_table(config: TablesConfig) -> Path:
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
     """Compute the cells and write the report into ``out``."""
-    failed = make(table_cells, config) or [
+    chains = [cell.chain(config) for cell in table_cells]
+    for cell in table_cells:
+        cell.keep()
+    failed = run_chains("cells", "cell", chains, config.jobs, config.launcher) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
         for cell in table_cells
@@ -83,14 +86,6 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
         raise ValueError(problem)
     print("\n".join(f"wrote {path}" for path in (*reports, *draw_walks(config, out))), flush=True)
     return report
-
-
-def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
-    """Train and evaluate all cells, ``config.jobs`` at a time; return one line per failed cell."""
-    chains = [cell.chain(config) for cell in table_cells]
-    for cell in table_cells:
-        cell.keep()
-    return run_chains("cells", "cell", chains, config.jobs, config.launcher)
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:

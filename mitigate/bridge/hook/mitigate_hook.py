@@ -280,13 +280,10 @@ def _versions():
 
 
 def _uninterrupted(failure):
-    """Wrap a method of ``Session`` so that only one thread at a time runs it and an exception ends
-    the process.
+    """Wrap a method of ``Session``: one thread at a time runs it, and exceptions end the process.
 
     An interrupt also ends the process, because the agent might catch it and act on incomplete data.
-
-    Args:
-        failure: Text of the message, which describes the failure.
+    The message begins with ``failure``.
     """
 
     def decorate(method):
@@ -730,11 +727,7 @@ def _keep_selected(dataset):
 def _select(episodes, key, least):
     """Return the indices of the episodes that the run needs, or None for all episodes.
 
-    Args:
-        episodes: All episodes.
-        key: Function that returns the name of an episode. If the server chooses episodes, it
-            receives all names, in several messages.
-        least: The minimum number of episodes to keep, 0 or 1.
+    ``key`` returns the name of an episode. At least ``least`` (0 or 1) episodes are kept.
     """
     channel, count = Channel(), len(episodes)
     answer = channel.ask("dataset", count=count, keys=[], least=least)
@@ -830,14 +823,9 @@ def _package(module):
 def _corrupt_acting_agent(sim, observations, agent_ids):
     """Corrupt the observations of the acting agent only.
 
-    Observations stay unchanged inside ``_call_clean``. Observations that habitat-lab
-    requested also stay unchanged here, because habitat-lab's sensors corrupt them.
-
-    Args:
-        sim: The simulator.
-        observations: Maps sensors to observations. With several agents, it maps agent numbers to
-            such dicts.
-        agent_ids: The ids of the requested agents; None means the acting agent.
+    They stay unchanged inside ``_call_clean``, and for habitat-lab, whose sensors corrupt them.
+    With several agents, ``observations`` maps their numbers to dicts. Without ``agent_ids``, the
+    acting agent was requested.
     """
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations

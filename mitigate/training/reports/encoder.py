@@ -46,13 +46,8 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
     The frames come from the scenes of ``evaluation.split``. Their number is 12 times
     ``evaluation.episodes``, but at most the number of training frames. The conditions are the
-    suite's corruptions of this sensor.
-
-    Args:
-        config: options of the training run.
-        base: the encoder from which training started if ``init`` was set, or None.
-        trained: the trained encoder. If it has adapters, "before" means its original weights.
-        folder: folder of the run.
+    suite's corruptions of this sensor. ``base`` is the encoder from which training started if
+    ``init`` was set, or None. If ``trained`` has adapters, "before" means its original weights.
     """
     assert isinstance(trained, Encoder)
     train, unseen = _frames(config, trained.sensor)
