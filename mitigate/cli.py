@@ -22,19 +22,12 @@ from mitigate.core.signals import Ended, raise_ended
 
 
 class Command(NamedTuple):
-    """A subcommand of the program ``mitigate``.
+    """A subcommand of the program ``mitigate``."""
 
-    Attributes:
-        module: module whose ``main()`` reads ``sys.argv`` and returns an exit status.
-        about: description of the command, shown in the help text.
-        example: example options, shown in the help text.
-        extra: the extra of the package that the command needs.
-    """
-
-    module: str
-    about: str
-    example: str
-    extra: str = "train"
+    module: str  # module whose ``main()`` reads ``sys.argv`` and returns an exit status
+    about: str  # description of the command, shown in the help text
+    example: str  # example options, shown in the help text
+    extra: str = "train"  # the extra of the package that the command needs
 
 
 COMMANDS = {

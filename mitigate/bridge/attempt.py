@@ -50,19 +50,14 @@ NOT_LOADED = (
 class Attempt:
     """Runs the user's command under one condition. Call :meth:`poll` until the command ends, and
     :meth:`kill` in any case.
-
-    Attributes:
-        cell: The condition, with its folder and its command.
-        files: Size and hash of the files that the command names, at the start of the command.
-        loaded: Whether a Python process of the command loaded the hook.
-        left: Descriptions of processes that were still running after the command ended.
     """
 
     def __init__(self, cell: Cell) -> None:
         self.cell = cell
+        # size and hash of the files that the command names, at the start of the command
         self.files: dict[str, dict[str, Any]] = {}
-        self.loaded = False
-        self.left: list[str] = []
+        self.loaded = False  # whether a Python process of the command loaded the hook
+        self.left: list[str] = []  # processes that still ran after the command ended
         self.listener: Listener | None = None
         self.events: IO[str] | None = None
         self.process: Command | None = None
@@ -70,12 +65,9 @@ class Attempt:
 
     @uninterrupted()  # otherwise an interrupt could leave a started process unknown to ``kill``
     def start(self) -> None:
-        """Start the server and the command in an empty folder.
+        """Start the server and the command in an empty folder; move files of an earlier attempt.
 
-        Files of an earlier attempt are moved to another folder first.
-
-        Raises:
-            ValueError: If another run uses the folder, or the command cannot be started.
+        Raises ValueError if another run uses the folder, or the command cannot be started.
         """
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)

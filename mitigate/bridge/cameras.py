@@ -31,31 +31,18 @@ _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 @dataclass(frozen=True)
 class Camera:
-    """One camera, as the agent's process describes it.
+    """One camera, as the agent's process describes it."""
 
-    Attributes:
-        name: Name of the camera in the observations.
-        kind: "rgb" or "depth".
-        shape: Shape of a frame, [H, W, C] or [H, W].
-        dtype: Dtype of a frame.
-        hfov: Horizontal field of view in degrees; None if unknown.
-        place: Position relative to the agent in metres; None if unknown.
-        yaw: Direction, in degrees to the left of the agent's heading.
-        level: Whether pitch and roll are 0.
-        sensor: Range of depth in metres.
-        normalised: Whether depth values are scaled from this range to [0, 1].
-    """
-
-    name: str
-    kind: str
-    shape: tuple[int, ...]
+    name: str  # name of the camera in the observations
+    kind: str  # "rgb" or "depth"
+    shape: tuple[int, ...]  # shape of a frame, [H, W, C] or [H, W]
     dtype: str
-    hfov: float | None
-    place: tuple[float, ...] | None
-    yaw: float
-    level: bool
-    sensor: DepthSensor
-    normalised: bool
+    hfov: float | None  # horizontal field of view in degrees; None if unknown
+    place: tuple[float, ...] | None  # position relative to the agent in metres; None if unknown
+    yaw: float  # direction, in degrees to the left of the agent's heading
+    level: bool  # whether pitch and roll are 0
+    sensor: DepthSensor  # range of depth in metres
+    normalised: bool  # whether depth values are scaled from this range to [0, 1]
 
     @property
     def bytes(self) -> int:
@@ -92,14 +79,9 @@ class Camera:
 
 
 def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
-    """Return the camera that is described in a message.
+    """Return the camera that a message describes; ``sensor`` is the default depth range.
 
-    Args:
-        description: The description that the agent's process sent.
-        sensor: Depth range to use if the description has none.
-
-    Raises:
-        ValueError: If frames of the camera cannot be corrupted.
+    Raises ValueError if frames of the camera cannot be corrupted.
     """
     name, kind = description.get("name"), description.get("type")
     if not isinstance(name, str):
@@ -152,17 +134,11 @@ def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[f
 
 @dataclass(frozen=True)
 class Group:
-    """A group of cameras that are corrupted together.
-
-    Attributes:
-        cameras: The cameras.
-        views: The view number of each camera (``core/observation.py``).
-        suffix: Suffix of the key for random numbers; empty for the largest panorama.
-    """
+    """A group of cameras that are corrupted together."""
 
     cameras: tuple[Camera, ...]
-    views: tuple[int, ...]
-    suffix: str
+    views: tuple[int, ...]  # the view number of each camera (``core/observation.py``)
+    suffix: str  # suffix of the key for random numbers; empty for the largest panorama
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -182,11 +158,9 @@ class Rig:
         descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Maps each group of cameras to the stream of its recent frames. Pass the streams of
-            the previous rig of an environment to continue them; None starts new streams.
+        streams: Streams of recent frames of each group in the previous rig, to continue them.
 
-    Raises:
-        ValueError: If a camera cannot be corrupted, or there are too many cameras.
+    Raises ValueError if a camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(
@@ -297,15 +271,10 @@ class Rig:
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame for a guard: either all views of a complete panorama, or the view of one camera.
-
-    Attributes:
-        cameras: The cameras of the frame.
-        views: The views, as an array in shared memory.
-    """
+    """One frame for a guard: either all views of a complete panorama, or the view of one camera."""
 
     cameras: tuple[Camera, ...]
-    views: np.ndarray
+    views: np.ndarray  # the views, as an array in shared memory
 
     @property
     def kind(self) -> str:

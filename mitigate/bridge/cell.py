@@ -66,9 +66,8 @@ def _seal(folder: Path) -> dict[str, Any]:
 def read_done(folder: Path) -> dict[str, Any] | None:
     """Return the entries of a finished condition, or None if it is not finished.
 
-    Raises:
-        ValueError: If ``done.json`` is damaged or belongs to a different condition, or the events
-            changed after it was written. The message names the file and says what to do.
+    Raises ValueError, with advice, if ``done.json`` is damaged or belongs to a different condition,
+    or if the events changed after it was written.
     """
     file = folder / DONE
     again = f"No file was changed. To continue, {measure_again(folder)}"
@@ -106,33 +105,20 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
 
 @dataclass
 class Cell:
-    """One run of the command under one condition.
+    """One run of the command under one condition."""
 
-    Attributes:
-        name: Name of the condition and of its folder.
-        config: The options of the run.
-        command: The user's command and its arguments.
-        folder: Folder for the events and the output of the command.
-        condition: Applies the corruption to frames and instructions.
-        label: Entries that are added to all rows.
-        settings: The settings that the result depends on. A finished condition is reused only if
-            its settings are the same.
-        environment: Environment variables that are set for the command.
-        clean: Folder of the clean condition, or None for the clean condition itself. Each episode
-            that ended there must also end under this condition.
-        recording: The folder that the option ``record=`` names.
-    """
-
-    name: str
+    name: str  # name of the condition and of its folder
     config: RunConfig
     command: tuple[str, ...]
-    folder: Path
-    condition: Condition
-    label: dict[str, Any]
+    folder: Path  # folder for the events and the output of the command
+    condition: Condition  # applies the corruption to frames and instructions
+    label: dict[str, Any]  # entries that are added to all rows
+    # what the result depends on; a finished condition is reused only if this is the same
     settings: dict[str, Any]
-    environment: dict[str, str]
+    environment: dict[str, str]  # environment variables that are set for the command
+    # folder of the clean condition, whose episodes must also end here; None if this one is clean
     clean: Path | None = None
-    recording: Path | None = None
+    recording: Path | None = None  # the folder that the option ``record=`` names
 
     @property
     def corruption(self) -> Corruption:
@@ -275,7 +261,7 @@ class Cell:
 def describe_lost(reports: Reports) -> str:
     """Return a text like "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    If possible, the example is an episode for which the reason is known. The text ends with advice.
+    If possible, the example is an episode for which the reason is known.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
     reason = reports.dropped[name] or (

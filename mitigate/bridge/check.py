@@ -66,16 +66,10 @@ class FirstFrames(Observer):
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:
-    """Run ``command`` up to its first frames; return the path of the picture, or None without
-    cameras.
+    """Run ``command`` up to its first frames; return the path of the picture, or None without one.
 
-    Args:
-        config: The options of a run.
-        command: The user's command and its arguments.
-
-    Raises:
-        ValueError: If an option is invalid, if the command ends before its first frame, or if
-            ``FIRST_FRAME_LIMIT`` seconds pass before that frame.
+    Raises ValueError if an option is invalid, or if the command sends no frame before it ends or
+    within ``FIRST_FRAME_LIMIT`` seconds.
     """
     plan = make_plan(config, command)
     out = Path(config.out or f"{config.runs}/run/{plan.name}-check")
@@ -213,10 +207,9 @@ def draw_sheet(
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Plot a row of clean frames and one row per corruption, for the largest group of cameras.
+    """Plot clean frames and one row per corruption, for the largest group of cameras.
 
     If a corruption does not change every frame, its picture shows the first call that it changes.
-    Faults that repeat earlier frames are left out.
 
     Args:
         rig: The cameras.

@@ -67,29 +67,18 @@ class Observer:
 
 @dataclass
 class Condition:
-    """A corruption, its seed, and the settings with which it is applied.
-
-    Attributes:
-        corruption: The corruption.
-        seed: The corruption seed.
-        words: Corrupts instructions.
-        repeat: Number of this repetition of the same condition; if it is not 0, random numbers
-            depend on it.
-        missing: Value in metres for missing depth.
-        turn: Direction of increasing yaw, "left" or "right".
-        chosen: Chooses the episodes, or None to keep all.
-        guards: Guards that change instructions and frames after the corruption.
-        observer: Receives every episode and frame before the corruption (``recording.py``).
-    """
+    """A corruption, its seed, and the settings with which it is applied."""
 
     corruption: Corruption
     seed: int
     words: Words
+    # number of this repetition of the same condition; if it is not 0, random numbers depend on it
     repeat: int = 0
-    missing: float = 0.0
-    turn: str = "left"
-    chosen: Subset | None = None
-    guards: Guards = NO_GUARDS
+    missing: float = 0.0  # value in metres for missing depth
+    turn: str = "left"  # direction of increasing yaw, "left" or "right"
+    chosen: Subset | None = None  # chooses the episodes, or None to keep all
+    guards: Guards = NO_GUARDS  # guards that change instructions and frames after the corruption
+    # receives every episode and frame before the corruption (``recording.py``)
     observer: Observer = field(default_factory=Observer)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
@@ -129,17 +118,11 @@ def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> boo
 
 @dataclass
 class Words:
-    """Corrupts instructions.
+    """Corrupts instructions."""
 
-    Attributes:
-        tokenizer: The tokenizer for agents that read tokens. If it is None, changing the
-            instruction of such an agent is an error, because the agent would read the original
-            tokens.
-        length: Length of padded tokens, or None to keep the episode's length.
-    """
-
+    # for agents that read tokens; without it, they would read the original instruction
     tokenizer: Tokenizer | None = None
-    length: int | None = None
+    length: int | None = None  # length of padded tokens, or None to keep the episode's length
 
     def corrupt(
         self,
@@ -197,26 +180,18 @@ def hash_episode(name: str) -> float:
 
 @dataclass
 class Subset:
-    """Chooses about ``count`` episodes by a hash of their names.
+    """Chooses about ``count`` episodes by a hash of their names."""
 
-    Attributes:
-        count: The requested number of episodes.
-        folder: The run's folder, in which the choice of episodes is stored.
-        settled: If no new environment reports its episodes for this many seconds, all environments
-            are assumed to be known.
-    """
-
-    count: int
-    folder: Path
+    count: int  # the requested number of episodes
+    folder: Path  # the run's folder, in which the choice of episodes is stored
+    # if no new environment reports its episodes for this many seconds, all are assumed to be known
     settled: float = SETTLE_TIME
 
     def keep(self, names: list[str], least: int = 1) -> list[int]:
-        """Return the indices of the episodes to keep.
+        """Return the indices of the episodes to keep, at least ``least`` (0 or 1).
 
-        Args:
-            names: Names of the episodes of one environment, such as "scene.glb/17".
-            least: The minimum number of episodes to keep, 0 or 1. The default is 1, because Habitat
-                rejects an empty dataset.
+        ``names`` are those of one environment's episodes, such as "scene.glb/17". The default of
+        ``least`` is 1, because Habitat rejects an empty dataset.
         """
         bound = (self._choice() or self._choose(names))["bound"]
         hashes = [hash_episode(name) for name in names]

@@ -73,11 +73,9 @@ conf.register("run", RunConfig)
 
 
 def check_options(config: RunConfig, command: Sequence[str]) -> None:
-    """Check the options and the command.
+    """Raise ValueError if an option is invalid or the command is missing.
 
-    Raises:
-        ValueError: If an option is invalid, or there is no command.
-        OSError: If the folder of ``record=`` cannot be written.
+    Raises OSError if the folder of ``record=`` cannot be written.
     """
     check_choice(config.safeguard)
     if not command:

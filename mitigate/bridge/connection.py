@@ -59,8 +59,7 @@ class SharedMemory:
     def make(self, size: int) -> dict[str, Any]:
         """Map ``size`` new bytes, and return the path and size for the other process.
 
-        Raises:
-            ValueError: If there is not enough free space.
+        Raises ValueError if there is not enough free space.
         """
         self.delete_file()
         self.file = self.folder / secrets.token_hex(8)
@@ -308,13 +307,10 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Receive the names of an environment's episodes, and reply with the indices to keep.
+        """Receive episode names, and reply with the indices to keep, or None to keep all episodes.
 
-        The reply is None if the program must run all episodes.
-
-        The names arrive in several messages. The final reply is sent when all ``count`` names are
-        known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
-        dataset.
+        The names arrive in several messages; the final reply is sent when all ``count`` names are
+        known. At least ``least`` episodes are kept, because Habitat rejects an empty dataset.
         """
         chosen = self.condition.chosen
         self.names += [str(key) for key in message["keys"]]

@@ -32,18 +32,11 @@ SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length") 
 
 @dataclass(frozen=True)
 class Plan:
-    """A planned run with checked options.
-
-    Attributes:
-        config: The options.
-        command: The user's command and its arguments.
-        name: Name of the table's column, without the names of guards.
-        out: Output folder.
-    """
+    """A planned run with checked options."""
 
     config: RunConfig
     command: tuple[str, ...]
-    name: str
+    name: str  # name of the table's column, without the names of guards
     out: Path
 
 
@@ -182,8 +175,7 @@ def adapters_label(config: RunConfig) -> str | None:
 def split_adapters(adapters: str) -> tuple[str, str, str]:
     """Split ``adapters=`` into its folder, module and target (Class.attribute).
 
-    Raises:
-        ValueError: If the module or the class is missing.
+    Raises ValueError if the module or the class is missing.
     """
     folder, module, target = (*str(adapters).rsplit(":", 2), "", "")[:3]
     if not target.partition(".")[0] or not module:

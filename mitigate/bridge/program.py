@@ -44,18 +44,10 @@ class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
     A process belongs to the command if it is a descendant of the command, or if its environment
-    contains ``marker``. The marker identifies processes in a container, and processes that outlive
-    the supervisor.
+    contains ``marker``, which no other command has. The marker identifies processes in a container,
+    and processes that outlive the supervisor. The output of the command is written to ``log``.
 
-    Args:
-        words: The command and its arguments.
-        log: File that receives the output of the command.
-        environment: All environment variables of the command.
-        marker: A value in ``environment`` that no other command has; it identifies the processes of
-            this command.
-
-    Raises:
-        OSError: If the command cannot be started.
+    Raises OSError if the command cannot be started.
     """
 
     def __init__(
@@ -114,10 +106,8 @@ class Command:
     def end(self, connected: Callable[[], bool]) -> None:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
-        Args:
-            connected: Function that returns whether any of the processes is connected to the
-                bridge. If the command has ended and no process is connected, SIGKILL follows at
-                once.
+        If the command has ended and no process is ``connected`` to the bridge, SIGKILL follows at
+        once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)

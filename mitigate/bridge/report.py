@@ -31,14 +31,10 @@ LABELS = ("agent", "seed", "split")
 
 
 def write_report(cells: Sequence[Cell], out: Path) -> None:
-    """Write ``rows.jsonl``, the table and its figures, and print the table.
+    """Write ``rows.jsonl``, the table and its figures to ``out``, and print the table.
 
-    Args:
-        cells: The conditions of this call, beginning with the clean condition.
-        out: The run's folder.
-
-    Raises:
-        ValueError: If no episode has a result, or existing rows would be lost.
+    ``cells`` are the conditions of this call, clean first. Raises ValueError if no episode has a
+    result, or existing rows would be lost.
     """
     done = [cell for cell in cells if cell.is_done()]
     others, left_out = find_earlier(cells, out)
@@ -109,11 +105,9 @@ def _unused(path: Path) -> Path:
 
 
 def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
-    """Return finished conditions in ``out`` that are not in ``cells``.
+    """Return finished conditions in ``out`` that are not in ``cells``, and names of unusable ones.
 
-    Returns:
-        The conditions with the same agent and settings, and the names of the other conditions. For
-        the other conditions, the function prints why they are left out of the table.
+    Conditions with another agent or other settings are unusable; the reason is printed.
     """
     known = {cell.name for cell in cells}
     earlier: list[Cell] = []

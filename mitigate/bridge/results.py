@@ -38,40 +38,29 @@ COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 @dataclass
 class Reports:
-    """All reports that a command's processes have sent under one condition.
+    """All reports that a command's processes have sent under one condition."""
 
-    Attributes:
-        hellos: The first message of each connection, with the versions of Python and libraries.
-        cameras: The first description of each camera.
-        unread: Descriptions of observations that look like frames, but do not come from cameras.
-            They belong to the first call. Each contains the type of its sensor.
-        ends: Maps the name of each episode to the event of its end (:meth:`end`).
-        repeated: Number of episodes that ended more than once.
-        dropped: Episodes that were left unfinished, with the reason if known.
-        parallel: Whether an episode ended while another one was running.
-        problems: Failures of the server, and reasons why processes stopped themselves.
-        first: The event that began the first episode.
-        languages: Language of the instruction, by episode name.
-        adapted: Whether adapters were attached to an encoder.
-        connected: Number of environments that are connected now.
-        announced: Number of episodes that the program must run.
-        ended: Number of episodes that ended.
-    """
-
+    # the first message of each connection, with the versions of Python and libraries
     hellos: list[dict[str, Any]] = field(default_factory=list)
+    # the first description of each camera
     cameras: list[dict[str, Any]] = field(default_factory=list)
+    # observations of the first call that look like frames, but do not come from cameras
     unread: list[str] = field(default_factory=list)
+    # maps the name of each episode to the event of its end (:meth:`end`)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
-    repeated: int = 0
+    repeated: int = 0  # number of episodes that ended more than once
+    # episodes that were left unfinished, with the reason if known
     dropped: dict[str, str] = field(default_factory=dict)
-    parallel: bool = False
+    parallel: bool = False  # whether an episode ended while another one was running
+    # failures of the server, and reasons why processes stopped themselves
     problems: list[str] = field(default_factory=list)
-    first: dict[str, Any] = field(default_factory=dict)
+    first: dict[str, Any] = field(default_factory=dict)  # the event that began the first episode
+    # language of the instruction, by episode name
     languages: dict[str, str | None] = field(default_factory=dict)
-    adapted: bool = False
-    connected: int = 0
-    announced: int = 0
-    ended: int = 0
+    adapted: bool = False  # whether adapters were attached to an encoder
+    connected: int = 0  # number of environments that are connected now
+    announced: int = 0  # number of episodes that the program must run
+    ended: int = 0  # number of episodes that ended
 
     @property
     def lost(self) -> list[str]:
@@ -81,8 +70,8 @@ class Reports:
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Record the event that reports the end of an episode.
 
-        If an episode ended several times, the first event counts. There is one exception: an event
-        that says that the episode was over replaces an earlier reset or close.
+        The first event counts, but an event that says that the episode was over replaces an earlier
+        reset or close.
         """
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
@@ -104,14 +93,8 @@ class Reports:
 def read(folder: Path, count_closed: bool = False) -> Reports:
     """Read the reports from the events in ``folder``; ignore an incomplete last line.
 
-    Args:
-        folder: The folder of a condition.
-        count_closed: Whether to count an episode whose Env was closed before the episode was over,
-            while other Envs ran in parallel.
-
-    Raises:
-        ValueError: If another line is damaged. The message names the file and the line, and says
-            what to do.
+    With ``count_closed``, an episode counts even if its Env was closed before it was over, while
+    other Envs ran in parallel. Raises ValueError, with advice, if another line is damaged.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -176,8 +159,7 @@ def rows(
         reports: The reports of the condition.
         corruption: The corruption of the condition.
         label: Values that are the same in all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. If it is None
-            and the agent reports no Success measure, all rows are judged by the common rule.
+        rule: A name in ``RULES``, which replaces the agent's own Success measure, or None.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     rules = _choose_rules(reports, rule, clean)

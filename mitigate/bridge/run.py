@@ -247,14 +247,10 @@ def _report(cell: Cell, problem: str, single: bool) -> list[str]:
 class ConditionTask:
     """Task for running conditions on other machines (``core/workers.py``).
 
-    Each job runs one condition; a job is represented by the name of its condition. The result of a
-    job is a description of its problem, or "". The folder of the run must be on a file system that
-    all machines can access. Finished conditions are kept. If a machine dies, its condition is
-    measured again from the start on a different machine, because the user's program cannot resume.
-
-    Args:
-        plan: The run; the path of its output folder must be absolute.
-        folder: The folder in which the command runs.
+    Each job is the name of a condition; its result is a description of its problem, or "". All
+    machines must share the file system of the run's folder, whose path must be absolute. If a
+    machine dies, its condition is measured again from the start, because the user's program cannot
+    resume. The command runs in ``folder``.
     """
 
     preload: ClassVar[str] = "mitigate.bridge.run"

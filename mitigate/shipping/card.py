@@ -41,11 +41,9 @@ UNKNOWN = "other"  # Hugging Face's name for an unknown licence
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     """Return the entries of a card that describe how ``agent`` was trained.
 
-    The entries come from the resolved config ``cfg`` of the run and from this checkout.
-
-    Raises:
-        FileNotFoundError: If the base or a teacher of the run is missing.
-        ValueError: If ``cfg`` has an entry with a value that training never writes.
+    The entries come from the resolved config ``cfg`` of the run and from this checkout. Raises
+    FileNotFoundError if the base or a teacher of the run is missing, and ValueError if ``cfg`` has
+    a value that training never writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -312,12 +310,10 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return the front matter of a README for Hugging Face.
+    """Return the front matter of a README for Hugging Face, YAML between two lines of ``---``.
 
-    The front matter is YAML between two lines of ``---``. After ``hf upload``, the hub shows a
-    model page with the library, the licence, tags and metrics (docs/deployment.md). If there are no
-    metrics, there is no ``model-index``. The format is described in
-    https://github.com/huggingface/hub-docs/blob/main/modelcard.md
+    The hub shows a model page with the library, the licence, tags and metrics (docs/deployment.md).
+    The format is described in https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"
     fields: dict[str, Any] = {

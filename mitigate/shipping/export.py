@@ -59,18 +59,12 @@ _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 @dataclass
 class Walks:
-    """Settings of a check that runs clean episodes with the exported agent in a new process.
+    """Settings of a check that runs clean episodes with the exported agent in a new process."""
 
-    Attributes:
-        make_agent: function that constructs the agent. The exported weights are then loaded into
-            it.
-        make_world: function that constructs the world.
-        episodes: a list of episodes. The check runs the first ``WALKS`` of them.
-    """
-
+    # constructs the agent into which the exported weights are loaded
     make_agent: Callable[[], nn.Module]
     make_world: Callable[[], World]
-    episodes: Sequence[Episode]
+    episodes: Sequence[Episode]  # the check runs the first ``WALKS``
 
     def measures(self, agent: Any) -> list[dict[str, Any]]:
         """Return the hash of the weights of ``agent``, and the measures of each episode."""
@@ -129,10 +123,8 @@ def export(
 def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
     """Return the config and the agent of the finished run in the folder ``run``.
 
-    Raises:
-        FileNotFoundError: If there is no finished run.
-        ValueError: If the run cannot be exported, if its kind of agent needs ``walks``, or if its
-            weights overflow in float16.
+    Raises FileNotFoundError if there is no finished run, and ValueError if it cannot be exported,
+    if its agent needs ``walks``, or if its weights overflow in float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.reject_other_models(run)
@@ -164,17 +156,10 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 
 def add_programs(folder: Path) -> Path:
-    """Export the agent in the hardened ``folder`` again, and replace its ``program.pt2``.
+    """Export the agent in the hardened ``folder`` again, and return the path of ``program.pt2``.
 
-    The outputs of the program on the probe inputs are compared with the outputs of the agent.
-
-    Returns:
-        The path of the file.
-
-    Raises:
-        FileNotFoundError: If ``folder`` is not a complete hardened folder.
-        ValueError: If the folder is damaged, if it was exported without programs, or if the outputs
-            differ.
+    Raises FileNotFoundError if ``folder`` is not a complete hardened folder, and ValueError if it
+    is damaged, was exported without programs, or if its program and agent differ in outputs.
     """
     folder = find(folder)
     folders.repair_folder(folder.resolve())
@@ -235,11 +220,7 @@ def _check_free(target: Path, overwrite: bool) -> None:
 def check_outputs(folder: str, expected: str) -> None:
     """Raise ValueError unless the agent and the programs in ``folder`` give the expected outputs.
 
-    ``export`` runs this in a new process.
-
-    Args:
-        folder: the hardened folder.
-        expected: safetensors file with the expected outputs on the probe inputs.
+    ``export`` runs this in a new process. ``expected`` is a safetensors file.
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)

@@ -107,7 +107,10 @@ class Stored(nn.Module):
         self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
         tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}
         for name, key in self._names.items():
-            self.register_buffer(key, _smallest(tensors[name].detach()))
+            tensor = tensors[name].detach()
+            half = tensor.half()
+            lossless = torch.equal(half.float(), tensor.float())
+            self.register_buffer(key, half if lossless else tensor)
 
     def forward(self, *inputs: Tensor) -> tuple[Tensor, ...]:
         tensors = {name: self.get_buffer(key).float() for name, key in self._names.items()}
@@ -230,20 +233,14 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    Calls alternate between the variants of the networks, such as eager and exported. Each call to
-    ``perceive`` processes one panorama. Each call to ``decide`` makes one decision among three
-    nodes and four ghosts.
-
-    Args:
-        kinds: maps the name of a variant to its two networks, such as ``{"eager": networks(agent),
-            "exported": ...}``.
-        agent: the agent, for the probe.
-        size: width of the views in pixels.
+    Calls alternate between the variants of the networks in ``kinds``, such as ``{"eager":
+    networks(agent), "exported": ...}``. Each call to ``perceive`` processes one panorama. Each call
+    to ``decide`` makes one decision among three nodes and four ghosts.
 
     Returns:
-        Two measurements for each variant of each network. "wall" is the wall time of the fastest of
-        ``TIMED`` calls. "cpu" is the median CPU time over all threads of this process. Other
-        programs on the machine affect the CPU time less than the wall time.
+        Two measurements for each variant of each network: "wall", the wall time of the fastest of
+        ``TIMED`` calls, and "cpu", the median CPU time over all threads of this process, which
+        other programs on the machine affect less.
     """
     inputs_by_name = probe(agent, size)
     single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
@@ -306,11 +303,6 @@ def _drop_type_checks(program: ExportedProgram) -> None:
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
             graph.erase_node(node)
     program.graph_module.recompile()
-
-
-def _smallest(tensor: Tensor) -> Tensor:
-    half = tensor.half()
-    return half if torch.equal(half.float(), tensor.float()) else tensor
 
 
 def _free(shape: str) -> dict[int, Any]:

@@ -83,18 +83,12 @@ class TrainerConfig:
 
 @dataclass
 class StageConfig:
-    """One stage of a recipe.
+    """One stage of a recipe."""
 
-    Attributes:
-        recipe: config node whose ``_target_`` is the objective. The other entries of the node are
-            arguments of the objective and of its source.
-        trainer: settings of this stage's trainer.
-        cost: seconds per step on the machine of ``precision.REFERENCE``, or None if unknown. The
-            cost is used to estimate the duration of the run.
-    """
-
+    # ``_target_`` is the objective; other entries are arguments of the objective and its source
     recipe: Any = None
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    # seconds per step on the machine of ``precision.REFERENCE``, to estimate the run's duration
     cost: float | None = None
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
@@ -150,11 +144,7 @@ OmegaConf.register_new_resolver("either", lambda a, b: b if a is None else a, re
 
 
 def read(cfg: DictConfig) -> TrainConfig:
-    """Return the composed options of a training run as typed data, including its folder.
-
-    Raises:
-        ValueError: If an entry refers to a missing entry.
-    """
+    """Return the composed options of a training run as typed data, including its folder."""
     cfg = cfg.copy()
     # the folder is set first, because other entries refer to it
     cfg.folder = cfg.folder or default_folder(cfg)

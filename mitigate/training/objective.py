@@ -278,28 +278,21 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class ObjectiveSpec:
-    """The objective of a stage, with the arguments of its constructor and of its source.
+    """The objective of a stage, with the arguments of its constructor and of its source."""
 
-    Attributes:
-        target: the ``_target_`` of the stage's config.
-        arguments: arguments of the objective's constructor, as plain data.
-        source: arguments of the source's constructor, or None if the objective makes its own
-            batches.
-        parameter: the objective's parameter that receives the source.
-    """
-
-    target: str
+    target: str  # the ``_target_`` of the stage's config
+    # arguments of the objective's constructor, as plain data
     arguments: dict[str, Any] = field(default_factory=dict)
+    # arguments of the source's constructor, or None if the objective makes its own batches
     source: dict[str, Any] | None = None
-    parameter: str = ""
+    parameter: str = ""  # the objective's parameter that receives the source
 
     @classmethod
     def of(cls, recipe: Mapping[str, Any]) -> ObjectiveSpec:
         """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
-        Raises:
-            ValueError: If neither constructor declares an argument, or if the class is not an
-                objective or accepts no agent.
+        Raises ValueError if neither constructor declares an argument, or if the class is not an
+        objective or accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -317,13 +310,9 @@ class ObjectiveSpec:
         return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
-        """Build the objective for ``agent``.
+        """Build the objective for ``agent``; it chooses which parameters are trained.
 
-        The objective chooses which parameters are trained.
-
-        Raises:
-            ValueError: If the target does not build an objective, or if its constructor raises
-                ValueError.
+        Raises ValueError if the target does not build an objective, or if its constructor does.
         """
         for parameter in agent.parameters():
             # integer parameters, such as 8-bit weights, cannot be trained

@@ -38,17 +38,12 @@ def policy_parts(agent: Any) -> list[str]:
 def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     """Freeze every parameter of ``agent`` outside ``parts``.
 
-    Adapters are trained only if "adapters" is one of the parts.
+    Parts are names from ``agent.parts()``; "policy" means all except the encoders, and None means
+    all. Adapters are trained only if "adapters" is one of the parts.
 
-    Args:
-        agent: the agent.
-        parts: names from ``agent.parts()``; "policy" means all parts except the encoders. If it is
-            None, all parts are selected.
-
-    Raises:
-        ValueError: If a part is unknown, if a parameter belongs to no part, or if the agent is not
-            trainable. It is also raised if adapters with gates are to be trained, because gates
-            cannot be trained on episodes.
+    Raises ValueError if a part is unknown, if a parameter belongs to no part, or if the agent is
+    not trainable. It is also raised if adapters with gates would be trained, because gates cannot
+    be trained on episodes.
     """
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)
@@ -101,13 +96,9 @@ def freeze(agent: nn.Module) -> None:
 def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
     """Set eval mode for the frozen BatchNorm layers in ``module``.
 
-    In training mode, every batch would change their running statistics, although no weight is
-    trained. A normalisation layer may have no weights. Such a layer counts as frozen if all weights
-    of the nearest enclosing module that has weights are frozen. Adapters are ignored.
-
-    Args:
-        module: the module.
-        around: weights of the enclosing module, which decide if ``module`` has no weights.
+    In training mode, every batch would change their running statistics. A layer without weights
+    counts as frozen if all weights of the nearest enclosing module that has weights (``around``)
+    are frozen. Adapters are ignored.
     """
     weights = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
     around = weights or around

@@ -56,40 +56,25 @@ OURS = "mitigate.recipes."
 
 @dataclass(frozen=True)
 class StagePlan:
-    """The plan of one training stage.
+    """The plan of one training stage."""
 
-    Attributes:
-        name: name of the stage and of its subfolder.
-        folder: folder of its checkpoints and logs.
-        objective: the objective, with its arguments.
-        trainer: the settings of the Trainer that the recipe or the user set.
-        identity: settings of the agent and the recipe; a run is not resumed if they differ.
-    """
-
-    name: str
-    folder: Path
+    name: str  # name of the stage and of its subfolder
+    folder: Path  # folder of its checkpoints and logs
     objective: ObjectiveSpec
-    trainer: dict[str, Any]
+    trainer: dict[str, Any]  # the settings of the Trainer that the recipe or the user set
+    # settings of the agent and the recipe; a run is not resumed if they differ
     identity: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan of a training run.
+    """The plan of a training run."""
 
-    Attributes:
-        config: the options, without the stages and corruptions that planning left out.
-        folder: folder of the run.
-        agent: the agent with its initial weights.
-        stages: stages in order.
-        workers: number of processes that make batches.
-    """
-
-    config: TrainConfig
+    config: TrainConfig  # the options, without the stages and corruptions that planning left out
     folder: Path
-    agent: nn.Module
+    agent: nn.Module  # the agent with its initial weights
     stages: list[StagePlan]
-    workers: int
+    workers: int  # number of processes that make batches
 
 
 def check(config: TrainConfig) -> None:
@@ -128,12 +113,9 @@ def _target_of(stage: StageConfig) -> str:
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     """Plan a training run from options that :func:`check` has accepted.
 
-    Print a line for each decision that a user may not expect.
-
-    Raises:
-        ValueError: If the options, the recipe, the agent, the world and the folder are not
-            compatible with each other.
-        FileNotFoundError: If weights are missing.
+    Print a line for each decision that a user may not expect. Raises ValueError if the options, the
+    recipe, the agent, the world and the folder do not fit each other, and FileNotFoundError if
+    weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")

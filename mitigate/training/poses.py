@@ -19,7 +19,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.corruptions.faults.camera import random_mount
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.training.objective import OnSource, check_counts, check_share, divided
+from mitigate.training.objective import OnSource, check_counts, check_share
 from mitigate.training.parts import OWN, SEEING
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
@@ -86,13 +86,9 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Choose which targets and views later batches contain. Without this call, targets are
-        empty.
+        """Choose the ground truth ``label`` as targets, and every ``every``-th view of a panorama.
 
-        Args:
-            label: ground-truth entry of the world to use as targets.
-            every: use every n-th view of a panorama. The value 2 is useful because neighbouring
-                views overlap.
+        Without this call, targets are empty. Every second view is useful: neighbours overlap.
         """
         self.label = label
         self.every = every
@@ -130,14 +126,7 @@ class Poses(DrawsBySuccess):
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return jobs (step, index, number of jobs, number of panoramas, state of the schedule).
-
-        If the schedule has no success rates yet, ``workers`` processes measure them.
-        """
-        if self.schedule.mode == "success_distributed" and self.schedule.success is None:
-            self.refresh(step, workers)
-        state = self.schedule.state_dict()
-        return [(*job, state) for job in divided(step, self.panoramas, self.pieces)]
+        return self.divide(step, self.panoramas, self.pieces, workers)
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""

@@ -45,26 +45,16 @@ class PosePairs(Poses):
 class FramePairs:
     """Source of corrupted and clean frames from a folder (``encoders/sources.py``). Each frame is
     corrupted as a separate time step.
-
-    Attributes:
-        source: source of the frames.
-        schedule: schedule of corruptions of ``sensor``.
-        sensor: "rgb" or "depth".
-        count: number of frames, which are read once.
-        panoramas: number of groups per step; a group has ``GROUP`` frames.
-        seed: seed of frames and corruptions.
-        depth: properties of the depth sensor that recorded the frames.
-        frames: the frames, which :meth:`start` reads.
     """
 
     source: Source
-    schedule: Schedule
-    sensor: str
-    count: int
-    panoramas: int
-    seed: int
-    depth: DepthSensor
-    frames: Frames | None = None
+    schedule: Schedule  # schedule of corruptions of ``sensor``
+    sensor: str  # "rgb" or "depth"
+    count: int  # number of frames, which are read once
+    panoramas: int  # number of groups per step; a group has ``GROUP`` frames
+    seed: int  # seed of frames and corruptions
+    depth: DepthSensor  # properties of the depth sensor that recorded the frames
+    frames: Frames | None = None  # the frames, which :meth:`start` reads
     ring: ClassVar[bool] = False  # each frame is a separate time step
 
     def __post_init__(self) -> None:

@@ -12,6 +12,7 @@ from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
+from mitigate.training.objective import divided
 from mitigate.training.parts import hold_statistics
 from mitigate.worlds.world import TrainingEpisodes
 
@@ -25,6 +26,19 @@ class DrawsBySuccess:
     schedule: Schedule
     seed: int
     refresh_episodes: int
+
+    def divide(
+        self, step: int, count: int, pieces: int, workers: int | None, due: bool = False
+    ) -> list[tuple]:
+        """Return jobs (step, index, number of jobs, number of items, state of the schedule).
+
+        If the schedule lacks success rates, or if new ones are ``due``, ``workers`` processes
+        measure them.
+        """
+        if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
+            self.refresh(step, workers)
+        state = self.schedule.state_dict()
+        return [(*job, state) for job in divided(step, count, pieces)]
 
     def refresh(self, step: int, workers: int | None = None) -> None:
         """Measure the success rate under every corruption, and update the schedule.

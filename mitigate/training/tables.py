@@ -46,13 +46,9 @@ def run(cfg: DictConfig) -> Path:
 def make_table(config: TablesConfig) -> Path:
     """Compute all cells and the report; return the path of the report.
 
-    If ``config.rows`` is set, the report is computed from those rows, and no cell is run.
-
-    Raises:
-        ValueError: If settings are invalid, or if a cell failed. Invalid settings are reported
-            before any cell runs. A failed cell is reported after the others are finished; the
-            message contains the end of its log.
-        FileNotFoundError: If rows are missing.
+    If ``config.rows`` is set, the report is computed from those rows (FileNotFoundError if they are
+    missing), and no cell is run. Raises ValueError for invalid settings before any cell runs, and
+    for failed cells after the others are finished, with the end of their logs.
     """
     out = Path(config.out)
     if config.rows:

@@ -71,9 +71,7 @@ _corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValu
 def send(channel, message):
     """Send a dict of plain data; convert numpy numbers and arrays to Python's types.
 
-    Raises:
-        ValueError: If the message is too large.
-        TypeError: If a value is not plain data.
+    Raises ValueError if the message is too large, and TypeError if a value is not plain data.
     """
     body = json.dumps(message, default=_as_python).encode("utf-8")
     if len(body) > MAX_MESSAGE:
@@ -119,12 +117,8 @@ def _read(channel, size):
 def stop(problem, reported=False):
     """Print a message and end this process at once, because the program might catch an exception.
 
-    The server gets the reason, so that the condition does not count as finished. The process ends
-    even if this function fails or is interrupted.
-
-    Args:
-        problem: The reason, as a sentence.
-        reported: Whether the server already knows the reason.
+    The server gets the reason (unless ``reported``), so that the condition does not count as
+    finished. The process ends even if this function fails or is interrupted.
     """
     try:
         try:
@@ -372,11 +366,8 @@ class Session:
     def corrupt(self, observations, cameras, heading=None):
         """Replace the frames of ``cameras`` in a dict of observations, in the order of the keys.
 
-        Args:
-            observations: Arrays by name.
-            cameras: Dicts that describe the cameras: name, type ("rgb" or "depth") and other
-                options (``_describe_sensor``).
-            heading: Radians, counter-clockwise.
+        Each camera is described by its name, type ("rgb" or "depth") and other options
+        (``_describe_sensor``). The heading is in radians, counter-clockwise.
         """
         self._check(observations, cameras)
         channel = self.connected()
