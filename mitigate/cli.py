@@ -14,7 +14,7 @@ import threading
 import warnings
 from collections.abc import Sequence
 from importlib import import_module
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from mitigate.core.errors import missing_package_message
 from mitigate.core.names import printable, unknown
@@ -22,19 +22,12 @@ from mitigate.core.signals import Ended, raise_ended
 
 
 class Command(NamedTuple):
-    """A subcommand of the program ``mitigate``.
+    """A subcommand of the program ``mitigate``."""
 
-    Attributes:
-        module: module whose ``main()`` reads ``sys.argv`` and returns an exit status.
-        about: description of the command, shown in the help text.
-        example: example options, shown in the help text.
-        extra: the extra of the package that the command needs.
-    """
-
-    module: str
-    about: str
-    example: str
-    extra: str = "train"
+    module: str  # module whose ``main()`` reads ``sys.argv`` and returns an exit status
+    about: str  # description of the command, shown in the help text
+    example: str  # example options, shown in the help text
+    extra: str = "train"  # the extra of the package that the command needs
 
 
 COMMANDS = {
@@ -141,10 +134,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # add the current folder, as python -m does, so that the user's modules can be imported
     if os.getcwd() not in sys.path:
         sys.path.insert(0, os.getcwd())
-    name, *options = [*(sys.argv[1:] if arguments is None else arguments), ""]
-    options = options[:-1]
+    words = list(sys.argv[1:] if arguments is None else arguments)
     try:
-        status = _run(name, options)
+        status = _run(words[0] if words else "", words[1:])
         sys.stdout.flush()
     except BrokenPipeError:  # the program that reads the output (for example ``head``) has ended
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -196,15 +188,9 @@ def _prepare_streams() -> None:
 _default_format = warnings.formatwarning
 
 
-def _format_warning(
-    message: Warning | str,
-    category: type[Warning],
-    filename: str,
-    lineno: int,
-    line: str | None = None,
-) -> str:
+def _format_warning(message: Warning | str, *details: Any, **more: Any) -> str:
     """Format a warning without control characters, because it may quote names from files."""
-    return _default_format(printable(str(message)), category, filename, lineno, line)
+    return _default_format(printable(str(message)), *details, **more)
 
 
 def usage() -> str:

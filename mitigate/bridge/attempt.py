@@ -50,19 +50,14 @@ NOT_LOADED = (
 class Attempt:
     """Runs the user's command under one condition. Call :meth:`poll` until the command ends, and
     :meth:`kill` in any case.
-
-    Attributes:
-        cell: The condition, with its folder and its command.
-        files: Size and hash of the files that the command names, at the start of the command.
-        loaded: Whether a Python process of the command loaded the hook.
-        left: Descriptions of processes that were still running after the command ended.
     """
 
     def __init__(self, cell: Cell) -> None:
         self.cell = cell
+        # size and hash of the files that the command names, at the start of the command
         self.files: dict[str, dict[str, Any]] = {}
-        self.loaded = False
-        self.left: list[str] = []
+        self.loaded = False  # whether a Python process of the command loaded the hook
+        self.left: list[str] = []  # processes that still ran after the command ended
         self.listener: Listener | None = None
         self.events: IO[str] | None = None
         self.process: Command | None = None
@@ -70,12 +65,9 @@ class Attempt:
 
     @uninterrupted()  # otherwise an interrupt could leave a started process unknown to ``kill``
     def start(self) -> None:
-        """Start the server and the command in an empty folder.
+        """Start the server and the command in an empty folder; move files of an earlier attempt.
 
-        Files of an earlier attempt are moved to another folder first.
-
-        Raises:
-            ValueError: If another run uses the folder, or the command cannot be started.
+        Raises ValueError if another run uses the folder, or the command cannot be started.
         """
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)
@@ -167,9 +159,7 @@ class Attempt:
         return problem
 
     def _advice(self) -> str:
-        """Return the end of the command's output, and advice for agents that crash on corrupted
-        input.
-        """
+        """Return advice for agents that crash on corrupted input, and the end of the output."""
         return (CRASH if self.cell.corruption.severity else "") + self.cell.output_excerpt()
 
     def _check_events(self) -> None:
@@ -211,13 +201,10 @@ class Attempt:
 
     def _describe_hang(self) -> str | None:
         """Return the reason why the running command will never end, or None."""
-        assert self.listener is not None
+        assert self.listener is not None and self.events is not None
         if not self.listener.is_alive():
             return "the server of frames ended, and the command was stopped. Run again."
-        events = self.cell.folder / EVENTS
-        if not events.is_file():
-            return None
-        silence = time.time() - events.stat().st_mtime
+        silence = time.time() - os.fstat(self.events.fileno()).st_mtime
         if silence < self.cell.config.patience:
             return None
         reports = self.cell.reports()
@@ -261,7 +248,7 @@ class Attempt:
         )
 
     def _check_count(self, reports: Reports) -> str:
-        """Return a description of the problem if too few episodes ended, or ""."""
+        """Return why too few episodes ended, or ""."""
         cell = self.cell
         subset = cell.condition.chosen
         least = max(reports.announced, 0 if subset is None else subset.least())
@@ -275,7 +262,7 @@ class Attempt:
         )
 
     def _check_interception(self, reports: Reports) -> str:
-        """Return a description of the problem if the bridge did not intercept the agent, or ""."""
+        """Return why the bridge did not intercept the agent, or ""."""
         if not reports.hellos and not self.loaded:
             return f"the command ended, but {NOT_LOADED}{self.cell.output_excerpt()}"
         if not reports.hellos:
@@ -301,11 +288,7 @@ class Attempt:
         return ""
 
     def _check_episodes(self, reports: Reports) -> str:
-        """Check that all episodes are present, finished, and have a result.
-
-        Returns:
-            A description of the problem, or "" if there is none.
-        """
+        """Return why episodes are missing, unfinished or without a result, or ""."""
         cell = self.cell
         if reports.lost:
             return (
@@ -317,14 +300,12 @@ class Attempt:
                 "the command ended, but some of its processes still ran, and their unfinished "
                 "episodes are unknown. Let the command wait for them, and run again."
             )
-        missing = cell.missing_episodes()
-        if missing:
+        if missing := cell.missing_episodes():
             return (
                 f"{cell.describe_missing(missing)}, such as {missing[0]}: {DIFFERENT} Run again; "
                 f"the condition is measured again.{self._advice()}"
             )
-        extra = cell.extra_episodes()
-        if extra:
+        if extra := cell.extra_episodes():
             return (
                 f"{counted(len(extra), 'episode')} ended under it that the clean run lacks, such "
                 f"as {extra[0]}: there, {DIFFERENT} Run again; the clean condition is "

@@ -31,31 +31,18 @@ _DTYPES = {RGB: ("uint8",), DEPTH: ("float32", "float64", "float16")}
 
 @dataclass(frozen=True)
 class Camera:
-    """One camera, as the agent's process describes it.
+    """One camera, as the agent's process describes it."""
 
-    Attributes:
-        name: Name of the camera in the observations.
-        kind: "rgb" or "depth".
-        shape: Shape of a frame, [H, W, C] or [H, W].
-        dtype: Dtype of a frame.
-        hfov: Horizontal field of view in degrees; None if unknown.
-        place: Position relative to the agent in metres; None if unknown.
-        yaw: Direction, in degrees to the left of the agent's heading.
-        level: Whether pitch and roll are 0.
-        sensor: Range of depth in metres.
-        normalised: Whether depth values are scaled from this range to [0, 1].
-    """
-
-    name: str
-    kind: str
-    shape: tuple[int, ...]
+    name: str  # name of the camera in the observations
+    kind: str  # "rgb" or "depth"
+    shape: tuple[int, ...]  # shape of a frame, [H, W, C] or [H, W]
     dtype: str
-    hfov: float | None
-    place: tuple[float, ...] | None
-    yaw: float
-    level: bool
-    sensor: DepthSensor
-    normalised: bool
+    hfov: float | None  # horizontal field of view in degrees; None if unknown
+    place: tuple[float, ...] | None  # position relative to the agent in metres; None if unknown
+    yaw: float  # direction, in degrees to the left of the agent's heading
+    level: bool  # whether pitch and roll are 0
+    sensor: DepthSensor  # range of depth in metres
+    normalised: bool  # whether depth values are scaled from this range to [0, 1]
 
     @property
     def bytes(self) -> int:
@@ -92,14 +79,9 @@ class Camera:
 
 
 def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
-    """Return the camera that is described in a message.
+    """Return the camera that a message describes; ``sensor`` is the default depth range.
 
-    Args:
-        description: The description that the agent's process sent.
-        sensor: Depth range to use if the description has none.
-
-    Raises:
-        ValueError: If frames of the camera cannot be corrupted.
+    Raises ValueError if frames of the camera cannot be corrupted.
     """
     name, kind = description.get("name"), description.get("type")
     if not isinstance(name, str):
@@ -133,19 +115,16 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
         shape,
         description["dtype"],
         hfov,
-        None if position is None else tuple(map(float, position)),
-        yaw,
-        abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
-        sensor,
-        kind == DEPTH and bool(description.get("normalize_depth")),
+        place=None if position is None else tuple(map(float, position)),
+        yaw=yaw,
+        level=abs(pitch) < _LEVEL and abs(roll) < _LEVEL,
+        sensor=sensor,
+        normalised=kind == DEPTH and bool(description.get("normalize_depth")),
     )
 
 
 def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
-    """Return pitch and roll in radians and yaw in degrees to the left.
-
-    If there is no orientation, the yaw is read from the camera's name.
-    """
+    """Return pitch and roll (radians) and yaw (degrees to the left), which may be in the name."""
     if orientation is not None and len(orientation) == 3:
         pitch, yaw, roll = map(float, orientation)
         return pitch, round(math.degrees(yaw), 3) % 360, roll
@@ -155,17 +134,11 @@ def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[f
 
 @dataclass(frozen=True)
 class Group:
-    """A group of cameras that are corrupted together.
-
-    Attributes:
-        cameras: The cameras.
-        views: The view number of each camera (``core/observation.py``).
-        suffix: Suffix of the key for random numbers; empty for the largest panorama.
-    """
+    """A group of cameras that are corrupted together."""
 
     cameras: tuple[Camera, ...]
-    views: tuple[int, ...]
-    suffix: str
+    views: tuple[int, ...]  # the view number of each camera (``core/observation.py``)
+    suffix: str  # suffix of the key for random numbers; empty for the largest panorama
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -185,11 +158,9 @@ class Rig:
         descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Maps each group of cameras to the stream of its recent frames. Pass the streams of
-            the previous rig of an environment to continue them; None starts new streams.
+        streams: Streams of recent frames of each group in the previous rig, to continue them.
 
-    Raises:
-        ValueError: If a camera cannot be corrupted, or there are too many cameras.
+    Raises ValueError if a camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(
@@ -212,9 +183,7 @@ class Rig:
         self.streams = {} if streams is None else streams
 
     def describe(self) -> dict[str, dict[str, Any]]:
-        """Describe each camera: kind, field of view, yaw (degrees to the right), and whether it is
-        level.
-        """
+        """Return kind, field of view, yaw (degrees to the right) and ``level`` of each camera."""
         sign = 1 if self.turn == "right" else -1
         return {
             camera.name: {
@@ -229,8 +198,7 @@ class Rig:
     def lay_out(self, kinds: Collection[str]) -> tuple[dict[str, int], int]:
         """Return the memory offset of each camera of the given ``kinds``, and the total size.
 
-        Raises:
-            ValueError: If the size is above ``MAX_BYTES``.
+        Raises ValueError if the size is above ``MAX_BYTES``.
         """
         offsets: dict[str, int] = {}
         size = 0
@@ -256,12 +224,8 @@ class Rig:
     ) -> list[str]:
         """Corrupt the frames in ``memory`` in place; return the names of the cameras that changed.
 
-        Args:
-            memory: Shared memory.
-            offsets: Offset of each camera in ``memory``.
-            corruption: Corruption to apply; parts for other modalities are ignored.
-            key: Key from which all random numbers are derived.
-            heading: The agent's heading in radians; None if unknown.
+        Parts of the corruption for other modalities are ignored. ``offsets`` are those of
+        :meth:`lay_out`, and ``heading`` is in radians, or None if it is unknown.
         """
         changed: list[str] = []
         for group in (g for g in self.groups if g.cameras[0].kind in corruption.modalities):
@@ -283,13 +247,8 @@ class Rig:
 
         A panorama of 12 cameras is one frame; each camera outside a panorama has its own frame. An
         RGB frame and a depth frame with the same position, direction and size form one observation.
-
-        Args:
-            memory: Frames of the current call.
-            offsets: Position of each camera's frame in ``memory``.
-            guards: Guards of the condition.
-            started: Guards of the current episode. The key is the tuple of camera names of the
-                observation that the guard processes. This method adds guards for new observations.
+        ``started`` maps the camera names of an observation to its guards in the current episode;
+        this method adds guards for new observations.
         """
         frames = [
             frame
@@ -312,15 +271,10 @@ class Rig:
 
 @dataclass(frozen=True)
 class Frame:
-    """One frame for a guard: either all views of a complete panorama, or the view of one camera.
-
-    Attributes:
-        cameras: The cameras of the frame.
-        views: The views, as an array in shared memory.
-    """
+    """One frame for a guard: either all views of a complete panorama, or the view of one camera."""
 
     cameras: tuple[Camera, ...]
-    views: np.ndarray
+    views: np.ndarray  # the views, as an array in shared memory
 
     @property
     def kind(self) -> str:
@@ -343,9 +297,7 @@ class Frame:
         self.views[...] = frame.reshape(self.views.shape).astype(self.views.dtype, copy=False)
 
     def geometry(self) -> tuple:
-        """Return the properties that are equal for an RGB frame and a depth frame of the same
-        view.
-        """
+        """Return the properties that RGB and depth frames of the same view have in common."""
         first = self.cameras[0]
         poses = sorted((camera.yaw, camera.place or ()) for camera in self.cameras)
         return (*poses, first.hfov, first.shape[:2])
@@ -361,11 +313,7 @@ def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
 
 
 def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
-    """Group frames into observations.
-
-    An RGB frame and a depth frame form one observation if they have the same geometry, both are
-    level, and no other frame has this geometry. Each remaining frame forms a separate observation.
-    """
+    """Group an RGB frame with the depth frame of the same view, if both are level and unique."""
     by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:
         by_geometry.setdefault(frame.geometry(), []).append(frame)
@@ -385,9 +333,7 @@ def corrupt_group(
     heading: float | None,
     stream: FrameStream,
 ) -> np.ndarray:
-    """Return the corrupted views of a group; parts of the corruption for other modalities are
-    ignored.
-    """
+    """Return the corrupted views of a group; parts for other modalities are ignored."""
     first = group.cameras[0]
     dtype = np.float32 if first.kind == DEPTH else np.uint8
     frames: dict[str, Any] = {first.kind: views.astype(dtype, copy=False)}

@@ -53,9 +53,7 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Mark a condition as finished: write ``entries`` and a checksum of the events to
-    ``done.json``.
-    """
+    """Write ``entries`` and a checksum of the events to ``done.json``."""
     write_json(folder / DONE, {**entries, "events": _seal(folder)})
 
 
@@ -68,9 +66,8 @@ def _seal(folder: Path) -> dict[str, Any]:
 def read_done(folder: Path) -> dict[str, Any] | None:
     """Return the entries of a finished condition, or None if it is not finished.
 
-    Raises:
-        ValueError: If ``done.json`` is damaged or belongs to a different condition, or the events
-            changed after it was written. The message names the file and says what to do.
+    Raises ValueError, with advice, if ``done.json`` is damaged or belongs to a different condition,
+    or if the events changed after it was written.
     """
     file = folder / DONE
     again = f"No file was changed. To continue, {measure_again(folder)}"
@@ -106,41 +103,22 @@ def _compare_events(folder: Path, entries: Mapping[str, Any]) -> None:
         raise damaged(folder, f"{len(reports.ends)} episodes ended, and {DONE} records {count}")
 
 
-def check_finished(folder: Path) -> None:
-    """Raise ValueError if a finished condition in ``folder``, the folder of a run, is damaged."""
-    for file in sorted((folder / "conditions").glob(f"*/{DONE}")):
-        read_done(file.parent)
-
-
 @dataclass
 class Cell:
-    """One run of the command under one condition.
+    """One run of the command under one condition."""
 
-    Attributes:
-        name: Name of the condition and of its folder.
-        config: The options of the run.
-        command: The user's command and its arguments.
-        folder: Folder for the events and the output of the command.
-        condition: Applies the corruption to frames and instructions.
-        label: Entries that are added to all rows.
-        settings: The settings that the result depends on. A finished condition is reused only if
-            its settings are the same.
-        environment: Environment variables that are set for the command.
-        clean: Folder of the clean condition, or None for the clean condition itself. Each episode
-            that ended there must also end under this condition.
-        recording: The folder that the option ``record=`` names.
-    """
-
-    name: str
+    name: str  # name of the condition and of its folder
     config: RunConfig
     command: tuple[str, ...]
-    folder: Path
-    condition: Condition
-    label: dict[str, Any]
+    folder: Path  # folder for the events and the output of the command
+    condition: Condition  # applies the corruption to frames and instructions
+    label: dict[str, Any]  # entries that are added to all rows
+    # what the result depends on; a finished condition is reused only if this is the same
     settings: dict[str, Any]
-    environment: dict[str, str]
+    environment: dict[str, str]  # environment variables that are set for the command
+    # folder of the clean condition, whose episodes must also end here; None if this one is clean
     clean: Path | None = None
-    recording: Path | None = None
+    recording: Path | None = None  # the folder that the option ``record=`` names
 
     @property
     def corruption(self) -> Corruption:
@@ -156,10 +134,7 @@ class Cell:
         return self.folder / LOG
 
     def entries(self) -> dict[str, Any] | None:
-        """Return the entries of ``done.json``, or None if the condition is not finished.
-
-        Raises ValueError if a file is damaged, or if the events do not match the entries.
-        """
+        """Return :func:`read_done` of the folder."""
         return read_done(self.folder)
 
     def changed_settings(self) -> list[str]:
@@ -168,10 +143,7 @@ class Cell:
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Return whether the condition is finished and need not be measured again.
-
-        Raises ValueError if settings changed.
-        """
+        """Return whether the result can be used. Raises ValueError if settings changed."""
         entries = self.entries()
         if entries is None:
             return False
@@ -196,18 +168,8 @@ class Cell:
             return f"it was not recorded in {self.recording}, or only in part"
         return ""
 
-    def changed_files(self, files: dict[str, Any]) -> list[str]:
-        """Return the files that changed after the condition finished.
-
-        Only the files that the command names are compared.
-        """
-        before = self.entries() or {"files": {}}
-        return [name for name, seen in before["files"].items() if files.get(name) != seen]
-
     def missing_episodes(self) -> list[str]:
-        """Return the episodes that ended under the clean condition, but not under this
-        condition.
-        """
+        """Return the episodes that ended when clean, but not under this condition."""
         return sorted(self.clean_reports().ends.keys() - self.reports().ends.keys())
 
     def clean_reports(self) -> Reports:
@@ -215,9 +177,7 @@ class Cell:
         return results.read(self.clean, self.config.count_closed) if self.clean else Reports()
 
     def extra_episodes(self) -> list[str]:
-        """Return the episodes that ended under this condition, but not under the clean
-        condition.
-        """
+        """Return the episodes that ended under this condition, but not when clean."""
         clean = self.clean_reports().ends
         return sorted(self.reports().ends.keys() - clean.keys()) if clean else []
 
@@ -239,10 +199,7 @@ class Cell:
         return results.rows(reports, self.corruption, self.label, self.config.rule, clean)
 
     def rule_problem(self) -> str:
-        """Return the reason why ``rule=`` cannot judge every episode, or "".
-
-        A success rate over only some of the episodes would be misleading.
-        """
+        """Return why ``rule=`` cannot judge every episode, or ""."""
         reports, rule = self.reports(), self.config.rule
         missing = results.count_missing(reports, rule) if rule else {}
         if not missing:
@@ -256,10 +213,7 @@ class Cell:
         )
 
     def describe_missing(self, missing: list[str]) -> str:
-        """Return a text such as "3 of clean's 6 episodes are missing".
-
-        "clean" is the name of the condition without corruption.
-        """
+        """Return a text such as "3 of clean's 6 episodes are missing"."""
         verb = "is" if len(missing) == 1 else "are"
         all_clean = counted(len(self.clean_reports().ends), "episode")
         return f"{len(missing)} of clean's {all_clean} {verb} missing"
@@ -307,7 +261,7 @@ class Cell:
 def describe_lost(reports: Reports) -> str:
     """Return a text like "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    If possible, the example is an episode for which the reason is known. The text ends with advice.
+    If possible, the example is an episode for which the reason is known.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
     reason = reports.dropped[name] or (
@@ -335,9 +289,7 @@ def hash_files(command: Sequence[str]) -> dict[str, dict[str, Any]]:
 
 
 def files_in(command: Sequence[str]) -> Iterator[Path]:
-    """Yield the existing files that a command names, as an argument or after the ``=`` in an
-    argument.
-    """
+    """Yield the existing files in a command, as an argument or after the ``=`` in an argument."""
     for word in command:
         for text in (word, word.partition("=")[2]):
             # a word of the command may be code instead of a file name

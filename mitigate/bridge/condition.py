@@ -67,35 +67,22 @@ class Observer:
 
 @dataclass
 class Condition:
-    """A corruption, its seed, and the settings with which it is applied.
-
-    Attributes:
-        corruption: The corruption.
-        seed: The corruption seed.
-        words: Corrupts instructions.
-        repeat: Number of this repetition of the same condition; if it is not 0, random numbers
-            depend on it.
-        missing: Value in metres for missing depth.
-        turn: Direction of increasing yaw, "left" or "right".
-        chosen: Chooses the episodes, or None to keep all.
-        guards: Guards that change instructions and frames after the corruption.
-        observer: Receives every episode and frame before the corruption (``recording.py``).
-    """
+    """A corruption, its seed, and the settings with which it is applied."""
 
     corruption: Corruption
     seed: int
     words: Words
+    # number of this repetition of the same condition; if it is not 0, random numbers depend on it
     repeat: int = 0
-    missing: float = 0.0
-    turn: str = "left"
-    chosen: Subset | None = None
-    guards: Guards = NO_GUARDS
+    missing: float = 0.0  # value in metres for missing depth
+    turn: str = "left"  # direction of increasing yaw, "left" or "right"
+    chosen: Subset | None = None  # chooses the episodes, or None to keep all
+    guards: Guards = NO_GUARDS  # guards that change instructions and frames after the corruption
+    # receives every episode and frame before the corruption (``recording.py``)
     observer: Observer = field(default_factory=Observer)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Return the key for random numbers: the seed, the scene file with the episode id, and the
-        number of the call.
-        """
+        """Return the key for random numbers of one call in an episode."""
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
@@ -131,17 +118,11 @@ def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> boo
 
 @dataclass
 class Words:
-    """Corrupts instructions.
+    """Corrupts instructions."""
 
-    Attributes:
-        tokenizer: The tokenizer for agents that read tokens. If it is None, changing the
-            instruction of such an agent is an error, because the agent would read the original
-            tokens.
-        length: Length of padded tokens, or None to keep the episode's length.
-    """
-
+    # for agents that read tokens; without it, they would read the original instruction
     tokenizer: Tokenizer | None = None
-    length: int | None = None
+    length: int | None = None  # length of padded tokens, or None to keep the episode's length
 
     def corrupt(
         self,
@@ -152,15 +133,9 @@ class Words:
     ) -> dict[str, Any]:
         """Return ``text`` and ``tokens`` for the agent, or an empty dict if nothing changes.
 
-        Args:
-            message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
-                ``category``.
-            corruption: The corruption of the condition.
-            key: Key from which all random numbers are derived.
-            guards: Guards that change the corrupted instruction.
-
-        Raises:
-            ValueError: If the corrupted instruction cannot be passed to the agent.
+        ``message`` begins the episode, with ``text``, ``tokens``, ``language`` and ``category``.
+        ``guards`` change the corrupted instruction. Raises ValueError if the result cannot be
+        passed to the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
@@ -181,33 +156,21 @@ class Words:
         if tokens is not None:
             if self.tokenizer is None:
                 raise ValueError(NO_TOKENIZER)
-            length = self.length or padded_length(tokens)
+            # a dataset that pads its tokens repeats the token 0 or 1 at the end
+            padded = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
+            length = self.length or (len(tokens) if padded else None)
             tokens = list(self.tokenizer.encode(changed, length)[0])
         return {"text": changed, "tokens": tokens}
 
 
 def load_tokenizer(name: str) -> Tokenizer:
-    """Load a tokenizer from a folder, a hub name or an R2R-CE file.
+    """Load a tokenizer from a folder, a hub name, or the vocabulary of an R2R-CE file.
 
-    Args:
-        name: A folder, a hub name, or a ``.json`` or ``.json.gz`` file with a vocabulary.
-
-    Raises:
-        ValueError: If the file or folder contains no tokenizer.
-        FileNotFoundError: If there is no such file or folder.
+    Raises ValueError if there is no tokenizer, or FileNotFoundError if there is no file or folder.
     """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))
     return tokenizer_for(name, {})
-
-
-def padded_length(tokens: list[Any]) -> int | None:
-    """Return the length to which a dataset pads its tokens, or None if it does not pad.
-
-    Padding means that the token 0 or 1 is repeated at the end.
-    """
-    repeated = len(tokens) > 2 and tokens[-1] == tokens[-2] and tokens[-1] in (0, 1)
-    return len(tokens) if repeated else None
 
 
 def hash_episode(name: str) -> float:
@@ -217,26 +180,18 @@ def hash_episode(name: str) -> float:
 
 @dataclass
 class Subset:
-    """Chooses about ``count`` episodes by a hash of their names.
+    """Chooses about ``count`` episodes by a hash of their names."""
 
-    Attributes:
-        count: The requested number of episodes.
-        folder: The run's folder, in which the choice of episodes is stored.
-        settled: If no new environment reports its episodes for this many seconds, all environments
-            are assumed to be known.
-    """
-
-    count: int
-    folder: Path
+    count: int  # the requested number of episodes
+    folder: Path  # the run's folder, in which the choice of episodes is stored
+    # if no new environment reports its episodes for this many seconds, all are assumed to be known
     settled: float = SETTLE_TIME
 
     def keep(self, names: list[str], least: int = 1) -> list[int]:
-        """Return the indices of the episodes to keep.
+        """Return the indices of the episodes to keep, at least ``least`` (0 or 1).
 
-        Args:
-            names: Names of the episodes of one environment, such as "scene.glb/17".
-            least: The minimum number of episodes to keep, 0 or 1. The default is 1, because Habitat
-                rejects an empty dataset.
+        ``names`` are those of one environment's episodes, such as "scene.glb/17". The default of
+        ``least`` is 1, because Habitat rejects an empty dataset.
         """
         bound = (self._choice() or self._choose(names))["bound"]
         hashes = [hash_episode(name) for name in names]
@@ -249,11 +204,7 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _choice(self) -> dict[str, Any] | None:
-        """Return the stored choice of episodes, or None if no choice is stored.
-
-        Its entry "bound" is the largest hash of a chosen episode. The entry "episodes" is the
-        requested number of episodes, and "of" is the number of episodes to choose from.
-        """
+        """Return the stored bound of hashes, request ("episodes") and total ("of"), or None."""
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -273,9 +224,7 @@ class Subset:
         return choice
 
     def least(self) -> int:
-        """Return the number of episodes that the program must run, or 0 before episodes are
-        chosen.
-        """
+        """Return how many episodes the program must run; 0 before episodes are chosen."""
         choice = self._choice()
         return min(self.count, choice["of"]) if choice else 0
 
@@ -306,9 +255,7 @@ def is_count(value: object) -> bool:
 
 
 def _read_name(line: str, file: Path) -> str:
-    """Return the episode name in a ``line`` of ``file``. Raises ValueError if the line is
-    damaged.
-    """
+    """Return the episode name in a ``line`` of ``file``."""
     try:
         name: object = json.loads(line)
     except (ValueError, RecursionError):

@@ -73,11 +73,9 @@ conf.register("run", RunConfig)
 
 
 def check_options(config: RunConfig, command: Sequence[str]) -> None:
-    """Check the options and the command.
+    """Raise ValueError if an option is invalid or the command is missing.
 
-    Raises:
-        ValueError: If an option is invalid, or there is no command.
-        OSError: If the folder of ``record=`` cannot be written.
+    Raises OSError if the folder of ``record=`` cannot be written.
     """
     check_choice(config.safeguard)
     if not command:
@@ -124,10 +122,7 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
 
 
 def _check_watched(name: str) -> None:
-    """Raise ValueError if ``name`` is neither a file nor a set environment variable.
-
-    Folders are rejected, because changes in them would not be noticed.
-    """
+    """Raise ValueError if ``name`` is neither a file nor a set environment variable."""
     if os.path.isdir(name):
         raise ValueError(
             f"watch must name files or environment variables, got the folder {name}. Name the "
@@ -146,11 +141,7 @@ def _check_watched(name: str) -> None:
 
 
 def command_name(command: Sequence[str]) -> str:
-    """Return a short name for a command.
-
-    This is the name of its first script. If there is no script, it is the first module (``-m``).
-    If there is no module either, it is the name of the executable.
-    """
+    """Return the name of a command's first script, else of its module, else of its program."""
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]
     return [*scripts, *modules, Path(command[0]).stem][0]

@@ -36,12 +36,7 @@ def numbered(message: Mapping[str, Any], answer: dict[str, Any]) -> dict[str, An
 
 
 def _describe_error(kind: str, error: Exception) -> str:
-    """Return the text to send to the agent's process if a message could not be answered.
-
-    Args:
-        kind: The kind of the message.
-        error: The error that was raised.
-    """
+    """Return the text that tells the agent's process why a message was not answered."""
     if type(error) in (ValueError, UnsafePathError):
         return str(error)
     if isinstance(error, OSError):  # the server, not the agent's process, caused the error
@@ -54,11 +49,7 @@ def _describe_error(kind: str, error: Exception) -> str:
 
 
 class SharedMemory:
-    """Memory for frames that the server and an environment's process share.
-
-    The memory is a mapped file in ``folder``. The file is deleted as soon as both sides have mapped
-    it.
-    """
+    """A mapped file for frames, deleted as soon as server and environment have mapped it."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -68,8 +59,7 @@ class SharedMemory:
     def make(self, size: int) -> dict[str, Any]:
         """Map ``size`` new bytes, and return the path and size for the other process.
 
-        Raises:
-            ValueError: If there is not enough free space.
+        Raises ValueError if there is not enough free space.
         """
         self.delete_file()
         self.file = self.folder / secrets.token_hex(8)
@@ -96,12 +86,8 @@ class SharedMemory:
 class Connection:
     """Serves one environment. Each kind of message has a method that computes the answer.
 
-    Args:
-        channel: The socket.
-        condition: Corrupts frames and instructions.
-        folder: The folder in which events are written.
-        token: The secret token that the other side must send.
-        memory: The folder for shared-memory files.
+    The other side must send ``token``. Events are written in ``folder``, and files for shared
+    memory in ``memory``.
     """
 
     def __init__(
@@ -181,13 +167,10 @@ class Connection:
             return None
 
     def _leave(self, fault: str | None = None) -> None:
-        """Record that the current episode was left unfinished; ``fault`` is the reason, if known.
-
-        Habitat's first call belongs to the reset, so an episode with only one call had no step. In
-        a loop without Habitat, each call is a step.
-        """
+        """Record that the current episode was left unfinished; ``fault`` is the reason if known."""
         if not self.open:
             return
+        # Habitat's first call belongs to the reset; in a loop without Habitat, each call is a step
         if self.calls > (0 if self.loop else 1):
             fields = {"scene": self.scene, "episode": self.episode, "fault": fault}
             write_event(self.folder, event="dropped", **fields)
@@ -247,9 +230,7 @@ class Connection:
         return words
 
     def _check_chosen(self) -> None:
-        """Raise ValueError if ``episodes=`` is set but the program did not ask which episodes to
-        run.
-        """
+        """Raise ValueError if the program ignores ``episodes=``."""
         if self.condition.chosen is None or self.chosen:
             return
         self.chosen = any(e["event"] == "dataset" for _, e in read_events(self.folder))
@@ -287,9 +268,7 @@ class Connection:
         return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record the result of an episode; if an exception is raised, the episode stays
-        unfinished.
-        """
+        """Record the result of an episode; if an exception is raised, it stays unfinished."""
         if message.get("how") == BROKEN:
             self._leave(_one_line(message.get("fault")))
             return {}
@@ -328,13 +307,10 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Receive the names of an environment's episodes, and reply with the indices to keep.
+        """Receive episode names, and reply with the indices to keep, or None to keep all episodes.
 
-        The reply is None if the program must run all episodes.
-
-        The names arrive in several messages. The final reply is sent when all ``count`` names are
-        known. ``least`` is the minimum number of episodes to keep, because Habitat rejects an empty
-        dataset.
+        The names arrive in several messages; the final reply is sent when all ``count`` names are
+        known. At least ``least`` episodes are kept, because Habitat rejects an empty dataset.
         """
         chosen = self.condition.chosen
         self.names += [str(key) for key in message["keys"]]

@@ -61,11 +61,8 @@ def measure_again(folder: Path) -> str:
 def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the number and the content of each line of the events in ``folder``.
 
-    If the last line has no line break, it is skipped: it is still being written, or the process
-    that wrote it was killed.
-
-    Raises:
-        ValueError: If any other line is not a JSON object with a string field ``event``.
+    A last line without a line break is skipped: it is still being written, or its process was
+    killed. Raises ValueError if any other line is not a JSON object with a string field ``event``.
     """
     file = folder / EVENTS
     if not is_regular(file):
@@ -86,11 +83,8 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 def put_aside(folder: Path, kind: str) -> None:
     """Move the files of an earlier attempt to ``<folder>.<kind>``, replacing that folder.
 
-    The lock file stays. Results that the program wrote to ``folder`` are also moved. ``done.json``
-    is deleted first, so that the condition immediately counts as unfinished.
-
-    Raises:
-        UnsafePathError: If ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
+    The lock file stays. ``done.json`` is deleted first, so that the condition immediately counts as
+    unfinished. Raises UnsafePathError, before any change, if ``<folder>.<kind>`` is no folder.
     """
     if any(path.name != LOCK for path in folder.iterdir()):
         aside = folder.with_name(f"{folder.name}.{kind}")
@@ -113,8 +107,7 @@ def episode_name(scene: str, episode: str) -> str:
 def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
     """Return the scene and the id from the message that begins an episode.
 
-    Raises:
-        ValueError: If the episode's name is not allowed in result rows.
+    Raises ValueError if the episode's name is not allowed in result rows.
     """
     scene, episode = str(message["scene"]), str(message["id"])
     constraint = allowed("episode_id", episode_name(scene, episode))
@@ -129,12 +122,9 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
 def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
     """Check the report about the end of ``episode``, and return its ``FIELDS``.
 
-    A distance that is NaN, or a path that contains NaN, is treated as unknown and omitted.
-
-    Raises:
-        ValueError: If a field is invalid. Metrics must be finite numbers that are allowed in rows
-            (only ``distance_to_goal`` may be infinite), the SPL must lie in [0, 1], counts and
-            distances must be >= 0, and the path must be a list of points [2] or [3].
+    A distance that is NaN, or a path that contains NaN, is omitted as unknown. Raises ValueError if
+    a metric is not a finite number allowed in rows (only ``distance_to_goal`` may be infinite), if
+    the SPL is not in [0, 1], a count or distance is negative, or the path has no points [2] or [3].
     """
     try:
         return _check_end({name: message[name] for name in FIELDS if message.get(name) is not None})
@@ -143,10 +133,7 @@ def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
 
 
 def _check_end(end: dict[str, Any]) -> dict[str, Any]:
-    """Check the report about the end of an episode, and return it without unknown values.
-
-    Raises the same errors as :func:`read_end`.
-    """
+    """Check the report about the end of an episode; return it without unknown values."""
     metrics = end.get("metrics", {})
     if not isinstance(metrics, dict):
         raise ValueError("metrics that do not map names to numbers")

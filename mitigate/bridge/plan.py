@@ -32,18 +32,11 @@ SETTINGS = ("seed", "episodes", "turn", "tokenizer", "missing", "token_length") 
 
 @dataclass(frozen=True)
 class Plan:
-    """A planned run with checked options.
-
-    Attributes:
-        config: The options.
-        command: The user's command and its arguments.
-        name: Name of the table's column, without the names of guards.
-        out: Output folder.
-    """
+    """A planned run with checked options."""
 
     config: RunConfig
     command: tuple[str, ...]
-    name: str
+    name: str  # name of the table's column, without the names of guards
     out: Path
 
 
@@ -56,9 +49,7 @@ def make_plan(config: RunConfig, command: Sequence[str]) -> Plan:
 
 
 def make_cells(plan: Plan) -> list[Cell]:
-    """Return all conditions of a run: first clean, then repeated clean runs, then corrupted
-    ones.
-    """
+    """Return all conditions: first clean, then repeated clean runs, then corrupted ones."""
     config, out = plan.config, plan.out
     clean, *others = conditions(config.names, config.severity, config.severity_depth)
     tokenizer = None if config.tokenizer is None else load_tokenizer(config.tokenizer)
@@ -101,10 +92,7 @@ def make_cells(plan: Plan) -> list[Cell]:
 
 
 def _adapter_environment(config: RunConfig) -> dict[str, str]:
-    """Return the environment variable that tells the hook which adapters to attach, if any.
-
-    Raises ValueError for an invalid ``adapters=``.
-    """
+    """Return the environment variable that tells the hook which adapters to attach."""
     if config.adapters is None:
         return {}
     from mitigate.encoders import plain_adapters
@@ -118,11 +106,7 @@ def _adapter_environment(config: RunConfig) -> dict[str, str]:
 
 
 def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the settings, except the corruption, that all results of a run depend on.
-
-    Returns:
-        The command and options, and the hashes of everything that changes the agent.
-    """
+    """Return the command with its options, and hashes of everything that changes the agent."""
     config = plan.config
     options = {"command": shlex.join(plan.command)}
     options |= {name: vars(config)[name] for name in SETTINGS}
@@ -154,10 +138,7 @@ def _as_text(values: dict[str, str | None] | None) -> str | None:
 
 
 def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
-    """Return the entries that are the same in all rows of a run.
-
-    The hash of the agent includes the restorer, safeguard, adapters and watched values.
-    """
+    """Return the entries that are the same in all rows of a run."""
     config = plan.config
     sha = _digest(shlex.join(plan.command))
     safeguard = None if agent["safeguard"] == "none" else agent["safeguard"]
@@ -194,8 +175,7 @@ def adapters_label(config: RunConfig) -> str | None:
 def split_adapters(adapters: str) -> tuple[str, str, str]:
     """Split ``adapters=`` into its folder, module and target (Class.attribute).
 
-    Raises:
-        ValueError: If the module or the class is missing.
+    Raises ValueError if the module or the class is missing.
     """
     folder, module, target = (*str(adapters).rsplit(":", 2), "", "")[:3]
     if not target.partition(".")[0] or not module:

@@ -44,18 +44,10 @@ class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
     A process belongs to the command if it is a descendant of the command, or if its environment
-    contains ``marker``. The marker identifies processes in a container, and processes that outlive
-    the supervisor.
+    contains ``marker``, which no other command has. The marker identifies processes in a container,
+    and processes that outlive the supervisor. The output of the command is written to ``log``.
 
-    Args:
-        words: The command and its arguments.
-        log: File that receives the output of the command.
-        environment: All environment variables of the command.
-        marker: A value in ``environment`` that no other command has; it identifies the processes of
-            this command.
-
-    Raises:
-        OSError: If the command cannot be started.
+    Raises OSError if the command cannot be started.
     """
 
     def __init__(
@@ -105,9 +97,7 @@ class Command:
         return sorted({*known, *_marked(self.marker)} - {self.process.pid, os.getpid()})
 
     def left(self) -> list[str]:
-        """Wait up to ``GRACE`` seconds until all processes of the command end; describe those that
-        remain.
-        """
+        """Wait up to ``GRACE`` seconds for all processes to end; describe those that remain."""
         until = time.monotonic() + GRACE
         while (pids := self.running()) and time.monotonic() < until:
             time.sleep(PAUSE)
@@ -116,10 +106,8 @@ class Command:
     def end(self, connected: Callable[[], bool]) -> None:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
-        Args:
-            connected: Function that returns whether any of the processes is connected to the
-                bridge. If the command has ended and no process is connected, SIGKILL follows at
-                once.
+        If the command has ended and no process is ``connected`` to the bridge, SIGKILL follows at
+        once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)
@@ -141,10 +129,7 @@ class Command:
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the content of the supervisor's next line, or {} if there is no new line.
-
-        The supervisor writes a whole line in one call, so a part of a line is never read.
-        """
+        """Return the supervisor's next line, or {} if there is none (lines are never partial)."""
         line = b"" if self._pipe.closed else self._pipe.readline()
         message: dict[str, Any] = json.loads(line) if line else {}
         return message
@@ -172,9 +157,7 @@ def _describe(pid: int) -> str:
 
 
 def processes() -> dict[int, tuple[int, bool]]:
-    """Map the pid of each process to its parent's pid and whether it runs; a zombie does not
-    run.
-    """
+    """Map each pid to its parent's pid and whether it runs (a zombie does not)."""
     states = {}
     for name in os.listdir("/proc"):
         if name.isdigit():
@@ -206,9 +189,7 @@ def descendants(root: int) -> list[int]:
 
 
 def signal_all(pids: Iterable[int], number: int) -> None:
-    """Send a signal to processes; ignore processes that have ended or belong to a different
-    user.
-    """
+    """Send a signal to processes; ignore those that have ended or belong to another user."""
     for pid in pids:
         with suppress(ProcessLookupError, PermissionError):
             os.kill(pid, number)
@@ -255,11 +236,7 @@ def _report(pipe: int, **message: object) -> None:
 
 
 def _reap(child: int, pipe: int) -> bool:
-    """Reap ended processes; return whether any process still runs.
-
-    The forked process ``child`` reports the exit status of the program. If the forked process
-    itself failed or was killed, this function reports the status of the forked process instead.
-    """
+    """Reap ended processes, report a failure of ``child``, and return whether any process runs."""
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)

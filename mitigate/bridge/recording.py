@@ -57,17 +57,11 @@ def _episode_folder(scene: str, episode: str) -> str:
 
 @dataclass
 class Recorder(Observer):
-    """Observer that writes frames, poses and results to ``folder``.
+    """Observer that writes frames, poses and results to ``folder``, the folder of the condition.
 
-    An episode is first written to a temporary folder. When the episode ends, this folder replaces
-    any earlier recording of the episode.
-
-    Attributes:
-        folder: The folder of the condition, in the folder that the user named.
-        output_root: Checks during an episode that no other process replaces the folder.
-        draft: The temporary folder of the current episode.
-        target: The final folder of the current episode.
-        cameras: The cameras of the current episode.
+    An episode is first written to a temporary folder (``draft``). When the episode ends, this
+    replaces any earlier recording of the episode (``target``). During an episode, ``output_root``
+    checks that no other process replaces the folder.
     """
 
     folder: Path
@@ -137,12 +131,7 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete unfinished episodes in the recording of a condition.
-
-    An unfinished episode is deleted if the process that was recording it has ended.
-
-    Args:
-        folder: The folder of the recording.
+    """Delete the episodes in a recording whose process ended before it finished them.
 
     Raises:
         UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO

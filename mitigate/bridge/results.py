@@ -38,40 +38,29 @@ COMMON = {"category": RULES["wmnav"], "text": RULES["etpnav"]}
 
 @dataclass
 class Reports:
-    """All reports that a command's processes have sent under one condition.
+    """All reports that a command's processes have sent under one condition."""
 
-    Attributes:
-        hellos: The first message of each connection, with the versions of Python and libraries.
-        cameras: The first description of each camera.
-        unread: Descriptions of observations that look like frames, but do not come from cameras.
-            They belong to the first call. Each contains the type of its sensor.
-        ends: Maps the name of each episode to the event of its end (:meth:`end`).
-        repeated: Number of episodes that ended more than once.
-        dropped: Episodes that were left unfinished, with the reason if known.
-        parallel: Whether an episode ended while another one was running.
-        problems: Failures of the server, and reasons why processes stopped themselves.
-        first: The event that began the first episode.
-        languages: Language of the instruction, by episode name.
-        adapted: Whether adapters were attached to an encoder.
-        connected: Number of environments that are connected now.
-        announced: Number of episodes that the program must run.
-        ended: Number of episodes that ended.
-    """
-
+    # the first message of each connection, with the versions of Python and libraries
     hellos: list[dict[str, Any]] = field(default_factory=list)
+    # the first description of each camera
     cameras: list[dict[str, Any]] = field(default_factory=list)
+    # observations of the first call that look like frames, but do not come from cameras
     unread: list[str] = field(default_factory=list)
+    # maps the name of each episode to the event of its end (:meth:`end`)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
-    repeated: int = 0
+    repeated: int = 0  # number of episodes that ended more than once
+    # episodes that were left unfinished, with the reason if known
     dropped: dict[str, str] = field(default_factory=dict)
-    parallel: bool = False
+    parallel: bool = False  # whether an episode ended while another one was running
+    # failures of the server, and reasons why processes stopped themselves
     problems: list[str] = field(default_factory=list)
-    first: dict[str, Any] = field(default_factory=dict)
+    first: dict[str, Any] = field(default_factory=dict)  # the event that began the first episode
+    # language of the instruction, by episode name
     languages: dict[str, str | None] = field(default_factory=dict)
-    adapted: bool = False
-    connected: int = 0
-    announced: int = 0
-    ended: int = 0
+    adapted: bool = False  # whether adapters were attached to an encoder
+    connected: int = 0  # number of environments that are connected now
+    announced: int = 0  # number of episodes that the program must run
+    ended: int = 0  # number of episodes that ended
 
     @property
     def lost(self) -> list[str]:
@@ -81,8 +70,8 @@ class Reports:
     def end(self, name: str, event: dict[str, Any]) -> None:
         """Record the event that reports the end of an episode.
 
-        If an episode ended several times, the first event counts. There is one exception: an event
-        that says that the episode was over replaces an earlier reset or close.
+        The first event counts, but an event that says that the episode was over replaces an earlier
+        reset or close.
         """
         before = self.ends.get(name)
         if before is None or (_how(event) == OVER != _how(before)):
@@ -104,14 +93,8 @@ class Reports:
 def read(folder: Path, count_closed: bool = False) -> Reports:
     """Read the reports from the events in ``folder``; ignore an incomplete last line.
 
-    Args:
-        folder: The folder of a condition.
-        count_closed: Whether to count an episode whose Env was closed before the episode was over,
-            while other Envs ran in parallel.
-
-    Raises:
-        ValueError: If another line is damaged. The message names the file and the line, and says
-            what to do.
+    With ``count_closed``, an episode counts even if its Env was closed before it was over, while
+    other Envs ran in parallel. Raises ValueError, with advice, if another line is damaged.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -129,14 +112,7 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
 
 
 def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None:
-    """Add one event to the reports.
-
-    Args:
-        reports: The reports from all earlier events.
-        event: One line of the events.
-        began: For each connection, the number of episodes that had ended when its current episode
-            began.
-    """
+    """Add one event; ``began`` maps each connection to the number of ends before its episode."""
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
     if kind == "hello":
@@ -183,8 +159,7 @@ def rows(
         reports: The reports of the condition.
         corruption: The corruption of the condition.
         label: Values that are the same in all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. If it is None
-            and the agent reports no Success measure, all rows are judged by the common rule.
+        rule: A name in ``RULES``, which replaces the agent's own Success measure, or None.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     rules = _choose_rules(reports, rule, clean)
@@ -208,20 +183,14 @@ def rows(
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
-    """Return the requested success rule and the common success rule.
-
-    The common rule is omitted in each of these cases:
-
-    - The task has no common rule. An example is PointNav, which has neither words nor objects.
-    - An episode can be judged by the agent's own rule, but not by the common rule.
-    - Neither this condition nor the clean condition reports a distance.
-    """
+    """Return the requested success rule and, if it can judge the episodes, the common rule."""
     requested = [RULES[rule]] if rule else []
     task = next((name for name in COMMON if reports.first.get(name)), None)
-    if task is None:
+    if task is None:  # such as PointNav
         return requested
     ends = [*reports.ends.values()]
     with_success = [end for end in ends if "success" in end.get("metrics", {})]
+    # the agent's own rule can judge an episode that the common rule cannot
     partial = any(_missing(end, COMMON[task]) for end in with_success)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
@@ -250,33 +219,22 @@ def _goal_distance(end: dict[str, Any]) -> Any:
 
 
 def _missing(end: dict[str, Any], rule: Rule) -> str:
-    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or "".
-
-    A reported failure without a distance is a failure by every rule. An episode that ends too far
-    from the goal is also a failure, with or without STOP.
-    """
+    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or ""."""
     metres = _goal_distance(end)
+    # a failure without a distance, or too far from the goal, is a failure by every rule
     if metres is None:
         return "" if end.get("metrics", {}).get("success", 1) <= 0 else "distance_to_goal"
     return "stopped" if end.get("stopped") is None and rule.stop and rule.met(metres, True) else ""
 
 
 def count_missing(reports: Reports, rule: str) -> dict[str, int]:
-    """Count the episodes that lack an argument that ``rule`` needs.
-
-    Returns:
-        A dict that maps each missing argument to the number of episodes that lack it.
-    """
+    """Count the episodes that lack an argument that ``rule`` needs, by argument."""
     counts = Counter(_missing(end, RULES[rule]) for end in reports.ends.values())
     return {name: count for name, count in counts.most_common() if name}
 
 
 def _spl(end: dict[str, Any], success: bool) -> float:
-    """Return the SPL of the reported path, or else the SPL that the agent reported.
-
-    The SPL of a successful episode is 1 if the agent reported neither a path nor an SPL. Such
-    episodes are counted by :func:`count_without_path`.
-    """
+    """Return the SPL of the reported path, else the reported SPL, else 1 for a success."""
     start, length = _shortest_path(end), _path_length(end)
     if not success:
         return 0.0
@@ -313,9 +271,7 @@ def maybe_normalised(reports: Reports) -> list[str]:
 
 
 def _shortest_path(end: dict[str, Any]) -> float | None:
-    """Return the length of the shortest path in metres, or None if it is unknown or does not
-    exist.
-    """
+    """Return the length of the shortest path in metres, or None without a (known) path."""
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 

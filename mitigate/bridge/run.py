@@ -23,9 +23,10 @@ from typing import ClassVar
 from omegaconf import DictConfig
 
 from mitigate.bridge.attempt import Attempt
-from mitigate.bridge.cell import Cell, check_finished, hash_files
+from mitigate.bridge.cell import Cell, hash_files, read_done
 from mitigate.bridge.condition import NO_TOKENIZER, needs_tokenizer, why_not_applicable
 from mitigate.bridge.config import RunConfig
+from mitigate.bridge.events import DONE
 from mitigate.bridge.plan import Plan, make_cells, make_plan
 from mitigate.cluster.launcher import chosen, results
 from mitigate.core import conf
@@ -50,17 +51,14 @@ def split_command(arguments: list[str]) -> tuple[list[str], list[str]]:
 def run(config: RunConfig, command: Sequence[str]) -> Path:
     """Run ``command`` under all conditions; return the output folder.
 
-    Args:
-        config: The options.
-        command: The user's command and its arguments.
-
     Raises:
         ValueError: If an option is invalid, or the command failed under some conditions. In that
             case, the error is raised after all other conditions have been measured.
     """
     plan = make_plan(config, command)
     cells = make_cells(plan)
-    check_finished(plan.out)
+    for file in sorted((plan.out / "conditions").glob(f"*/{DONE}")):
+        read_done(file.parent)  # raises ValueError if the folder is damaged
     with output_folder(plan.out):
         _measure(plan, cells)
     return plan.out
@@ -135,13 +133,7 @@ def _check_rule(cells: Sequence[Cell]) -> None:
 
 
 def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """Return the conditions whose corruption can reach the agent.
-
-    The function prints the other conditions, and the number of instructions in other languages.
-
-    Returns:
-        The conditions, and the names of conditions that need a tokenizer but have none.
-    """
+    """Return the conditions that can reach the agent, and those that lack a tokenizer."""
     applicable: list[Cell] = []
     untokenized: list[str] = []
     reports = cells[0].reports()
@@ -160,17 +152,16 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Print and return the files that have changed since a condition finished.
-
-    Only the files that the command line names are compared. Files in ``known``, and files that the
-    command created, are returned but not printed.
-    """
+    """Return the files that changed since a condition finished; print those not in ``known``."""
     changed: dict[str, list[str]] = {}
+    created: set[str] = set()
     now = hash_files(cells[0].command)
     for cell in cells:
-        for file in cell.changed_files(now):
-            changed.setdefault(file, []).append(cell.name)
-    created = {file for cell in cells for file in (cell.entries() or {}).get("created", ())}
+        if entries := cell.entries():
+            created.update(entries["created"])
+            for file, before in entries["files"].items():
+                if now.get(file) != before:
+                    changed.setdefault(file, []).append(cell.name)
     for file, names in changed.items():
         if file in known or file in created:
             continue
@@ -186,9 +177,7 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
 
 
 def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run unfinished conditions with the launcher, ``plan.config.jobs`` at a time; return
-    problems.
-    """
+    """Run unfinished conditions with the launcher; return the problems."""
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
@@ -244,18 +233,12 @@ def _start(attempt: Attempt) -> str:
 
 
 def _report(cell: Cell, problem: str, single: bool) -> list[str]:
-    """Print one line about a condition that ended: its summary or its error message.
-
-    The error message is cut to ``MAX_REASON`` characters. It is omitted if the run has only this
-    condition (``single``), because the full message is then printed next.
-
-    Returns:
-        A list with the error message, preceded by the condition's name; empty if there is none.
-    """
+    """Print one line about a condition that ended; return its problem, if any."""
     if not problem:
         say(f"{cell.name}: {cell.summary()}")
         return []
     line = problem.splitlines()[0]
+    # the full message of a single condition is printed next
     reason = "" if single else f": {line[:MAX_REASON]}{'...' * (len(line) > MAX_REASON)}"
     say(f"{cell.name}: failed{reason}")
     return [f"{cell.name}: {problem}"]
@@ -264,14 +247,10 @@ def _report(cell: Cell, problem: str, single: bool) -> list[str]:
 class ConditionTask:
     """Task for running conditions on other machines (``core/workers.py``).
 
-    Each job runs one condition; a job is represented by the name of its condition. The result of a
-    job is a description of its problem, or "". The folder of the run must be on a file system that
-    all machines can access. Finished conditions are kept. If a machine dies, its condition is
-    measured again from the start on a different machine, because the user's program cannot resume.
-
-    Args:
-        plan: The run; the path of its output folder must be absolute.
-        folder: The folder in which the command runs.
+    Each job is the name of a condition; its result is a description of its problem, or "". All
+    machines must share the file system of the run's folder, whose path must be absolute. If a
+    machine dies, its condition is measured again from the start, because the user's program cannot
+    resume. The command runs in ``folder``.
     """
 
     preload: ClassVar[str] = "mitigate.bridge.run"
@@ -311,11 +290,7 @@ class ConditionTask:
 
 
 def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run conditions on the launcher's machines, ``jobs`` at a time; return the problems.
-
-    Raises:
-        WorkersDied: If several workers died while running the same condition.
-    """
+    """Run conditions on the launcher's machines; return the problems."""
     if not cells:
         return []
     task = ConditionTask(replace(plan, out=plan.out.resolve()), Path.cwd())

@@ -24,7 +24,7 @@ from mitigate.bridge.connection import Connection
 from mitigate.bridge.hook import mitigate_hook
 from mitigate.core.files import make_folder
 from mitigate.core.signals import raise_ended
-from mitigate.corruptions import Corruption, FrameStream
+from mitigate.corruptions import FrameStream
 
 HOOK = Path(mitigate_hook.__file__).parent
 # exists on Linux; on other systems, the folder for temporary files is used
@@ -34,10 +34,8 @@ MEMORY = Path("/dev/shm")
 class Listener:
     """Server for the processes of a command; it runs in a separate process until it is closed.
 
-    Args:
-        condition: Corrupts frames and instructions.
-        folder: Folder to which the events are written as JSON lines.
-        patience: Seconds that a process of the command waits for an answer before it stops.
+    Events are written to ``folder``. A process of the command waits ``patience`` seconds for an
+    answer before it stops.
     """
 
     def __init__(self, condition: Condition, folder: Path, patience: float = 25.0) -> None:
@@ -54,7 +52,9 @@ class Listener:
         self.pid = 0
 
     def __enter__(self) -> Listener:
-        warm_up(self.condition.corruption)  # warm up before the command waits for answers
+        # compile the code of the corruption before the command waits for answers
+        frames = {"rgb": np.zeros((32, 32, 3), np.uint8), "depth": np.ones((32, 32, 1), np.float32)}
+        FrameStream().corrupt(frames, self.condition.corruption, 0)
         listening = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         listening.bind(self.address)  # the socket is in a folder that only this user can access
         os.chmod(self.address, 0o600)
@@ -138,9 +138,3 @@ class Listener:
                 finally:
                     os._exit(0)
             channel.close()
-
-
-def warm_up(corruption: Corruption) -> None:
-    """Compile the code of a corruption in advance, so that the first frame does not wait for it."""
-    rgb, depth = np.zeros((32, 32, 3), np.uint8), np.ones((32, 32, 1), np.float32)
-    FrameStream().corrupt({"rgb": rgb, "depth": depth}, corruption, 0)

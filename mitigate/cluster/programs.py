@@ -32,21 +32,14 @@ REASON_WIDTH = 400
 
 @dataclass(frozen=True)
 class Chain:
-    """Programs that run one after the other. The chain ends when a program exits with an error.
-
-    Attributes:
-        name: name for messages.
-        programs: for each program, its kind and its command line (the program and its arguments).
-        log: file for the output of the programs.
-        folder: working directory.
-        environment: additional environment variables.
-    """
+    """Programs that run one after the other. The chain ends when a program exits with an error."""
 
     name: str
+    # for each program, its kind and its command line (the program and its arguments)
     programs: tuple[tuple[str, tuple[str, ...]], ...]
-    log: Path
+    log: Path  # file for the output of the programs
     folder: Path
-    environment: dict[str, str] = field(default_factory=dict)
+    environment: dict[str, str] = field(default_factory=dict)  # additional environment variables
 
 
 class Running:
@@ -104,10 +97,7 @@ def _last_line(log: Path) -> str:
 
 
 class ChainTask:
-    """Task that runs chains in workers (``core/workers.py``).
-
-    The result of a chain is a text: the description of its problem, or "" after success.
-    """
+    """Task that runs chains in workers; the result of a chain is its problem, or ""."""
 
     preload: ClassVar[str] = "mitigate.cluster.programs"
 
@@ -138,12 +128,9 @@ def run(
 ) -> None:
     """Run ``chains`` on the machines of ``launcher``, at most ``jobs`` chains at a time.
 
-    When a chain has ended, ``ended`` is called with the chain's number and its problem, or "" after
-    success. If this function is interrupted, all chains are stopped. Programs on this machine can
-    save their state first.
-
-    Raises:
-        WorkersDied: If the worker process that ran a chain died too often.
+    When a chain has ended, ``ended`` is called with the chain's number and its problem, or "". If
+    this function is interrupted, all chains are stopped; programs on this machine can save their
+    state first. Raises WorkersDied if the worker process that ran a chain died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)

@@ -31,10 +31,9 @@ class Worker:
         self.contexts = ExitStack()
 
     def started(self) -> None:
-        """Return once the actor runs and its task is ready.
+        """Return once the actor runs and its task is ready. Errors of the setup are raised.
 
-        An actor may have to wait for room in the cluster, so it receives jobs only after this
-        method has returned. Errors of the setup are raised unchanged.
+        An actor may have to wait for room in the cluster, so it receives jobs only afterwards.
         """
         self.contexts.enter_context(self.task.ready())
 
@@ -178,9 +177,7 @@ class _Crew:
         self.busy[stream] = (actor, deque(group), attempt)
 
     def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
-        """Yield the next result of a stream, or handle the end of the group or the death of the
-        actor.
-        """
+        """Yield the next result of a stream, or handle the end of its group or of its actor."""
         actor, left, attempt = self.busy[stream]
         try:
             result = self.ray.get(next(stream))

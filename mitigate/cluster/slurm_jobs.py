@@ -38,23 +38,14 @@ TASK = "task.pickle"  # only this file, which the submitting process wrote, is u
 
 @dataclass
 class _Share:
-    """A submitted SLURM job and its part of the work.
+    """A submitted SLURM job and its part of the work."""
 
-    Attributes:
-        job: the job object of submitit.
-        groups: groups of (number, job).
-        lines: the file to which the SLURM job writes results.
-        left: the jobs that have no result yet, by number.
-        attempt: number of the attempt.
-        read: number of bytes of ``lines`` that were read.
-    """
-
-    job: Any
-    groups: Sequence[Sequence[tuple[int, Any]]]
-    lines: Path
-    left: dict[int, Any]
+    job: Any  # of submitit
+    groups: Sequence[Sequence[tuple[int, Any]]]  # of (number, job)
+    lines: Path  # file to which the SLURM job writes results
+    left: dict[int, Any]  # jobs that have no result yet, by number
     attempt: int
-    read: int = 0
+    read: int = 0  # number of bytes of ``lines`` that were read
 
 
 def results(
@@ -111,10 +102,7 @@ def results(
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Wait until the SLURM jobs have ended after their last result, and then remove their folder.
-
-    If a job has not ended after ``LATE`` seconds, the folder is kept.
-    """
+    """Wait up to ``LATE`` seconds until the SLURM jobs have ended, and then remove their folder."""
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -190,10 +178,7 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield each new result of a SLURM job; an incomplete last line is read later.
-
-    If the job reported an error instead of a result, the function raises a ValueError.
-    """
+    """Yield each new result of a SLURM job. Raises ValueError if the job reported an error."""
     if not share.lines.is_file():
         return
     with open(share.lines, "rb") as file:
@@ -228,10 +213,7 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Return the number of the next attempt to run the unfinished jobs of ``share``.
-
-    Raises WorkersDied after too many attempts.
-    """
+    """Return the number of the next attempt to run the unfinished jobs of ``share``."""
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit has its own errors for jobs without a result

@@ -41,11 +41,9 @@ UNKNOWN = "other"  # Hugging Face's name for an unknown licence
 def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
     """Return the entries of a card that describe how ``agent`` was trained.
 
-    The entries come from the resolved config ``cfg`` of the run and from this checkout.
-
-    Raises:
-        FileNotFoundError: If the base or a teacher of the run is missing.
-        ValueError: If ``cfg`` has an entry with a value that training never writes.
+    The entries come from the resolved config ``cfg`` of the run and from this checkout. Raises
+    FileNotFoundError if the base or a teacher of the run is missing, and ValueError if ``cfg`` has
+    a value that training never writes.
     """
     _check(cfg)
     teachers = sorted({path for path in _teachers(cfg.get("stages")) if path != "start"})
@@ -70,10 +68,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 
 def reference(weights: str) -> dict[str, str]:
-    """Return the path of ``weights`` and its sha256.
-
-    A path below the current folder is made relative.
-    """
+    """Return the path of ``weights`` (relative below the current folder) and its sha256."""
     path = find(weights)
     adapters_only = loading.adapters_only(path)
     file = path / adapters.WEIGHTS if adapters_only else checkpoint.weights_file(path)
@@ -81,10 +76,7 @@ def reference(weights: str) -> dict[str, str]:
 
 
 def commit() -> str | None:
-    """Return the git commit of the checkout.
-
-    Returns None if this is not a checkout or git is missing.
-    """
+    """Return the git commit of the checkout, or None without a checkout or git."""
     return _git("rev-parse", "HEAD") or None
 
 
@@ -94,10 +86,7 @@ def uncommitted() -> bool:
 
 
 def _git(*words: str) -> str:
-    """Run git in the checkout and return its output.
-
-    Returns "" if this is not a checkout or git is missing.
-    """
+    """Run git in the checkout and return its output, or "" without a checkout or git."""
     # if the package is installed, it may be inside the git repository of another project
     if not (ROOT / ".git").exists():
         return ""
@@ -109,33 +98,17 @@ def _git(*words: str) -> str:
 
 
 def weights_of(row: Row) -> str:
-    """Return the hash of the weights in a row.
-
-    Rows of older versions store it under ``agent``.
-    """
+    """Return the hash of the weights in a row, which older versions store under ``agent``."""
     return str(row.get("weights", row["agent"]))
 
 
-def metrics(rows: Iterable[Row], agents: set[str]) -> list[dict[str, Any]]:
-    """Return SR, SPL and PRS with 95 % intervals, from the rows of ``agents``.
+def metrics(rows: Iterable[Row]) -> list[dict[str, Any]]:
+    """Return SR, SPL and PRS with 95 % intervals, from the rows of one agent.
 
-    Args:
-        rows: result rows; rows of other agents are ignored.
-        agents: hashes of the agents' weights.
-
-    Returns:
-        One entry per split, suite, success rule and severity; intervals are [value, low, high].
+    One entry per split, suite, success rule and severity; intervals are [value, low, high].
     """
-    mine = [{**row, "name": "agent", "agent": "agent"} for row in rows if weights_of(row) in agents]
+    mine = [{**row, "name": "agent", "agent": "agent"} for row in rows]
     return [_entry(section) for section in sections(mine)] if mine else []
-
-
-def rows_agent(rows: Iterable[Row], agents: set[str]) -> list[str]:
-    """Return the agent fingerprints of the rows whose weight hash is in ``agents``.
-
-    Tables and the leaderboard identify agents by fingerprint.
-    """
-    return sorted({str(row["agent"]) for row in rows if weights_of(row) in agents})
 
 
 def readme(card: dict[str, Any]) -> str:
@@ -170,10 +143,7 @@ def _entry(section: Section) -> dict[str, Any]:
 
 
 def _heading(section: Section, block: str, retained: Retained) -> str:
-    """Return the label of a PRS in the model card: the name of its block of corruptions.
-
-    If the PRS does not cover all corruptions of the block, the label also states their number.
-    """
+    """Return the name of a block of corruptions, with their number if some are missing."""
     count = len(retained.corruptions)
     whole = section.whole(block)
     return block if count >= whole else f"{block}, {count} of {whole}"
@@ -219,10 +189,7 @@ def _origin(card: dict[str, Any]) -> str:
 
 
 def _hashes(card: dict[str, Any]) -> str:
-    """Return a string with the hashes of the exported and the original weights.
-
-    The string also names the agent fingerprints in the result rows.
-    """
+    """Return a sentence with the hashes of the weights and the fingerprints in result rows."""
     exported, before = card["agent"], card.get("run_agent", card["agent"])
     rounded = f" (`{before}` before rounding)" if before != exported else ""
     names = " and ".join(f"`{agent}`" for agent in card.get("rows_agent", ()))
@@ -343,12 +310,10 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return the front matter of a README for Hugging Face.
+    """Return the front matter of a README for Hugging Face, YAML between two lines of ``---``.
 
-    The front matter is YAML between two lines of ``---``. After ``hf upload``, the hub shows a
-    model page with the library, the licence, tags and metrics (docs/deployment.md). If there are no
-    metrics, there is no ``model-index``. The format is described in
-    https://github.com/huggingface/hub-docs/blob/main/modelcard.md
+    The hub shows a model page with the library, the licence, tags and metrics (docs/deployment.md).
+    The format is described in https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"
     fields: dict[str, Any] = {

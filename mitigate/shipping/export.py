@@ -1,10 +1,6 @@
-"""Export the agent of a run as a folder for deployment (``export_command.py`` has the command).
+"""Export the agent of a run as a folder for deployment.
 
-The folder ``checkpoints/hardened/<name>`` contains ``config.yaml``, ``program.pt2``, a card, a
-README, and the weights. If only adapters were trained, the folder contains the adapters and a
-reference to their base instead of the weights. The folder is first written to a temporary place and
-loaded in a new process. The folder is moved to its final place only if the loaded agent gives the
-same outputs on fixed inputs.
+``export_command.py`` has the command and describes the folder.
 """
 
 from __future__ import annotations
@@ -41,7 +37,7 @@ from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
 from mitigate.shipping import programs
-from mitigate.shipping.card import facts, metrics, readme, rows_agent, weights_of
+from mitigate.shipping.card import facts, metrics, readme, weights_of
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -63,18 +59,12 @@ _TRAIN = "Run `make train` to the end, then name its folder (runs/...)."
 
 @dataclass
 class Walks:
-    """Settings of a check that runs clean episodes with the exported agent in a new process.
+    """Settings of a check that runs clean episodes with the exported agent in a new process."""
 
-    Attributes:
-        make_agent: function that constructs the agent. The exported weights are then loaded into
-            it.
-        make_world: function that constructs the world.
-        episodes: a list of episodes. The check runs the first ``WALKS`` of them.
-    """
-
+    # constructs the agent into which the exported weights are loaded
     make_agent: Callable[[], nn.Module]
     make_world: Callable[[], World]
-    episodes: Sequence[Episode]
+    episodes: Sequence[Episode]  # the check runs the first ``WALKS``
 
     def measures(self, agent: Any) -> list[dict[str, Any]]:
         """Return the hash of the weights of ``agent``, and the measures of each episode."""
@@ -133,10 +123,8 @@ def export(
 def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any]:
     """Return the config and the agent of the finished run in the folder ``run``.
 
-    Raises:
-        FileNotFoundError: If there is no finished run.
-        ValueError: If the run cannot be exported, if its kind of agent needs ``walks``, or if its
-            weights overflow in float16.
+    Raises FileNotFoundError if there is no finished run, and ValueError if it cannot be exported,
+    if its agent needs ``walks``, or if its weights overflow in float16.
     """
     weights, config = run / "agent" / checkpoint.WEIGHTS, run / loading.CONFIG
     loading.reject_other_models(run)
@@ -168,17 +156,10 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 
 def add_programs(folder: Path) -> Path:
-    """Export the agent in the hardened ``folder`` again, and replace its ``program.pt2``.
+    """Export the agent in the hardened ``folder`` again, and return the path of ``program.pt2``.
 
-    The outputs of the program on the probe inputs are compared with the outputs of the agent.
-
-    Returns:
-        The path of the file.
-
-    Raises:
-        FileNotFoundError: If ``folder`` is not a complete hardened folder.
-        ValueError: If the folder is damaged, if it was exported without programs, or if the outputs
-            differ.
+    Raises FileNotFoundError if ``folder`` is not a complete hardened folder, and ValueError if it
+    is damaged, was exported without programs, or if its program and agent differ in outputs.
     """
     folder = find(folder)
     folders.repair_folder(folder.resolve())
@@ -218,10 +199,7 @@ def _input_size(folder: Path) -> int:
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
-    """Raise ValueError if ``target`` exists and must not be replaced.
-
-    With ``overwrite``, only a folder that an earlier export wrote may be replaced.
-    """
+    """Raise ValueError if ``target`` exists, unless an earlier export wrote it (``overwrite``)."""
     if not os.path.lexists(target):
         return
     if not overwrite:
@@ -242,11 +220,7 @@ def _check_free(target: Path, overwrite: bool) -> None:
 def check_outputs(folder: str, expected: str) -> None:
     """Raise ValueError unless the agent and the programs in ``folder`` give the expected outputs.
 
-    ``export`` runs this in a new process.
-
-    Args:
-        folder: the hardened folder.
-        expected: safetensors file with the expected outputs on the probe inputs.
+    ``export`` runs this in a new process. ``expected`` is a safetensors file.
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
@@ -291,7 +265,7 @@ def _write(
         shipped = copy.deepcopy(agent)
         checkpoint.load_weights(shipped, draft)
     weights = {checkpoint.weights_sha(a) for a in (agent, shipped)}
-    result_rows_of_agent = _rows(run, rows, weights)
+    agent_rows = _rows(run, rows, weights)
     checks: dict[str, Any] = {"program": False, "latency_ms": {}, "checked": {"walks": WALKS}}
     expected: dict[str, Tensor] = {}
     if walks is None:
@@ -302,9 +276,10 @@ def _write(
         **known,
         "agent": checkpoint.weights_sha(shipped),  # this entry and run_agent are hashes of weights
         "run_agent": checkpoint.weights_sha(agent),
-        "rows_agent": rows_agent(result_rows_of_agent, weights),
+        # tables and the leaderboard identify agents by fingerprint
+        "rows_agent": sorted({str(row["agent"]) for row in agent_rows}),
         "adapters_only": adapters_only,
-        "metrics": metrics(result_rows_of_agent, weights),
+        "metrics": metrics(agent_rows),
         **checks,
     }
     write_text(draft / loading.README, readme(card))
@@ -322,12 +297,7 @@ def _write(
 def _programs(
     draft: Path, agent: TopologicalAgent, shipped: TopologicalAgent, onnx: bool
 ) -> tuple[dict[str, Any], dict[str, Tensor]]:
-    """Write the exported programs of ``shipped``.
-
-    Returns:
-        The card's entries that describe the programs, and the outputs of ``shipped`` on the probe
-        inputs.
-    """
+    """Write the programs of ``shipped``; return their entries of the card, and its outputs."""
     size = agent.rgb_encoder.size
     inputs = programs.probe(agent, size)
     print("exporting the programs", flush=True)
@@ -372,10 +342,7 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
 
 
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
-    """Return the rows in ``run`` and ``rows`` whose weight hash is in ``agents``.
-
-    Raises ValueError if ``rows`` contains no row of these weights.
-    """
+    """Return the rows in ``run`` and ``rows`` whose weight hash is in ``agents``."""
     try:
         run_rows = result_rows.gather([run])
     except FileNotFoundError:
@@ -391,11 +358,10 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 
 
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
-    """Yield the rows of the exported agent, which are rows whose weight hash is in ``weights``.
+    """Yield the rows of the exported agent, whose weight hash is in ``weights``.
 
-    The same weights count as a different agent if a sensor is blanked or a guard is added. If the
-    rows come from several such agents, only the agent in ``run_rows`` is used. Raises ValueError if
-    this agent is not unique.
+    The same weights with a blanked sensor or a guard are another agent. Of several agents, only the
+    one in ``run_rows`` is used. Raises ValueError if it is not unique.
     """
     rows = [
         row for row in result_rows.unique([*run_rows, *other_rows]) if weights_of(row) in weights
@@ -432,11 +398,7 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 
 
 def _run_apart(check: str, what: str, *paths: Path) -> None:
-    """Call the function ``check`` of this module in a new process.
-
-    If the check fails, raise ValueError. The message states that ``what`` must be equal for the
-    exported and the original agent, and quotes the last line of the output.
-    """
+    """Call ``check`` of this module in a new process. Raises ValueError if it fails."""
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:
         process = subprocess.run(
@@ -454,10 +416,7 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
 
 
 def check_walks(draft: str, check_file: str, expected: str) -> None:
-    """Raise ValueError if the agent in ``draft`` does not reproduce the measures in ``expected``.
-
-    :func:`_reload_walks` runs this in a new process.
-    """
+    """Raise ValueError if the agent in ``draft`` does not reproduce ``expected`` measures."""
     path, walks = pickle.loads(Path(check_file).read_bytes())
     sys.path[:] = path
     agent = loading.load_hardened(draft, agent=walks.make_agent())

@@ -307,10 +307,7 @@ def harden(
 
 
 class _Training:
-    """Source of training episodes.
-
-    The episodes are taken from a list, or generated from seeds that the comparison does not use.
-    """
+    """Training episodes, from a list or from seeds that the comparison does not use."""
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
         self.listed = None if listed is None else episode_list("training", listed)

@@ -51,8 +51,7 @@ conf.register("harden", HardenConfig)
 def run(config: HardenConfig) -> Any:
     """Harden the policy of ``config`` and return the result of ``mitigate.harden``.
 
-    Raises:
-        ValueError: If an option is invalid.
+    Raises ValueError if an option is invalid.
     """
     if config.test_episodes < 1:
         raise ValueError(f"test_episodes must be a whole number >= 1, got {config.test_episodes}.")

@@ -97,10 +97,7 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """Wrapper around ``network`` that stores a tensor as float16 if this loses no precision.
-
-    Only tensors that the network uses are stored.
-    """
+    """Stores the tensors that ``network`` uses, as float16 where this loses no precision."""
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
@@ -110,7 +107,10 @@ class Stored(nn.Module):
         self._names = {name: name.replace(".", "__") for name in _used(network, inputs)}
         tensors = {**dict(network.named_parameters()), **dict(network.named_buffers())}
         for name, key in self._names.items():
-            self.register_buffer(key, _smallest(tensors[name].detach()))
+            tensor = tensors[name].detach()
+            half = tensor.half()
+            lossless = torch.equal(half.float(), tensor.float())
+            self.register_buffer(key, half if lossless else tensor)
 
     def forward(self, *inputs: Tensor) -> tuple[Tensor, ...]:
         tensors = {name: self.get_buffer(key).float() for name, key in self._names.items()}
@@ -118,10 +118,7 @@ class Stored(nn.Module):
 
 
 def networks(agent: TopologicalAgent) -> dict[str, nn.Module]:
-    """Return the two networks of ``agent`` in eager mode (not exported), by name.
-
-    The networks share the weights of the agent.
-    """
+    """Return the two networks of ``agent`` in eager mode, by name. They share its weights."""
     return {PERCEIVE: Perceive(agent), DECIDE: Decide(agent)}
 
 
@@ -236,20 +233,14 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    Calls alternate between the variants of the networks, such as eager and exported. Each call to
-    ``perceive`` processes one panorama. Each call to ``decide`` makes one decision among three
-    nodes and four ghosts.
-
-    Args:
-        kinds: maps the name of a variant to its two networks, such as ``{"eager": networks(agent),
-            "exported": ...}``.
-        agent: the agent, for the probe.
-        size: width of the views in pixels.
+    Calls alternate between the variants of the networks in ``kinds``, such as ``{"eager":
+    networks(agent), "exported": ...}``. Each call to ``perceive`` processes one panorama. Each call
+    to ``decide`` makes one decision among three nodes and four ghosts.
 
     Returns:
-        Two measurements for each variant of each network. "wall" is the wall time of the fastest of
-        ``TIMED`` calls. "cpu" is the median CPU time over all threads of this process. Other
-        programs on the machine affect the CPU time less than the wall time.
+        Two measurements for each variant of each network: "wall", the wall time of the fastest of
+        ``TIMED`` calls, and "cpu", the median CPU time over all threads of this process, which
+        other programs on the machine affect less.
     """
     inputs_by_name = probe(agent, size)
     single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
@@ -306,10 +297,7 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the checks of tensor types from the exported ``program``.
-
-    A program contains more than a hundred of these checks, and none of them can fail.
-    """
+    """Remove the checks of tensor types, of which a program has over 100 and none can fail."""
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -317,16 +305,8 @@ def _drop_type_checks(program: ExportedProgram) -> None:
     program.graph_module.recompile()
 
 
-def _smallest(tensor: Tensor) -> Tensor:
-    half = tensor.half()
-    return half if torch.equal(half.float(), tensor.float()) else tensor
-
-
 def _free(shape: str) -> dict[int, Any]:
-    """Return the dynamic dimensions of a shape in :data:`INPUTS`.
-
-    Dynamic dimensions are named by single letters or by sums that contain letters.
-    """
+    """Return the dynamic dimensions of a shape in :data:`INPUTS`: those with capital letters."""
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:

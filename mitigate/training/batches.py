@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from functools import partial
 from typing import Any
 
@@ -22,6 +23,7 @@ from mitigate.training.workers import Workers
 AHEAD = 4  # pieces are requested this number of steps in advance (heuristic)
 
 
+@dataclass(eq=False, repr=False)
 class Batches:
     """The batches of ``objective`` for all training steps.
 
@@ -31,25 +33,17 @@ class Batches:
     requested only after the checkpoint, so a resumed run computes them with the same weights.
     """
 
-    def __init__(
-        self,
-        objective: Objective,
-        workers: Workers | None,
-        steps: int,
-        kind: str,
-        device: torch.device,
-        ranks: Ranks | None = None,
-        lag: int = 0,
-        save_every: int = 0,
-    ) -> None:
-        self.objective = objective
-        self.steps = steps
-        self.kind = kind
-        self.device = device
-        self.workers = workers if workers is not None and len(workers) else None
-        self.ranks = ranks or Ranks()
-        self.lag = lag
-        self.save_every = save_every
+    objective: Objective
+    workers: Workers | None
+    steps: int
+    kind: str
+    device: torch.device
+    ranks: Ranks = field(default_factory=Ranks)
+    lag: int = 0
+    save_every: int = 0
+
+    def __post_init__(self) -> None:
+        self.workers = self.workers or None  # with no processes, this process computes the pieces
         self._ordered: deque[tuple[int, Callable[[], list[Any]]]] = deque()  # step, its pieces
         self._taken = False
 

@@ -65,11 +65,7 @@ for _primary in ("table1", "table2"):
 
 
 def read_options(cfg: DictConfig) -> TablesConfig:
-    """Return the composed options of a table as typed data.
-
-    Raises:
-        ValueError: If an entry refers to a missing entry.
-    """
+    """Return the composed options of a table as typed data."""
     config: TablesConfig = conf.typed(cfg, "table2")
     config.suite = open_entries(SuiteConfig, config.suite)
     return config
@@ -87,10 +83,7 @@ class Cell:
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained.
-
-        If the agent is not trained, the options name existing weights.
-        """
+        """Whether the agent is trained; otherwise, the options name existing weights."""
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
@@ -118,18 +111,11 @@ class Cell:
         return self.evaluation_folder("")
 
     def evaluation_folder(self, name: str) -> Path:
-        """Return the folder for the rows of the evaluation ``name``.
-
-        "" is the name of the main evaluation.
-        """
+        """Return the folder for the rows of the evaluation ``name`` ("": the main evaluation)."""
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
-        """Return the programs that compute the cell.
-
-        Each program is a pair (title, arguments after ``python -m``). The title is "train",
-        "evaluate" or "evaluate NAME".
-        """
+        """Return the programs that compute the cell, as (title, arguments after ``python -m``)."""
         commands = []
         if self.trains:
             commands.append(("train", ["mitigate.train", *self.training]))
@@ -140,11 +126,7 @@ class Cell:
         return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """Return all options for this cell's evaluation ``name``.
-
-        ``options`` extend or override the options of the table. The number of episodes is at most
-        ``config.episodes``.
-        """
+        """Return all options of the evaluation ``name``; ``options`` override the table's."""
         return [
             f"name={self.column}",
             *self.agent,  # the agent's options may set another name
@@ -198,10 +180,7 @@ def _at_most(most: int | None, option: str) -> str:
 
 
 def cells(config: TablesConfig) -> list[Cell]:
-    """Return all cells of the table, ordered by seed.
-
-    The cells of the first seed come first, so even an unfinished table has every column.
-    """
+    """Return all cells, those of the first seed first, so that an early table has every column."""
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
@@ -219,7 +198,7 @@ def cells(config: TablesConfig) -> list[Cell]:
 def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
     """Return the options of each entry of ``columns`` or ``evaluations``; skip null entries.
 
-    Raises ValueError if an entry is not a list of options, or if an address contains a password.
+    Raises ValueError for an entry that is not a list of options, or a password in an address.
     """
     lists = {str(name): options for name, options in entries.items() if options is not None}
     for name, options in lists.items():
@@ -240,9 +219,8 @@ def measured(config: TablesConfig) -> list[str]:
 def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
-    Raises:
-        ValueError: If a seed is repeated, or if an option, a split or a condition does not exist.
-            It is also raised if the folder of a cell contains rows of a different agent.
+    Raises ValueError for a repeated seed, an option, split or condition that does not exist, or a
+    cell's folder with rows of a different agent.
     """
     from mitigate.training import plan  # brings torch
 
@@ -277,11 +255,7 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
 
 
 def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that the table itself sets.
-
-    Such an option would have no effect, change the agent of the rows, or write the rows to a folder
-    that the table does not read.
-    """
+    """Raise ValueError for options that the table itself sets."""
     for option in options:
         key = option.lstrip("+~").partition("=")[0]
         whole = "evaluation" if key.startswith("evaluation.") else key
@@ -290,10 +264,7 @@ def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> Non
 
 
 def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
-    """Return the typed options of an evaluation.
-
-    The kind of agent is read from the weights.
-    """
+    """Return the typed options of an evaluation, with the kind of agent that the weights name."""
     from mitigate.agents.building import with_kind  # brings torch
 
     return evaluate_options.read(conf.composed("evaluate", with_kind(options)))

@@ -83,18 +83,12 @@ class TrainerConfig:
 
 @dataclass
 class StageConfig:
-    """One stage of a recipe.
+    """One stage of a recipe."""
 
-    Attributes:
-        recipe: config node whose ``_target_`` is the objective. The other entries of the node are
-            arguments of the objective and of its source.
-        trainer: settings of this stage's trainer.
-        cost: seconds per step on the machine of ``precision.REFERENCE``, or None if unknown. The
-            cost is used to estimate the duration of the run.
-    """
-
+    # ``_target_`` is the objective; other entries are arguments of the objective and its source
     recipe: Any = None
     trainer: TrainerConfig = field(default_factory=TrainerConfig)
+    # seconds per step on the machine of ``precision.REFERENCE``, to estimate the run's duration
     cost: float | None = None
 
     def settings(self, common: TrainerConfig) -> dict[str, Any]:
@@ -138,30 +132,19 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the initial weights cover all parts of the agent.
-
-        In that case, the agent is also evaluated with its initial weights.
-        """
+        """Whether the agent is also evaluated with its initial weights, which cover all parts."""
         return bool(self.init and not self.init_parts)
 
 
 conf.register("train", TrainConfig)
 
 
-def either(first: Any, second: Any) -> Any:
-    """Resolve ``${either:a,b}`` to the first value, or to the second if the first is None."""
-    return second if first is None else first
-
-
-OmegaConf.register_new_resolver("either", either, replace=True)
+# ``${either:a,b}`` is the first value, or the second if the first is None
+OmegaConf.register_new_resolver("either", lambda a, b: b if a is None else a, replace=True)
 
 
 def read(cfg: DictConfig) -> TrainConfig:
-    """Return the composed options of a training run as typed data, including its folder.
-
-    Raises:
-        ValueError: If an entry refers to a missing entry.
-    """
+    """Return the composed options of a training run as typed data, including its folder."""
     cfg = cfg.copy()
     # the folder is set first, because other entries refer to it
     cfg.folder = cfg.folder or default_folder(cfg)

@@ -59,10 +59,7 @@ def _steps(config: TrainConfig) -> dict[str, int]:
 
 
 def _episodes(config: TrainConfig) -> int:
-    """Return how many episodes are run after training.
-
-    For other kinds of report, the number is 0.
-    """
+    """Return the number of evaluated episodes (approximately, if the number is not set)."""
     if not config.evaluation.enabled or config.report != REPORT:
         return 0
     count = config.evaluation.episodes or EPISODES

@@ -238,13 +238,10 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """For each part of ``batch``, run the forward pass in precision ``kind``, then the backward
-    pass.
+    """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
 
-    If the loss of a part is not finite, no gradient is computed for that part.
-
-    Returns:
-        The values that ``forward`` returned, summed over the parts.
+    If the loss of a part is not finite, no gradient is computed for that part. Returns the sums of
+    the values that ``forward`` returned.
     """
     values: dict[str, Tensor] = {}
     for part in objective.micro_batches(batch):
@@ -281,28 +278,21 @@ def _checked(objective: Objective, outputs: Any) -> dict[str, Any]:
 
 @dataclass(frozen=True)
 class ObjectiveSpec:
-    """The objective of a stage, with the arguments of its constructor and of its source.
+    """The objective of a stage, with the arguments of its constructor and of its source."""
 
-    Attributes:
-        target: the ``_target_`` of the stage's config.
-        arguments: arguments of the objective's constructor, as plain data.
-        source: arguments of the source's constructor, or None if the objective makes its own
-            batches.
-        parameter: the objective's parameter that receives the source.
-    """
-
-    target: str
+    target: str  # the ``_target_`` of the stage's config
+    # arguments of the objective's constructor, as plain data
     arguments: dict[str, Any] = field(default_factory=dict)
+    # arguments of the source's constructor, or None if the objective makes its own batches
     source: dict[str, Any] | None = None
-    parameter: str = ""
+    parameter: str = ""  # the objective's parameter that receives the source
 
     @classmethod
     def of(cls, recipe: Mapping[str, Any]) -> ObjectiveSpec:
         """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
-        Raises:
-            ValueError: If neither constructor declares an argument, or if the class is not an
-                objective or accepts no agent.
+        Raises ValueError if neither constructor declares an argument, or if the class is not an
+        objective or accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -320,13 +310,9 @@ class ObjectiveSpec:
         return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
-        """Build the objective for ``agent``.
+        """Build the objective for ``agent``; it chooses which parameters are trained.
 
-        The objective chooses which parameters are trained.
-
-        Raises:
-            ValueError: If the target does not build an objective, or if its constructor raises
-                ValueError.
+        Raises ValueError if the target does not build an objective, or if its constructor does.
         """
         for parameter in agent.parameters():
             # integer parameters, such as 8-bit weights, cannot be trained
@@ -345,10 +331,9 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and the arguments of its source.
+    """Return the arguments of the objective ``kind`` and of its source; both may take the same one.
 
-    An argument that both constructors declare is in both of the returned dicts. Raises ValueError
-    for an argument that neither of them declares.
+    Raises ValueError for an argument that neither constructor declares.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
@@ -376,10 +361,7 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the name of the parameter of ``kind`` that takes the data source.
-
-    Returns "" if there is no such parameter or if ``arguments`` already sets it.
-    """
+    """Return the parameter of ``kind`` that takes the source; "" without one, or if it is set."""
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -387,10 +369,7 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a subclass of Objective.
-
-    For a function that builds an objective, the result is False.
-    """
+    """Return whether ``kind`` is a subclass of Objective, and not a function that builds one."""
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
@@ -403,10 +382,7 @@ def not_an_objective(target: str) -> str:
 
 
 def check_weights(**weights: float) -> None:
-    """Raise ValueError unless each weight of a loss is from 0 to ``WEIGHT``.
-
-    A loss with the weight 0 is not used.
-    """
+    """Raise ValueError unless each weight of a loss is from 0 (disabled) to ``WEIGHT``."""
     for name, value in weights.items():
         if not in_range(value, 0, WEIGHT):
             raise ValueError(
@@ -423,10 +399,7 @@ def check_counts(**counts: int) -> None:
 
 
 def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
-    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
-
-    Each job is a tuple (step, index of the job, number of jobs, number of items).
-    """
+    """Divide ``count`` items evenly: return jobs (step, index, number of jobs, number of items)."""
     parts = np.array_split(np.arange(count), pieces)
     return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
 

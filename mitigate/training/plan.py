@@ -56,40 +56,25 @@ OURS = "mitigate.recipes."
 
 @dataclass(frozen=True)
 class StagePlan:
-    """The plan of one training stage.
+    """The plan of one training stage."""
 
-    Attributes:
-        name: name of the stage and of its subfolder.
-        folder: folder of its checkpoints and logs.
-        objective: the objective, with its arguments.
-        trainer: the settings of the Trainer that the recipe or the user set.
-        identity: settings of the agent and the recipe; a run is not resumed if they differ.
-    """
-
-    name: str
-    folder: Path
+    name: str  # name of the stage and of its subfolder
+    folder: Path  # folder of its checkpoints and logs
     objective: ObjectiveSpec
-    trainer: dict[str, Any]
+    trainer: dict[str, Any]  # the settings of the Trainer that the recipe or the user set
+    # settings of the agent and the recipe; a run is not resumed if they differ
     identity: dict[str, Any]
 
 
 @dataclass(frozen=True)
 class Plan:
-    """The plan of a training run.
+    """The plan of a training run."""
 
-    Attributes:
-        config: the options, without the stages and corruptions that planning left out.
-        folder: folder of the run.
-        agent: the agent with its initial weights.
-        stages: stages in order.
-        workers: number of processes that make batches.
-    """
-
-    config: TrainConfig
+    config: TrainConfig  # the options, without the stages and corruptions that planning left out
     folder: Path
-    agent: nn.Module
+    agent: nn.Module  # the agent with its initial weights
     stages: list[StagePlan]
-    workers: int
+    workers: int  # number of processes that make batches
 
 
 def check(config: TrainConfig) -> None:
@@ -128,12 +113,9 @@ def _target_of(stage: StageConfig) -> str:
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     """Plan a training run from options that :func:`check` has accepted.
 
-    Print a line for each decision that a user may not expect.
-
-    Raises:
-        ValueError: If the options, the recipe, the agent, the world and the folder are not
-            compatible with each other.
-        FileNotFoundError: If weights are missing.
+    Print a line for each decision that a user may not expect. Raises ValueError if the options, the
+    recipe, the agent, the world and the folder do not fit each other, and FileNotFoundError if
+    weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")
@@ -192,9 +174,7 @@ def _contains(node: Any, target: str) -> bool:
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     """Replace each stage that would train no part of ``agent`` with None, and print its name.
 
-    Raises:
-        ValueError: If no stage is left. If ``agent.blind`` is set and evaluation is enabled, there
-            is no error and the agent is only evaluated.
+    Raises ValueError if no stage is left, unless ``agent.blind`` is to be evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -214,11 +194,7 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
-    """Return why a stage would train nothing in this kind of agent; return None if it trains
-    something.
-
-    Possible reasons: the agent lacks the sensor, stores no features, or can only train encoders.
-    """
+    """Return why a stage would train nothing in this kind of agent, or None."""
     sensor = recipe.get("modality")
     kind = type(agent).__name__
     encoders = as_agent(agent).encoders
@@ -232,12 +208,7 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
-    """Set stages that train on random poses to None if the agent or the world does not support
-    them.
-
-    If no other stage can train the agent, these stages are kept, and :func:`check_fit` then rejects
-    them.
-    """
+    """Leave out stages on random poses that the agent or the world lacks, if others remain."""
     kinds = {name: locate(_target_of(stage)) for name, stage in config.active_stages.items()}
     views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
     others = [kind for name, kind in kinds.items() if name not in views]
@@ -258,9 +229,7 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def keep_cameras(config: TrainConfig) -> None:
-    """Set ``camera_share`` to 0 in stages whose world cannot render a displaced camera, and print
-    their names.
-    """
+    """Set ``camera_share`` to 0 in stages whose world cannot displace its camera; print them."""
     for name, stage in config.active_stages.items():
         if not stage.recipe.get("camera_share"):
             continue
@@ -274,9 +243,7 @@ def keep_cameras(config: TrainConfig) -> None:
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:
-    """Return why an objective cannot train ``agent``. Return "" if it can, or if ``kind`` is not a
-    class.
-    """
+    """Return why an objective cannot train ``agent``, or "" (also for a function)."""
     return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
@@ -293,12 +260,9 @@ def warn_warmup(config: TrainConfig) -> None:
 
 
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
-    """Remove corruptions from the stages' schedules if ``agent`` does not read their sensors.
+    """Remove and print corruptions of sensors that ``agent`` does not read.
 
-    Such corruptions would leave the agent's frames clean. The removed corruptions are printed.
-
-    Raises:
-        ValueError: If a schedule would contain no corruptions after the removal.
+    Raises ValueError if a schedule would contain no corruptions after the removal.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
@@ -328,12 +292,7 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[StagePlan]:
-    """Return the stages that will run.
-
-    Raises:
-        ValueError: If a stage cannot train ``agent``, or if :meth:`ObjectiveSpec.of` raises
-            ValueError.
-    """
+    """Return the stages that will run. Raises ValueError if one of them cannot train ``agent``."""
     stages = []
     for name, stage in config.active_stages.items():
         objective = ObjectiveSpec.of(stage.recipe)
@@ -368,13 +327,7 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
 
 
 def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Check before the first step that the world, the folder and the stages fit the agent.
-
-    Raises:
-        ValueError: If the number of views differs between the world and the agent, or if the folder
-            contains a different run. It is also raised if there are more ``ranks`` than pieces of
-            work per step.
-    """
+    """Raise ValueError if the world, the folder, the stages or the ranks do not fit the agent."""
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
         check_fits(agent, maker(config.env.world)().sensors, config.env.name)
@@ -406,15 +359,10 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Build the objectives of all stages on a copy of ``agent``.
+    """Build the objectives of all stages on a copy of ``agent``, to find mistakes before the first.
 
-    This finds a mistake in a later stage before the first stage is trained. The check stops at an
-    objective that a user wrote, because it is unknown how such an objective changes the agent.
-
-    Raises:
-        ValueError: If there are more ``ranks`` than work items per step, or if an objective
-            raises ValueError.
-        FileNotFoundError: If an objective raises FileNotFoundError.
+    The check stops at an objective that a user wrote, because it is unknown how it changes the
+    agent. Raises ValueError for too many ``ranks``, and the errors of the objectives.
     """
     if len(stages) < 2 and ranks.count == 1:  # a single stage is built immediately after this check
         return
@@ -435,9 +383,8 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
     """Return the config that is saved together with the weights of ``agent``.
 
-    The config contains the agent's ``settings()``, such as its vocabulary. It does not contain the
-    class names of the agent's parts, because the program that loads the agent takes these names
-    from its own config.
+    It contains the agent's ``settings()``, such as its vocabulary, but not the class names of the
+    agent's parts: the program that loads the agent takes these from its own config.
     """
 
     def data(value: Any) -> Any:

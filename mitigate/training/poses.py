@@ -19,7 +19,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation
 from mitigate.corruptions.faults.camera import random_mount
 from mitigate.corruptions.keying import Key, digest, uniform
-from mitigate.training.objective import OnSource, check_counts, check_share, divided
+from mitigate.training.objective import OnSource, check_counts, check_share
 from mitigate.training.parts import OWN, SEEING
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.episodes import share_of
@@ -86,13 +86,9 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Choose which targets and views later batches contain. Without this call, targets are
-        empty.
+        """Choose the ground truth ``label`` as targets, and every ``every``-th view of a panorama.
 
-        Args:
-            label: ground-truth entry of the world to use as targets.
-            every: use every n-th view of a panorama. The value 2 is useful because neighbouring
-                views overlap.
+        Without this call, targets are empty. Every second view is useful: neighbours overlap.
         """
         self.label = label
         self.every = every
@@ -130,16 +126,7 @@ class Poses(DrawsBySuccess):
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        panoramas, state of the schedule).
-
-        If the schedule needs success rates but has none, this method measures them with ``workers``
-        processes.
-        """
-        if self.schedule.mode == "success_distributed" and self.schedule.success is None:
-            self.refresh(step, workers)
-        state = self.schedule.state_dict()
-        return [(*job, state) for job in divided(step, self.panoramas, self.pieces)]
+        return self.divide(step, self.panoramas, self.pieces, workers)
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
@@ -197,9 +184,7 @@ class Poses(DrawsBySuccess):
     def _put(
         self, xy: np.ndarray, heading: float, views: list[int] | None, key: Key
     ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return the frames of the undisplaced camera, the frames of the possibly displaced camera,
-        and the labels.
-        """
+        """Return frames of the undisplaced and the possibly displaced camera, and the labels."""
         rgb = self.sensor == RGB
         clean, truth = self.placed.put(xy, heading, views=views, rgb=rgb)
         if uniform(digest(key, "camera_share")) >= self.camera_share:
@@ -225,7 +210,5 @@ class OnViews(OnSource):
         return self.poses.collate(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of panoramas in the batch, or the number of views if there is a single
-        camera.
-        """
+        """Return the number of panoramas (of views, with a single camera) in the batch."""
         return float(len(batch["frames"]))

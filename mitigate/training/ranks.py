@@ -36,9 +36,7 @@ class Ranks:
 
     @classmethod
     def of_environment(cls) -> Ranks:
-        """Return the rank that torchrun's environment variables describe, or a single rank if they
-        are not set.
-        """
+        """Read the rank that torchrun has set; without torchrun, it is the only one."""
         return cls(int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1)))
 
     def __enter__(self) -> Ranks:

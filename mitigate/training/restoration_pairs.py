@@ -24,9 +24,7 @@ GROUP = 12
 
 
 class PosePairs(Poses):
-    """Source of corrupted and clean panoramas, or single views, at random poses
-    (``training/poses.py``).
-    """
+    """Source of corrupted and clean panoramas, or single views, at random poses."""
 
     ring = False  # whether the views of a time step form a panorama
 
@@ -47,26 +45,16 @@ class PosePairs(Poses):
 class FramePairs:
     """Source of corrupted and clean frames from a folder (``encoders/sources.py``). Each frame is
     corrupted as a separate time step.
-
-    Attributes:
-        source: source of the frames.
-        schedule: schedule of corruptions of ``sensor``.
-        sensor: "rgb" or "depth".
-        count: number of frames, which are read once.
-        panoramas: number of groups per step; a group has ``GROUP`` frames.
-        seed: seed of frames and corruptions.
-        depth: properties of the depth sensor that recorded the frames.
-        frames: the frames, which :meth:`start` reads.
     """
 
     source: Source
-    schedule: Schedule
-    sensor: str
-    count: int
-    panoramas: int
-    seed: int
-    depth: DepthSensor
-    frames: Frames | None = None
+    schedule: Schedule  # schedule of corruptions of ``sensor``
+    sensor: str  # "rgb" or "depth"
+    count: int  # number of frames, which are read once
+    panoramas: int  # number of groups per step; a group has ``GROUP`` frames
+    seed: int  # seed of frames and corruptions
+    depth: DepthSensor  # properties of the depth sensor that recorded the frames
+    frames: Frames | None = None  # the frames, which :meth:`start` reads
     ring: ClassVar[bool] = False  # each frame is a separate time step
 
     def __post_init__(self) -> None:
@@ -84,9 +72,7 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state to pickle, which omits the frames. Workers receive only the frames of
-        their jobs.
-        """
+        """Leave out the frames: workers receive only those of their jobs."""
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -143,9 +129,7 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs`` in which a fraction ``share`` of the frames stays clean. Call this
-    function before ``start``.
-    """
+    """Return a copy of ``pairs``, not started yet, in which ``share`` of the frames stays clean."""
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

@@ -16,7 +16,7 @@ from mitigate.agents.agent import Decisions, as_agent
 from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.training.objective import OnSource, check_counts, check_share, divided
+from mitigate.training.objective import OnSource, check_counts, check_share
 from mitigate.training.parts import OWN, TRAINABLE
 from mitigate.training.success import DrawsBySuccess
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
@@ -66,9 +66,7 @@ class Rollouts(DrawsBySuccess):
         self.picture: np.ndarray | None = None
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Also keep the clean observations, from which ``teachers`` compute their fixed features in
-        advance.
-        """
+        """Also keep clean observations, from which ``teachers`` compute features in advance."""
         self.clean = True
         self.teachers = teachers
 
@@ -83,21 +81,11 @@ class Rollouts(DrawsBySuccess):
         return dict(getattr(self.training, "identity", dict)())
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        episodes, state of the schedule).
-
-        If new success rates are due, this method measures them with ``workers`` processes.
-        """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
-        if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
-            self.refresh(step, workers)
-        state = self.schedule.state_dict()
-        return [(*job, state) for job in divided(step, self.episodes, self.pieces)]
+        return self.divide(step, self.episodes, self.pieces, workers, due)
 
     def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
-        """Run the episodes of a job; return their decisions and a picture of the last
-        observation.
-        """
+        """Run the episodes of a job; return their decisions and a picture of the last frame."""
         step, piece, pieces, count, state = job
         self.schedule.load_state_dict(state)
         rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]

@@ -12,14 +12,13 @@ from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.evaluation.evaluator import WORTH, EpisodeTask
+from mitigate.training.objective import divided
 from mitigate.training.parts import hold_statistics
 from mitigate.worlds.world import TrainingEpisodes
 
 
 class DrawsBySuccess:
-    """Base class of batch sources whose schedule may sample corruptions by the agent's success
-    rates.
-    """
+    """Base class of batch sources whose schedule may sample corruptions by success rate."""
 
     agent: Any
     world: Callable[[], Any]
@@ -28,18 +27,26 @@ class DrawsBySuccess:
     seed: int
     refresh_episodes: int
 
+    def divide(
+        self, step: int, count: int, pieces: int, workers: int | None, due: bool = False
+    ) -> list[tuple]:
+        """Return jobs (step, index, number of jobs, number of items, state of the schedule).
+
+        If the schedule lacks success rates, or if new ones are ``due``, ``workers`` processes
+        measure them.
+        """
+        if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
+            self.refresh(step, workers)
+        state = self.schedule.state_dict()
+        return [(*job, state) for job in divided(step, count, pieces)]
+
     def refresh(self, step: int, workers: int | None = None) -> None:
-        """Measure the success rate under every corruption on training episodes, and update the
-        schedule.
+        """Measure the success rate under every corruption, and update the schedule.
 
-        The same episodes, which are sampled from (seed, step), are run under every corruption. The
-        agent is in training mode afterwards.
-
-        Args:
-            step: training step.
-            workers: number of processes, which does not affect the rates; with 0, only this process
-                is used. None means one process per core if that saves time, but only this process
-                if the agent is on a GPU.
+        The same training episodes, which are sampled from (seed, step), are run under every
+        corruption. The agent is in training mode afterwards. The rates do not depend on
+        ``workers``, the number of processes: with 0, only this process is used; None means one
+        process per core if that saves time, but only this process if the agent is on a GPU.
         """
         rng = generator(self.seed, "refresh", step)
         episodes = [self.training.draw(rng, (0, 1)) for _ in range(self.refresh_episodes)]
@@ -65,9 +72,7 @@ class DrawsBySuccess:
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError if ``schedule`` samples by success rate, because the calling recipe measures
-    no success rates.
-    """
+    """Raise ValueError if ``schedule`` needs success rates, which the calling recipe lacks."""
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "

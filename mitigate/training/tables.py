@@ -46,13 +46,9 @@ def run(cfg: DictConfig) -> Path:
 def make_table(config: TablesConfig) -> Path:
     """Compute all cells and the report; return the path of the report.
 
-    If ``config.rows`` is set, the report is computed from those rows, and no cell is run.
-
-    Raises:
-        ValueError: If settings are invalid, or if a cell failed. Invalid settings are reported
-            before any cell runs. A failed cell is reported after the others are finished; the
-            message contains the end of its log.
-        FileNotFoundError: If rows are missing.
+    If ``config.rows`` is set, the report is computed from those rows (FileNotFoundError if they are
+    missing), and no cell is run. Raises ValueError for invalid settings before any cell runs, and
+    for failed cells after the others are finished, with the end of their logs.
     """
     out = Path(config.out)
     if config.rows:
@@ -64,10 +60,11 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Compute the cells and write the report into ``out``. Raises the same errors as
-    :func:`make_table`.
-    """
-    failed = make(table_cells, config) or [
+    """Compute the cells and write the report into ``out``."""
+    chains = [cell.chain(config) for cell in table_cells]
+    for cell in table_cells:
+        cell.keep()
+    failed = run_chains("cells", "cell", chains, config.jobs, config.launcher) or [
         f"{cell.column}, seed {cell.seed}: its rows in {cell.evaluation} were removed by another "
         "program after they were measured."
         for cell in table_cells
@@ -87,20 +84,8 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
     return report
 
 
-def make(table_cells: Sequence[Cell], config: TablesConfig) -> list[str]:
-    """Train and evaluate all cells, ``config.jobs`` at a time; return one line per failed cell."""
-    chains = [cell.chain(config) for cell in table_cells]
-    for cell in table_cells:
-        cell.keep()
-    return run_chains("cells", "cell", chains, config.jobs, config.launcher)
-
-
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write a report that summarizes the rows found under ``paths``.
-
-    ``table.md`` contains all tables and plots. ``overview.md`` contains short tables that also show
-    the results of the paper.
-    """
+    """Write ``table.md`` with all tables, and ``overview.md`` with the paper's results."""
     from mitigate.evaluation import report  # imports matplotlib
 
     rows = gather(paths)
@@ -128,11 +113,7 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_additional_reports(
     table_cells: Sequence[Cell], config: TablesConfig, out: Path
 ) -> list[Path]:
-    """Write ``NAME/table.md`` and its pictures for each additional evaluation, and return the
-    paths.
-
-    Each evaluation has its own table, because evaluations may use different episodes.
-    """
+    """Write ``NAME/table.md`` for each additional evaluation; their episodes may differ."""
     from mitigate.evaluation import report  # brings matplotlib
 
     reports = []
@@ -144,11 +125,10 @@ def write_additional_reports(
 
 
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
-    """Plot episodes in which the first column of ``config.walks`` fails and the last column
-    succeeds.
+    """Plot episodes in which the first column of ``config.walks`` fails and the last succeeds.
 
-    These episodes are run again with the agents of the first training seed, each with the guards of
-    its column. Nothing is plotted if one of these columns has no cell.
+    The agents of the first training seed run these episodes again, with the guards of their
+    columns. Nothing is plotted if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
@@ -185,10 +165,7 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
 
 
 def _named(folder: Path) -> str:
-    """Return the agent name in the result rows of a cell. The name includes guards.
-
-    If the cell has no rows, return the name of its folder.
-    """
+    """Return the name in a cell's rows (with guards), or without rows the name of its folder."""
     rows = _rows(folder / "evaluation")
     return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]
 

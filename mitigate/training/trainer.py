@@ -18,13 +18,15 @@ from typing import Any
 
 import torch
 from torch import Tensor
+from torch.optim import AdamW
+from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
 from mitigate.core.memory import give_back
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, SignalDelay, delay_signals
-from mitigate.training import optimization, states
+from mitigate.training import states
 from mitigate.training.batches import Batches
 from mitigate.training.config import check_limits
 from mitigate.training.journal import Journal
@@ -37,9 +39,7 @@ FIXED = ("steps", "lr", "weight_decay", "warmup", "grad_clip", "seed", "precisio
 
 
 class LossNotFinite(ValueError):
-    """Raised if the loss or its gradient is not finite. The weights are still those before that
-    step.
-    """
+    """The loss or its gradient is not finite. The weights are those before that step."""
 
 
 @dataclass(eq=False, repr=False)
@@ -74,7 +74,7 @@ class Trainer:
             rejected.
 
     Raises:
-        ValueError: If a setting is out of its range.
+        ValueError: If a setting is out of its range, or every parameter is frozen.
     """
 
     objective: Objective
@@ -113,15 +113,21 @@ class Trainer:
             fixed |= {"lag": self.lag, "save_every": self.save_every}
         self.config = states.as_json(self.config) | {"trainer": fixed}
         groups = self.objective.parameter_groups()
-        self.optimizer = optimization.adamw(groups, self.name, self.lr, self.weight_decay)
-        self.scheduler = optimization.scheduler(self.optimizer, self.steps, self.warmup)
-        self.trained = [p for group in self.optimizer.param_groups for p in group["params"]]
+        groups = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
+        self.trained = [parameter for group in groups for parameter in group["params"]]
+        if not self.trained:
+            raise ValueError(
+                f"{self.name} has nothing to train: every parameter is frozen. Unfreeze a part of "
+                "the agent."
+            )
+        trained_groups = [group for group in groups if group["params"]]
+        self.optimizer = AdamW(trained_groups, lr=self.lr, weight_decay=self.weight_decay)
+        self.scheduler = _scheduler(self.optimizer, self.steps, self.warmup)
         self._saved = 0  # number of steps in the newest checkpoint
         self._finished = False  # whether the newest checkpoint is marked as finished
 
     def fit(self) -> Objective:
-        """Train the objective and return it. If the folder has a checkpoint, resume from the newest
-        one.
+        """Train the objective, from the newest checkpoint if there is one, and return it.
 
         Raises:
             LossNotFinite: If the loss, its gradient or the weights are not finite.
@@ -175,10 +181,7 @@ class Trainer:
 
     @contextmanager
     def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
-        """If a signal interrupts the code in the context, save the state after ``done`` steps.
-
-        A second signal ends the run without saving.
-        """
+        """Save the state after ``done`` steps if a signal arrives (unless it is the second one)."""
         try:
             yield
         except Ended:
@@ -247,9 +250,7 @@ class Trainer:
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
-        """Evaluate and log figures if they are due after ``done`` steps, unless a signal was
-        received.
-        """
+        """Evaluate and log figures if they are due after ``done`` steps and no signal arrived."""
         if ending.number is None and self._due(self.eval_every, done):
             self.objective.eval()
             with torch.no_grad():
@@ -322,3 +323,15 @@ class Trainer:
         self._saved = int(state["step"])
         self._finished = self._saved >= self.steps and bool(state["finished"])
         return self._saved
+
+
+def _scheduler(optimizer: AdamW, steps: int, warmup: int) -> LambdaLR:
+    """Return a schedule that rises for ``warmup`` updates, then falls on a cosine to 0."""
+
+    def factor(step: int) -> float:
+        if step < warmup:
+            return (step + 1) / (warmup + 1)
+        share = min(1.0, (step - warmup) / max(1, steps - warmup))
+        return 0.5 * (1.0 + math.cos(math.pi * share))
+
+    return LambdaLR(optimizer, factor)

@@ -71,9 +71,7 @@ _corrupted_frames: "weakref.WeakValueDictionary[int, object]" = weakref.WeakValu
 def send(channel, message):
     """Send a dict of plain data; convert numpy numbers and arrays to Python's types.
 
-    Raises:
-        ValueError: If the message is too large.
-        TypeError: If a value is not plain data.
+    Raises ValueError if the message is too large, and TypeError if a value is not plain data.
     """
     body = json.dumps(message, default=_as_python).encode("utf-8")
     if len(body) > MAX_MESSAGE:
@@ -119,12 +117,8 @@ def _read(channel, size):
 def stop(problem, reported=False):
     """Print a message and end this process at once, because the program might catch an exception.
 
-    The server gets the reason, so that the condition does not count as finished. The process ends
-    even if this function fails or is interrupted.
-
-    Args:
-        problem: The reason, as a sentence.
-        reported: Whether the server already knows the reason.
+    The server gets the reason (unless ``reported``), so that the condition does not count as
+    finished. The process ends even if this function fails or is interrupted.
     """
     try:
         try:
@@ -159,9 +153,7 @@ def _report(problem):
 
 
 class Channel:
-    """The connection between one environment and the server. Every failure calls ``stop``, which
-    ends the process.
-    """
+    """The connection of one environment to the server; every failure ends the process."""
 
     def __init__(self):
         _load_numpy()
@@ -214,10 +206,7 @@ class Channel:
         return answer
 
     def map_memory(self, cameras, unread):
-        """Describe the cameras to the server and map the memory that it provides.
-
-        ``unread`` names observations that look like frames, but whose sensors are not cameras.
-        """
+        """Describe the cameras (and observations that only look like frames); map the memory."""
         answer = self.ask("spec", cameras=cameras, unread=unread)
         self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
         self.memory = None
@@ -285,13 +274,10 @@ def _versions():
 
 
 def _uninterrupted(failure):
-    """Wrap a method of ``Session`` so that only one thread at a time runs it and an exception ends
-    the process.
+    """Wrap a method of ``Session``: one thread at a time runs it, and exceptions end the process.
 
     An interrupt also ends the process, because the agent might catch it and act on incomplete data.
-
-    Args:
-        failure: Text of the message, which describes the failure.
+    The message begins with ``failure``.
     """
 
     def decorate(method):
@@ -380,11 +366,8 @@ class Session:
     def corrupt(self, observations, cameras, heading=None):
         """Replace the frames of ``cameras`` in a dict of observations, in the order of the keys.
 
-        Args:
-            observations: Arrays by name.
-            cameras: Dicts that describe the cameras: name, type ("rgb" or "depth") and other
-                options (``_describe_sensor``).
-            heading: Radians, counter-clockwise.
+        Each camera is described by its name, type ("rgb" or "depth") and other options
+        (``_describe_sensor``). The heading is in radians, counter-clockwise.
         """
         self._check(observations, cameras)
         channel = self.connected()
@@ -472,19 +455,14 @@ class Session:
             self.channel.ask("end", **report)
 
     def _fault(self):
-        """Return the exception that was raised or handled after the episode began, or None.
-
-        Exceptions that only end a loop or the program do not count.
-        """
+        """Return the exception, except of a normal end, that occurred in this episode, or None."""
         error = sys.exc_info()[1]
         while error is not None and _is_orderly(error) and id(error) != self.handled:
             error = error.__context__
         return None if id(error) == self.handled else error
 
     def _distances(self):
-        """Return the geodesic distances from start and end to the goals, and whether STOP was
-        called.
-        """
+        """Return the distances from start and end to the goals, and whether STOP was called."""
         if self.sim is None or self.episode is None:
             return {}
         stopped = _get(self.task, "is_stop_called")
@@ -503,9 +481,7 @@ def _is_corrupted(frame):
 
 
 def _plain_action(action):
-    """Convert a Habitat action to plain data; it is a number, a name, or a dict with one of
-    these.
-    """
+    """Convert a Habitat action (a number, a name, or a dict with one of these) to plain data."""
     if isinstance(action, dict):
         action = action.get("action")
     if action is None:
@@ -553,10 +529,7 @@ def _finite_numbers(metrics, prefix=""):
 
 
 def _distance(sim, position, episode):
-    """Return the geodesic distance in metres to the nearest goal or view point, or None if unknown.
-
-    The result is infinite if no goal can be reached.
-    """
+    """Return the metres to the nearest goal or view point: inf if unreachable, None if unknown."""
     goals = _get(episode, "goals") or []
     views = [p.agent_state.position for g in goals for p in _get(g, "view_points") or []]
     ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
@@ -613,10 +586,8 @@ def _call_clean(original, *args, **kwargs):
 
 
 def _is_clean_call():
-    """Return whether this thread is inside ``_call_clean``.
-
-    The function inspects the stack instead of a flag, because an interrupt could leave a flag set.
-    """
+    """Return whether this thread is inside ``_call_clean``."""
+    # an interrupt could leave a flag set, but not the stack
     frame = sys._getframe(1)
     while frame is not None and frame.f_code is not _call_clean.__code__:
         frame = frame.f_back
@@ -747,11 +718,7 @@ def _keep_selected(dataset):
 def _select(episodes, key, least):
     """Return the indices of the episodes that the run needs, or None for all episodes.
 
-    Args:
-        episodes: All episodes.
-        key: Function that returns the name of an episode. If the server chooses episodes, it
-            receives all names, in several messages.
-        least: The minimum number of episodes to keep, 0 or 1.
+    ``key`` returns the name of an episode. At least ``least`` (0 or 1) episodes are kept.
     """
     channel, count = Channel(), len(episodes)
     answer = channel.ask("dataset", count=count, keys=[], least=least)
@@ -847,14 +814,9 @@ def _package(module):
 def _corrupt_acting_agent(sim, observations, agent_ids):
     """Corrupt the observations of the acting agent only.
 
-    Observations stay unchanged inside ``_call_clean``. Observations that habitat-lab
-    requested also stay unchanged here, because habitat-lab's sensors corrupt them.
-
-    Args:
-        sim: The simulator.
-        observations: Maps sensors to observations. With several agents, it maps agent numbers to
-            such dicts.
-        agent_ids: The ids of the requested agents; None means the acting agent.
+    They stay unchanged inside ``_call_clean``, and for habitat-lab, whose sensors corrupt them.
+    With several agents, ``observations`` maps their numbers to dicts. Without ``agent_ids``, the
+    acting agent was requested.
     """
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -904,9 +866,7 @@ def _describe_simulator(sim):
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """Wrap WMNav's ``Env._run_episode``, which opens a simulator per episode and does not use
-    habitat-lab.
-    """
+    """Wrap WMNav's ``Env._run_episode``, which opens a simulator per episode (no habitat-lab)."""
     _thread.session = session = _thread.session or Session()
     episode = env.all_episodes[number]
     words = episode["object_category"]
@@ -940,11 +900,7 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
 
 
 def _make_adapter_wrapper(folder, file, path):
-    """Return a wrapper for the method ``forward`` of an encoder's class.
-
-    At the first call of each instance, the wrapper attaches adapters to the module ``path``. The
-    weights have been loaded before this call.
-    """
+    """Return a wrapper of ``forward`` that attaches adapters to ``path`` at the first call."""
 
     def forward(original, encoder, *args, **kwargs):
         if not vars(encoder).get("_mitigate_adapted"):
@@ -1089,10 +1045,7 @@ def _check_number(value, name, most=math.inf):
 
 
 def _find_cameras(observations, cameras):
-    """Return a copy of the observations and the description of each camera in them.
-
-    If an entry has the shape of a frame but no known type, the process stops.
-    """
+    """Return a copy of the observations and the description of each camera in them."""
     observations, cameras, described = dict(observations), dict(cameras or {}), []
     for name, value in observations.items():
         by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
@@ -1143,10 +1096,7 @@ def _advise_cameras(name, value, kind):
 
 
 def _find_frame(value, name):
-    """Return the name and shape of the first array that has the shape of a frame, else None.
-
-    Nested dicts and lists are searched.
-    """
+    """Return the name and shape of the first frame in nested dicts and lists, else None."""
     if value is None or isinstance(value, (str, bytes, int, float)):
         return None
     shape = _shape(value)
@@ -1282,10 +1232,7 @@ def patch(module):
 
 
 def _describe_missing(module, missing):
-    """Return the error message for methods of ``module`` that do not exist.
-
-    ``missing`` is a list of pairs (class, method).
-    """
+    """Return the error message for ``missing``, pairs (class, method), of ``module``."""
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]
@@ -1317,9 +1264,7 @@ def _wrap(original, wrapper):
 
 
 class Finder:
-    """Import finder that makes the modules in ``PATCHES`` call ``patch`` after they are
-    executed.
-    """
+    """Import finder that calls ``patch`` for modules in ``PATCHES`` after they are executed."""
 
     def find_spec(self, name, path=None, target=None):
         if name not in PATCHES:

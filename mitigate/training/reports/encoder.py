@@ -46,13 +46,8 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
     The frames come from the scenes of ``evaluation.split``. Their number is 12 times
     ``evaluation.episodes``, but at most the number of training frames. The conditions are the
-    suite's corruptions of this sensor.
-
-    Args:
-        config: options of the training run.
-        base: the encoder from which training started if ``init`` was set, or None.
-        trained: the trained encoder. If it has adapters, "before" means its original weights.
-        folder: folder of the run.
+    suite's corruptions of this sensor. ``base`` is the encoder from which training started if
+    ``init`` was set, or None. If ``trained`` has adapters, "before" means its original weights.
     """
     assert isinstance(trained, Encoder)
     train, unseen = _frames(config, trained.sensor)
@@ -72,9 +67,7 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
-    """Return the encoder with its weights before training; raise ValueError if it cannot be
-    rebuilt.
-    """
+    """Return the encoder with its weights before training."""
     encoder = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
     stage = next(iter(config.active_stages))
     identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
@@ -89,9 +82,7 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return two sets of frames: training frames, which fit the probe and give the mean features,
-    and unseen frames for the measurement.
-    """
+    """Return training frames, which fit the probe and give the means, and unseen frames."""
     recipe = next(iter(config.active_stages.values())).recipe
     frames, quick, env = recipe["frames"], config.evaluation, config.env
     source = source_of(maker(env.world), sensor, env.episodes, quick.split, recipe.get("label"))
@@ -101,11 +92,7 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 
 
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
-    """Return the clean condition and the suite's corruptions of ``sensor``.
-
-    If the suite contains no corruption of the sensor, return all registered corruptions of the
-    sensor.
-    """
+    """Return clean and the suite's corruptions of ``sensor`` (all of them if it has none)."""
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     chosen = chosen or list(names(sensor))
@@ -138,12 +125,7 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
-    """Return one row per measure and condition, with the values before and after training and their
-    difference.
-
-    Each entry is [value, lower bound, upper bound]; the bounds are null if there is no confidence
-    interval.
-    """
+    """Return one row per measure and condition; values are [value, low, high] (null: none)."""
     records = []
     for condition, what in _cells(scores):
         first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))
@@ -185,10 +167,7 @@ def _cells(scores: Scores) -> list[tuple[str, str]]:
 
 
 def picture(scores: Scores, about: str) -> Figure:
-    """Plot a bar chart with one panel per measure.
-
-    Each condition has two bars: one before training and one after training.
-    """
+    """Plot a bar chart with one panel per measure, and two bars per condition."""
     measures = [what for what in MEASURES if any(other == what for _, other in _cells(scores))]
     figure = Figure(figsize=(9, 3.1 * len(measures)), layout="constrained")
     for axis, what in zip(

@@ -40,9 +40,7 @@ Repairer = Callable[[list[str]], list[str]]
 
 
 def corrupted(texts: Sequence[str], severity: float, split: str, seed: int = 0) -> list[Repair]:
-    """Corrupt every text with every family, and return the results without repair (``repaired``
-    equals ``heard``).
-    """
+    """Corrupt every text with every family; ``repaired`` of the results equals ``heard``."""
     repairs = []
     for family in FAMILIES:
         for index, clean in enumerate(texts):
@@ -63,9 +61,7 @@ def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
 
 
 def alone(rewriter: Rewriter) -> Repairer:
-    """Return a function that repairs instructions with a language model, without the classifier and
-    the gate.
-    """
+    """Return a function that repairs with a language model, without classifier and gate."""
 
     def repair(texts: list[str]) -> list[str]:
         parts = [passages(text) for text in texts]
