@@ -1,6 +1,4 @@
-"""Define attention, transformer layers, and the instruction encoder of the planner and the
-policy.
-"""
+"""Attention, transformer layers, and the instruction encoder of the planner and the policy."""
 
 from __future__ import annotations
 
@@ -73,15 +71,7 @@ class Layer(nn.Module):
 
 
 class TextReader(nn.Module):
-    """Base class of networks that read an instruction with a small transformer.
-
-    Args:
-        vocabulary: words of the instructions.
-        width: width of all layers.
-        heads: attention heads.
-        layers: transformer layers over the text.
-        dropout: dropout rate.
-    """
+    """Base class of networks that read an instruction with a small transformer."""
 
     concept_words: Tensor
     seen: nn.Linear  # layers of :meth:`concept_features`, which a subclass creates

@@ -11,10 +11,8 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-# how fast a view's weight falls as the view deviates from the mean (chosen on val_seen)
-RATE = 4.0
-# largest exponent (heuristic); the weight is at least exp(-3) = 0.05 times that of a typical view
-CAP = 3.0
+RATE = 4.0  # how fast a weight falls as its view deviates from the mean (chosen on val_seen)
+CAP = 3.0  # largest exponent (heuristic): weights are at least exp(-3) = 0.05 of a typical view's
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 

@@ -28,30 +28,18 @@ CHANNELS = {RGB: 3, DEPTH: 1}
 
 
 def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
-    """Check that a world has the sensors and the number of views that an agent declares.
+    """Raise ValueError if a world lacks the sensors or the number of views that an agent needs.
 
-    Args:
-        agent: any agent; its ``sensors`` and ``views`` are compared.
-        sensors: the sensors of the world.
-        world: name of the world, for messages.
-
-    Raises:
-        ValueError: If RGB or depth is missing, or the number of views differs.
+    ``world`` is the name of the world, for messages.
     """
     contract = as_agent(agent)
     declared = contract.sensors
     read = declared if isinstance(declared, Sequence) else ()
-    for name in (RGB, DEPTH):
-        if name in read and name not in sensors:
-            raise ValueError(
-                f"{type(agent).__name__} reads {name}, which the world {world} does not have: it "
-                f"has {', '.join(sensors)}. Choose another agent, or another world (env=...)."
-            )
     for name in read:
         if name not in (*sensors, POSE):
             raise ValueError(
-                f"{type(agent).__name__}.sensors: {unknown('sensor', name, sensors)} These are the "
-                f"sensors of the world {world}."
+                f"{type(agent).__name__} reads {name}, which the world {world} does not have: "
+                f"{unknown('sensor', name, sensors)} Or choose another agent or world (env=...)."
             )
     expected = contract.views
     if expected not in (1, VIEWS):
@@ -117,12 +105,7 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
 
 
 def pose(observation: Mapping[str, Any]) -> np.ndarray:
-    """Check the pose [3] and return it unchanged.
-
-    Raises:
-        KeyError: If the pose is missing.
-        ValueError: If the pose does not consist of three finite numbers.
-    """
+    """Return the pose [3]; raise KeyError or ValueError if it is missing or not finite."""
     array = _entry(observation, POSE)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise ValueError(
@@ -132,8 +115,8 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
     return array
 
 
-def instruction(text: str, vocabulary: Vocabulary) -> str:
-    """Return ``text``, and warn if it contains no word of ``vocabulary``, or too many words.
+def instruction(text: str, vocabulary: Vocabulary) -> None:
+    """Warn if ``text`` contains no word of ``vocabulary``, or too many words.
 
     Raises:
         TypeError: If ``text`` is not a string.
@@ -151,7 +134,6 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
             f"{MAX_WORDS}.",
             stacklevel=3,
         )
-    return text
 
 
 def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:

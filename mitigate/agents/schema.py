@@ -150,8 +150,7 @@ def check(
         where: dotted name of the settings, for messages.
 
     Raises:
-        ValueError: If a setting is unknown or has an invalid value; the message names the file and
-            the setting.
+        ValueError: If a setting is unknown or has an invalid value.
     """
     for name, value in values.items():
         key = f"{where}.{name}"

@@ -16,6 +16,7 @@ import re
 from collections.abc import Sequence
 
 import torch
+from torch import Tensor
 from torch.nn.utils.rnn import pad_sequence
 
 THING_NAMES = (
@@ -90,20 +91,21 @@ class Vocabulary:
         ids = [self.ids.get(word, UNKNOWN) for word in _WORD.findall(lowered)]
         return ids[:MAX_WORDS] or [UNKNOWN]
 
-    def concept_words(self) -> torch.Tensor:
-        """Return a matrix float32 [concepts, vocabulary] whose row c averages the words of concept
-        c.
+    def batch(self, texts: Sequence[str], blank: bool = False) -> Tensor:
+        """Return the ids of n texts, int64 [n, longest], padded with ``PAD``.
+
+        With ``blank``, every text is read as if it were empty.
         """
+        rows = [torch.tensor(self.encode("" if blank else text)) for text in texts]
+        return pad_sequence(rows, True, PAD)
+
+    def concept_words(self) -> Tensor:
+        """Return float32 [concepts, vocabulary], the mean of each concept's one-hot words."""
         out = torch.zeros(len(CONCEPTS), len(self))
         for row, concept in enumerate(CONCEPTS):
             ids = [self.ids[word] for word in _words_of(concept)]
             out[row, ids] = 1.0 / len(ids)
         return out
-
-
-def pad(rows: list[list[int]]) -> torch.Tensor:
-    """Return token rows as int64 [n, longest], padded with ``PAD``."""
-    return pad_sequence([torch.tensor(row) for row in rows], True, PAD)
 
 
 def _words_of(concept: str) -> list[str]:

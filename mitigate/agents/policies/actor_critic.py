@@ -13,13 +13,12 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor, nn
-from torch.distributions import Categorical, Distribution, OneHotCategorical
+from torch.distributions import Categorical, Distribution
 
+from mitigate.agents.policies.answers import DISCRETE
 from mitigate.agents.policies.policy import Policy, copied
 from mitigate.agents.policies.stable_baselines import StableBaselinesPolicy
 
-# torchrl's OneHotCategorical is a subclass of Categorical
-_CATEGORICAL = (Categorical, OneHotCategorical)
 HIDDEN = 64  # width of a new critic, the default of stable-baselines3
 
 
@@ -32,7 +31,7 @@ class Joint(Distribution):
 
     def __init__(self, parts: Sequence[Distribution]) -> None:
         self.parts = [
-            Categorical(logits=part.logits) if isinstance(part, _CATEGORICAL) else part
+            Categorical(logits=part.logits) if isinstance(part, DISCRETE) else part
             for part in parts
         ]
         super().__init__(self.parts[0].batch_shape[:1], validate_args=False)
@@ -49,11 +48,7 @@ class Joint(Distribution):
         )  # type: ignore[return-value]
 
     def entropy(self) -> Tensor:
-        """Return the entropy of each action's distribution, [B].
-
-        Raises:
-            ValueError: If the distribution of a part has no known entropy.
-        """
+        """Return the entropy of each action's distribution, [B]; ValueError if it is unknown."""
         try:
             return sum(_per_action(part.entropy()) for part in self.parts)  # type: ignore[return-value]
         except NotImplementedError:

