@@ -118,10 +118,7 @@ class FrameGate(Adapter):
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Set the threshold so that the gate is open for a fraction ``touched`` of clean frames.
-
-        ``logits`` [n] are the gate's logits for these frames.
-        """
+        """Open the gate for a fraction ``touched`` of the clean frames with ``logits`` [n]."""
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
 
@@ -157,10 +154,9 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 class Gate(nn.Module):
     """Compute one logit per frame; its sigmoid scales the adapter's correction.
 
-    The logit is computed from the adapter's bottleneck: the mean and the root mean square of each
-    of its ``middle`` channels over the frame. The gate should be closed for clean frames, so that
-    their features do not change. A recipe may add a loss for this purpose (``recipes/encoder.py``).
-    The gate is always trained together with the adapter.
+    The logit is computed from the mean and the root mean square of each of the ``middle`` channels
+    of the adapter's bottleneck. ``recipes/encoder.py`` adds a loss that closes the gate for clean
+    frames. The gate is always trained together with the adapter.
     """
 
     def __init__(self, middle: int) -> None:
@@ -371,8 +367,7 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     Args:
         height: rows of the map.
         width: columns of the map.
-        step: angle in degrees from a view to the next view on its right
-            (``mitigate/core/observation.py``).
+        step: angle in degrees from a view to the next view on its right.
         hfov: horizontal field of view in degrees; views are square.
 
     Returns:

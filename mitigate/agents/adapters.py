@@ -2,11 +2,11 @@
 
 ``insert_adapters(model, target_modules=...)`` adds a residual layer ``x + up(act(down(x)))`` after
 named modules, as PEFT does for attention layers. Inserting adapters changes neither the names and
-values of the backbone's weights nor its ``forward``. The output of the backbone stays the same
-until ``up`` is trained. Each adapter is a child of its module and is called by a forward hook.
-``adapter_layers.py`` defines the layers. Modules that return maps get convolutional adapters, and
-modules that return tokens get linear adapters. *Ring* adapters also read the neighbours of each
-view of a panorama. *Gates* restrict the correction to frames that they classify as corrupted.
+values of the backbone's weights nor its ``forward``, nor its output until ``up`` is trained. Each
+adapter is a child of its module and is called by a forward hook. Modules that return maps get
+convolutional adapters, and modules that return tokens get linear adapters. *Ring* adapters also
+read the neighbours of each view of a panorama. *Gates* restrict the correction to frames that they
+classify as corrupted.
 """
 
 from __future__ import annotations

@@ -32,14 +32,12 @@ def build_agent(
 
     Args:
         node: the config of the agent, with ``_target_``.
-        weights: file or folder of the initial weights; None initialises them randomly with
-            ``seed``.
+        weights: file or folder of the initial weights; None initialises them with ``seed``.
         seed: seed of random initial weights.
         parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    # Invalid settings are rejected before the agent is built.
-    # A huge width would exhaust the memory, and some patterns take too long to match.
+    # checked first: a huge width would exhaust the memory, and some patterns match too slowly
     if node["_target_"] in schema.KINDS:
         config = plain(node)
         known = schema.schema_of(config["_target_"])

@@ -60,18 +60,12 @@ class Encoder(nn.Module):
     """Base class of encoders: a stem and residual stages turn a view into a 4x4 feature map.
 
     Views are first resized to ``size`` x ``size`` pixels.
-
-    Attributes:
-        channels: channels of the input.
-        widths: channels of the stem and of each stage.
-        resize: mode of ``F.interpolate`` with which views are resized.
-        stride: ``size`` must be a multiple of this number of pixels.
     """
 
-    channels: int
-    widths: tuple[int, ...]
-    resize: str
-    stride = 16
+    channels: int  # of the input
+    widths: tuple[int, ...]  # channels of the stem and of each stage
+    resize: str  # mode of ``F.interpolate`` with which views are resized
+    stride = 16  # ``size`` must be a multiple of this number of pixels
 
     def __init__(self, size: int) -> None:
         super().__init__()
@@ -203,10 +197,7 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
 
 
 class CameraRGB(RGBEncoder):
-    """Encode four columns of RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits.
-
-    Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
-    """
+    """Encode 4 columns of uint8 ``[n, H, W, 3]`` as features [n, 4, width] and logits [n, 4, C]."""
 
     kernel = (GRID, 1)
 

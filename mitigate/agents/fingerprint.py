@@ -35,8 +35,7 @@ KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # record hooks of this module by name only: state_dict() already contains the adapters they call
 _OWN_HOOKS = "mitigate.agents.adapters"
-# The fingerprint skips the attributes that torch itself adds to modules.
-# It also skips the hook handle of an adapter and the last logits of a gate (``judged``).
+# attributes of torch itself, the hook handle of an adapter and the last logits of a gate
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -70,11 +69,8 @@ def fingerprint(
 ) -> str:
     """Return the fingerprint of ``agent`` with the ``sensors`` of a world.
 
-    Args:
-        agent: any object.
-        sensors: the sensors of the world.
-        front: fingerprints of the guards between the world and the agent.
-        version: a string, set by the user, that identifies state that cannot be read.
+    ``front`` are the fingerprints of the guards between them. ``version`` is a string of the user
+    that identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -82,9 +78,8 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For a shipped agent, this includes the attributes whose values differ from those of a new agent
-    with the same settings. For an agent whose ``settings()`` is missing or inherited, this
-    includes all its attributes.
+    This includes the attributes of a shipped agent that differ from those of a new agent with the
+    same settings, and all attributes of an agent whose ``settings()`` is missing or inherited.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}

@@ -85,12 +85,9 @@ class LearnedReliability(nn.Module):
 def weigher(
     width: int, *, learned: bool = False, rate: float | None = None, cap: float = CAP
 ) -> Callable[[Tensor], Tensor]:
-    """Return a function that computes one weight per view from the view's ``width`` features.
+    """Return :func:`reliability`, or a :class:`LearnedReliability` of ``width`` features.
 
-    The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
-
-    Raises:
-        ValueError: If ``learned`` and ``rate`` are both set.
+    Raises ValueError if ``learned`` and ``rate`` are both set.
     """
     if learned and rate is not None:
         raise ValueError(

@@ -182,10 +182,8 @@ def build_from(config: Path, weights: Path | None = None) -> Any:
 def config_of(weights: Path) -> Path:
     """Return the path of the config that belongs to ``weights``, which is a file or a folder.
 
-    Raises:
-        FileNotFoundError: If there are no weights.
-        ValueError: If ``weights`` is a file inside a hardened folder; the folder itself must be
-            named.
+    Raises FileNotFoundError if there are no weights, and ValueError for a file inside a hardened
+    folder.
     """
     if is_hardened(weights) or (weights / PEFT_WEIGHTS).is_file():
         return weights / CONFIG

@@ -17,11 +17,9 @@ from mitigate.agents.text import MAX_WORDS, UNKNOWN, Vocabulary
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# Depth is rejected if most values exceed FARTHEST metres (heuristic).
-# Indoors, at least the floor is always nearer than that.
+# depth is rejected if most values exceed this (heuristic): indoors, at least the floor is nearer
 FARTHEST = 50.0
-# A panorama causes a warning if its depth never exceeds NEAREST metres (heuristic).
-# In almost every room, at least one surface is farther away.
+# a panorama whose depth never exceeds this causes a warning (heuristic): rooms are larger
 NEAREST = 1.0
 
 CHANNELS = {RGB: 3, DEPTH: 1}
@@ -60,18 +58,10 @@ def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
-    """Return the entry "rgb" (uint8) or "depth" (float32 metres), ready for torch.
-
-    A warning is issued for depth that looks normalised.
-
-    Args:
-        observation: an observation of the world.
-        name: "rgb" or "depth".
-        views: the number of views, 1 or 12.
+    """Return the entry "rgb" (uint8) or "depth" (float32 metres) of 1 or 12 ``views``.
 
     Returns:
-        An array [12, H, H, c] for 12 views, or [H, H, c] for one view. The array is C-contiguous
-        and writeable.
+        An array [12, H, H, c], or [H, H, c] for one view, ready for torch.
 
     Raises:
         KeyError: If the entry is missing.

@@ -4,10 +4,8 @@ The RGB encoder predicts the concepts in the central 36 degrees of each view. Th
 the recurrent policy multiply the probability of each concept by the text embedding of its word. So
 the concepts in views and the words of instructions share one embedding space.
 
-A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint. Loading weights with a different vocabulary of the same size would raise no error, but
-each embedding would represent a wrong word.
+fingerprint: with a different vocabulary, each embedding would represent a wrong word.
 """
 
 from __future__ import annotations

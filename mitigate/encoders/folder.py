@@ -1,9 +1,8 @@
 """Save a trained encoder as a folder that plain PyTorch can load, and load such folders.
 
 Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
-weights are stored in ``model.safetensors``. ``encoder.json`` describes the input frames and the
-output with which the weights were trained. The manifest lists all files. Loading runs no code from
-the folder. Therefore the caller must construct the encoder.
+weights are stored in ``model.safetensors``. ``encoder.json`` describes the input and the output.
+Loading runs no code from the folder. Therefore the caller must construct the encoder.
 """
 
 from __future__ import annotations

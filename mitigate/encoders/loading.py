@@ -156,12 +156,7 @@ def find_weights(weights: str) -> Path:
 
 
 def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
-    """Load a state dict into ``model``.
-
-    Args:
-        model: the encoder.
-        weights: as in :func:`find_weights`.
-        prefix: prefix of the entries to load; it is removed from their names.
+    """Load the entries of a state dict whose names begin with ``prefix`` into ``model``.
 
     Raises:
         FileNotFoundError: If the file does not exist.

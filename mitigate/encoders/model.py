@@ -200,13 +200,10 @@ class Encoder(nn.Module):
         adapters: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__()
-        for name, value, allowed in (
-            ("sensor", sensor, SENSORS),
-            ("pool", pool, POOL),
-            ("tune", tune, TUNE),
-        ):
+        choices = {"sensor": (sensor, SENSORS), "pool": (pool, POOL), "tune": (tune, TUNE)}
+        for name, (value, allowed) in choices.items():
             if value not in allowed:
-                raise ValueError(unknown(f"agent.{name}", value, list(allowed)))
+                raise ValueError(unknown(f"agent.{name}", value, allowed))
         if model is None:
             raise ValueError(
                 "agent.model is not set. Set it to your encoder: package.module:callable, or an "

@@ -175,10 +175,7 @@ def measure(
     unseen: Frames,
     seed: int,
 ) -> dict[tuple[str, str, str], Score]:
-    """Return the score for every (encoder, condition, measure).
-
-    The clean features of the first encoder are the reference, to which the probe is also fitted.
-    """
+    """Return the score for every (encoder, condition, measure), relative to the first encoder."""
     original = next(iter(encoders.values()))
     clean = Corruption("clean", 0.0)
     total = len(train) + len(unseen) * (1 + len(encoders) * len(conditions))

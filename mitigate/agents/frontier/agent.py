@@ -2,9 +2,7 @@
 
 A frontier is the border between known and unknown space. The agent goes to the most promising
 frontier until the object is found, and then to the object. The method follows VLFM, L3MVN and
-WMNav. Only the RGB encoder, which recognises objects, is learned. ``reset(instruction)`` starts an
-episode; ``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same
-for several episodes at once.
+WMNav. Only the RGB encoder, which recognises objects, is learned.
 """
 
 from __future__ import annotations
@@ -300,11 +298,7 @@ class FrontierAgent(SideBySide, nn.Module):
 
 
 def named(text: str) -> int | None:
-    """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
-
-    In a route description, the object named last is the goal. An instruction such as "find a chair"
-    names only one object.
-    """
+    """Return the index in ``THING_NAMES`` of the object named last, a route's goal, or None."""
     ends = [
         (match.end(), len(name), i)
         for i, name in enumerate(THING_NAMES)

@@ -81,7 +81,7 @@ class Grid:
             depth: float32 [H, W] metres, of a forward view of 90 degrees.
             pose: [3].
             seen: [n, 2], for each column from left to right, the probability that the object is
-                visible and the probability that it is visible within 2 m.
+                visible, and that it is visible within 2 m.
             worth: [n], the likelihood that the object lies in the direction of each column.
         """
         self._looks += 1

@@ -1,8 +1,4 @@
-"""Policies from other libraries as actor-critics, for reinforcement learning.
-
-:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
-estimate of the return from the current frame to the end of the episode.
-"""
+"""Add a critic to a policy, for reinforcement learning: it estimates the return of an episode."""
 
 from __future__ import annotations
 
@@ -60,18 +56,12 @@ class Joint(Distribution):
 
 
 class ActorCritic(nn.Module):
-    """A policy with a critic.
+    """A policy (not copied) with a critic.
 
-    For a policy of stable-baselines3, the new critic starts as a copy of the critic in the policy.
-    Other policies get a new critic, a small network that reads the output of one of the policy's
-    modules. Training the critic does not train modules of the policy, so that wrong values cannot
+    The critic of a stable-baselines3 policy is a copy of the policy's critic. Other policies get a
+    small network that reads the output of ``module``; ``frames`` are example frames [1, ...] for
+    its size. Training the critic does not train modules of the policy, so that wrong values cannot
     change the actions directly.
-
-    Args:
-        policy: the policy. It is not copied.
-        frames: an example frame [1, ...] for each sensor; the frames determine the input size of a
-            new critic.
-        module: name of the module of the network whose output a new critic reads.
 
     Raises:
         ValueError: If the policy has a memory, or returns no distribution of its actions.

@@ -134,11 +134,7 @@ class Policy(Agent, nn.Module):
         return self.action(answer)
 
     def entropy(self, observation: Mapping[str, Any]) -> Tensor:
-        """Return the entropy of the last action's distribution (``agents/agent.py``).
-
-        Raises:
-            ValueError: If the policy returns no distribution of actions.
-        """
+        """Return the entropy of the last action's distribution; ValueError if there is none."""
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]
         if isinstance(answer, Tensor):

@@ -118,8 +118,7 @@ class ServedPolicy(Agent):
 
         Raises:
             KeyError: If the observation lacks an entry.
-            ValueError: If an entry is not an array of numbers, or the server returns no valid
-                action.
+            ValueError: If an entry is not an array of numbers, or the server's action is invalid.
             ConnectionError: If the server returns no usable answer in time.
         """
         check_started(self._episode is not None)

@@ -1,9 +1,7 @@
 """The recurrent agent has one forward camera and a memory, and chooses one action per step.
 
 The agent corresponds to VLN-CE's recurrent agents. With RGB only, it has the same input as
-vision-language models with one camera. ``reset(instruction)`` starts an episode;
-``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same for several
-episodes at once.
+vision-language models with one camera.
 """
 
 from __future__ import annotations
@@ -47,7 +45,6 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
 LIMIT = 90  # steps of a training rollout at most (heuristic); the expert takes 53 on average
 _SCALE = 5.0  # unit of the predicted distance, in metres
 
@@ -61,15 +58,12 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """Memory of one episode: its text, the state of the policy, and odometry.
-
-    ``before`` holds the state and the motion before the last decision.
-    """
+    """Memory of one episode."""
 
     text: Text
     state: State
     odometer: Odometer
-    before: tuple[State, np.ndarray] | None = None
+    before: tuple[State, np.ndarray] | None = None  # state and motion before the last decision
 
 
 class RecurrentAgent(SideBySide, nn.Module):
@@ -105,7 +99,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     views = 1
     actions = ACTIONS
     together = 8  # (heuristic) an episode that runs alone takes 2.5 times as long
-    loss_weights = LOSS_WEIGHTS
+    loss_weights = {"distance": 0.3, "grounding": 0.3}
     _walk: Walk | None = None
 
     def __init__(

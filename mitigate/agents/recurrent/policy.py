@@ -196,17 +196,12 @@ class Policy(TextReader):
         return self.act(self.dropout(hidden)).float()
 
     def forward(self, text: Text, views: Tensor, moves: Tensor) -> dict[str, Tensor]:
-        """Run all steps of E episodes.
-
-        Args:
-            text: E instructions.
-            views: [E, T, F].
-            moves: [E, T, MOVES].
+        """Run all steps of E episodes, given views [E, T, F] and moves [E, T, MOVES].
 
         Returns:
-            A dict with the entries "logits" [E, T, 4]; "distance" [E, T], the predicted metres to
-            the goal divided by 5; "grounding" [E, T, 4], one logit per column, which predicts
-            whether the column shows the goal's landmark; and "state" [E, T, width].
+            "logits" [E, T, 4]; "distance" [E, T], the predicted metres to the goal divided by 5;
+            "grounding" [E, T, 4], one logit per column for whether it shows the goal's landmark;
+            and "state" [E, T, width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

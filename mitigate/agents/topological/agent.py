@@ -1,7 +1,6 @@
 """The reference agent extends its topological map at each decision and goes to a ghost node.
 
-``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
-agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
+The agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
 observation renders frames only for decisions.
 """
 
@@ -58,9 +57,6 @@ if TYPE_CHECKING:
 
 MAX_DECISIONS = 15  # maximum number of decisions; ETPNav uses 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-# weights of the auxiliary losses: the planner predicts the distance to the goal and the views that
-# show its landmark ("grounding"); perception predicts concepts and free space ("waypoints")
-LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # the planner predicts distances in metres divided by this number
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
 # names of the frozen modules of the ImageNet encoder
@@ -164,11 +160,7 @@ class TopologicalAgent(Agent, nn.Module):
     # features, which training recipes use ----------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Encode P panoramas; inputs in ``blind`` are blanked.
-
-        Args:
-            rgb: uint8 [P, 12, H, W, 3].
-            depth: float32 metres [P, 12, H, W, 1].
+        """Encode P panoramas, uint8 [P, 12, H, W, 3] and metres [P, 12, H, W, 1].
 
         Returns:
             View features [P, 12, rgb + concepts + depth], which contain the probabilities of
@@ -197,7 +189,9 @@ class TopologicalAgent(Agent, nn.Module):
 
     # training ---------------------------------------------------------------------------------
 
-    loss_weights = LOSS_WEIGHTS
+    # the planner predicts the distance to the goal and the views that show its landmark
+    # ("grounding"); perception predicts concepts and free space ("waypoints")
+    loss_weights = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = LABELS
     plain_walks = False

@@ -87,11 +87,8 @@ class TopologicalMap:
             [min(distance[p] + self._gap(p, g) for p in self.ghosts[g].parents) for g in ids],
             np.float32,
         )
-        places = [
-            self.positions[self.current],
-            *self.positions,
-            *(self.ghosts[g].position for g in ids),
-        ]
+        ghosts = [self.ghosts[g].position for g in ids]
+        places = [self.positions[self.current], *self.positions, *ghosts]
         kinds = [_STOP, *[_NODE] * len(self.positions), *[_GHOST] * len(ids)]
         routes = np.concatenate([[0.0], distance, travel])
         sightings = np.full((len(ids), SIGHTINGS, 2), -1, np.int64)
@@ -133,12 +130,11 @@ class TopologicalMap:
         if self.current >= 0 and node != self.current:
             self._join(self.current, node)
         self.current = node
-        for ghost in [
-            g for g, item in self.ghosts.items() if np.hypot(*(item.position - position)) < MERGE
-        ]:
-            for parent in self.ghosts[ghost].parents:
-                self._join(parent, node)
-            del self.ghosts[ghost]
+        for ghost, item in [*self.ghosts.items()]:
+            if np.hypot(*(item.position - position)) < MERGE:
+                for parent in item.parents:
+                    self._join(parent, node)
+                del self.ghosts[ghost]
         return node
 
     def _sight(self, node: int, where: np.ndarray, sighting: tuple[int, int]) -> None:

@@ -135,12 +135,7 @@ class Planner(TextReader):
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
     ) -> dict[str, Tensor]:
-        """Score every token.
-
-        Args:
-            text: the result of ``read``.
-            views: [P, 12, ...], the result of ``look``.
-            batch: the padded decisions.
+        """Score every token, given the results of ``read`` and ``look``.
 
         Returns:
             "logits" [B, 1 + N + G], -inf for tokens that are not allowed; "distance" [B, 1 + N +

@@ -78,11 +78,7 @@ class Piece:
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """Return the decision with the oracle's answer, which is based on shortest paths.
-
-    Raises:
-        ValueError: If the world's expert does not provide distances.
-    """
+    """Return the decision with the oracle's answer, which is based on shortest paths."""
     nodes = [walk.expert.distance(p) for p in graph.positions]
     ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
     if np.isnan([*nodes, *ghosts]).any():

@@ -258,17 +258,12 @@ class Store:
 
     Args:
         agent: the agent whose encoders are used.
-        world: function that returns a world. The world must render from any pose and have an
-            expert. Its ground truth must have the entry "seen", which marks the objects that are
-            visible in each view.
+        world: function that returns a world, which must render from any pose and have an expert.
+            Its ground truth must have the entry "seen": the objects that each view shows.
         root: parent folder of the stores, which has one subfolder per set of encoders.
-        schedule: samples the corruption of each variant. Its ``clean_share`` is the fraction of
-            rollouts on clean scenes.
+        schedule: samples the corruption of each variant, and the share of rollouts on clean scenes.
         variants: number of corrupted variants per scene.
         seed: corruption seed.
-
-    Raises:
-        ValueError: If ``variants`` is above 0, but no schedule samples corruptions.
     """
 
     def __init__(

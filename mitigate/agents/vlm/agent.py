@@ -287,10 +287,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # files ------------------------------------------------------------------------------------
 
     def save(self, folder: str | Path) -> None:
-        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model.
-
-        Raises ValueError if the agent has no LoRA weights.
-        """
+        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model."""
         with folders.write_folder(folder, "agent") as draft:
             tensors = {name: value.cpu().clone() for name, value in self._adapter().items()}
             self.network.peft_config["default"].base_model_name_or_path = self.model
@@ -304,8 +301,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.
 
-        Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
-        weights are damaged, or were trained for a different base model or for other modules.
+        Raises FileNotFoundError if there are none, and ValueError if they are damaged, or were
+        trained for a different base model or for other modules.
         """
         from peft import set_peft_model_state_dict
 
