@@ -1,3 +1,1 @@
-"""Navigation agents with the methods ``reset`` and ``act``; ``topological`` is the
-reference agent.
-"""
+"""Navigation agents with the methods ``reset`` and ``act``; ``topological`` is the reference."""

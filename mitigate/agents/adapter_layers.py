@@ -49,18 +49,19 @@ def check_sizes(owner: str, kernel: int = 1, **sizes: int | None) -> None:
         raise ValueError(f"kernel of a {owner} must be odd, got {kernel}.")
 
 
+def set_to_zero(*layers: nn.Module) -> None:
+    """Set all weights and biases of ``layers`` to zero."""
+    for parameter in nn.ModuleList(layers).parameters():
+        nn.init.zeros_(parameter)
+
+
 class Judged:
-    """Hold a gate's logits ``[n]`` for the last batch; a frame's gate is open if its logit is above
-    0.
-    """
+    """The logits ``[n]`` of a gate for the last batch; a gate is open for logits above 0."""
 
     logits: Tensor
 
     def __getstate__(self) -> dict[str, Tensor]:
-        """Leave out the logits in a copy, because they belong to one forward pass and its
-        gradients.
-        """
-        return {}
+        return {}  # not copied, because the logits belong to one forward pass and its gradients
 
 
 class FrameGate(Adapter):
@@ -117,24 +118,15 @@ class FrameGate(Adapter):
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Set the threshold so that the gate is open for a given fraction of clean frames.
-
-        Args:
-            logits: the gate's logits [n] of clean frames.
-            touched: fraction of clean frames for which the gate is open, in [0, 1].
-        """
+        """Open the gate for a fraction ``touched`` of the clean frames with ``logits`` [n]."""
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
 
 def textures(x: Tensor) -> Tensor:
-    """Return statistics that distinguish noise, blur, quantisation, darkness and holes from clean
-    frames.
+    """Return statistics [n, C * TEXTURES] of frames [n, C, h, w] with a value range of about 1.
 
-    Args:
-        x: frames ``[n, C, h, w]`` whose values have a range of about 1.
-
-    Returns:
-        float32 [n, C * TEXTURES]. Magnitudes are returned as logarithms.
+    They distinguish noise, blur, quantisation, darkness and holes from clean frames. Magnitudes are
+    logarithms.
     """
     features = [x.mean((2, 3)), x.std((2, 3)), x.flatten(2).amin(2), x.flatten(2).amax(2)]
     for level in (x, F.avg_pool2d(x, 2)):
@@ -148,14 +140,9 @@ def textures(x: Tensor) -> Tensor:
 
 
 def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
-    """Return ``corrected`` for frames whose gate is open, and ``x`` for all other frames.
+    """Return ``corrected`` for frames whose gate is open, and the input ``x`` for all others.
 
-    If there is no gate, or during training, all frames are corrected.
-
-    Args:
-        gates: the gate of the adapter; an empty list means no gate.
-        x: the input of the adapter.
-        corrected: output of the layer, of the same shape.
+    Without a gate (an empty list), or during training, all frames are corrected.
     """
     if not gates or gates[0].training:
         return corrected
@@ -167,10 +154,9 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 class Gate(nn.Module):
     """Compute one logit per frame; its sigmoid scales the adapter's correction.
 
-    The logit is computed from the adapter's bottleneck: the mean and the root mean square of each
-    of its ``middle`` channels over the frame. The gate should be closed for clean frames, so that
-    their features do not change. A recipe may add a loss for this purpose (``recipes/encoder.py``).
-    The gate is always trained together with the adapter.
+    The logit is computed from the mean and the root mean square of each of the ``middle`` channels
+    of the adapter's bottleneck. ``recipes/encoder.py`` adds a loss that closes the gate for clean
+    frames. The gate is always trained together with the adapter.
     """
 
     def __init__(self, middle: int) -> None:
@@ -178,9 +164,7 @@ class Gate(nn.Module):
         self.read = nn.Linear(2 * middle, 1)
 
     def forward(self, y: Tensor, over: tuple[int, ...]) -> Tensor:
-        """Return logits [n]; ``over`` lists all axes of ``y`` except the axes of
-        frames and channels.
-        """
+        """Return logits [n]; ``over`` are the axes of ``y`` other than frames and channels."""
         mean, power = (y.mean(over), (y * y).mean(over)) if over else (y, y * y)
         return self.read(torch.cat([mean, (power + 1e-6).sqrt()], 1))[:, 0]
 
@@ -221,8 +205,7 @@ class TokenAdapter(Adapter):
         self.batch, self.channels = batch, channels
         self.down, self.up = nn.Linear(channels, middle), nn.Linear(middle, channels)
         self.gate = Gate(middle) if gate else None
-        for parameter in self.up.parameters():
-            nn.init.zeros_(parameter)
+        set_to_zero(self.up)
 
     def forward(self, x: Tensor) -> Tensor:
         y = F.gelu(self.down(F.layer_norm(x, (self.channels,))))
@@ -275,8 +258,7 @@ class ConvAdapter(Adapter):
         self.up = nn.Conv2d(middle, channels, 1)
         self.gate = Gate(middle) if gate else None
         self.gates = []
-        for parameter in self.up.parameters():
-            nn.init.zeros_(parameter)
+        set_to_zero(self.up)
 
     def forward(self, x: Tensor) -> Tensor:
         y = F.gelu(self.down(x))
@@ -341,8 +323,7 @@ class RingAdapter(Adapter):
         self.score = nn.Conv2d(middle, 1, 1)
         self.mix = nn.Conv2d(2 * middle, middle, kernel, padding=kernel // 2)
         self.share, self.up = nn.Conv2d(middle, 1, 1), nn.Conv2d(middle, channels, 1)
-        for parameter in (*self.share.parameters(), *self.up.parameters()):
-            nn.init.zeros_(parameter)
+        set_to_zero(self.share, self.up)
 
     def forward(self, x: Tensor) -> Tensor:
         y = F.gelu(self.down(x))
@@ -363,16 +344,10 @@ class RingAdapter(Adapter):
         return through(self.gates, x, x + self.share(z).tanh() * (around - x) + self.up(z))
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return the maps, and the left and right neighbours of each map warped into its view.
+        """Return ``maps`` [P * views, C, h, w] and their left and right neighbours, warped to them.
 
-        Args:
-            maps: ``[P * views, C, h, w]``.
-            grid: result of :func:`neighbour_grid`.
-
-        Returns:
-            Three tensors with the shape of ``maps``. A warped neighbouring map is zero in cells
-            that the neighbouring view does not see, and it fades to zero within half a cell of its
-            border.
+        ``grid`` is the result of :func:`neighbour_grid`. A neighbour is zero in cells that it does
+        not see, and fades to zero within half a cell of its border.
         """
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
@@ -392,14 +367,12 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     Args:
         height: rows of the map.
         width: columns of the map.
-        step: angle in degrees from a view to the next view on its right
-            (``mitigate/core/observation.py``).
+        step: angle in degrees from a view to the next view on its right.
         hfov: horizontal field of view in degrees; views are square.
 
     Returns:
         float32 ``[2, h, w, 2]``: (x, y) in the coordinates of ``grid_sample`` with
-        ``align_corners=False``;
-        values are inside [-1, 1] for cells that the neighbouring view sees.
+        ``align_corners=False``; inside [-1, 1] for cells that the neighbouring view sees.
     """
     half = math.tan(math.radians(hfov) / 2)
     x = ((torch.arange(width) + 0.5) / width * 2 - 1) * half

@@ -2,11 +2,11 @@
 
 ``insert_adapters(model, target_modules=...)`` adds a residual layer ``x + up(act(down(x)))`` after
 named modules, as PEFT does for attention layers. Inserting adapters changes neither the names and
-values of the backbone's weights nor its ``forward``. The output of the backbone stays the same
-until ``up`` is trained. Each adapter is a child of its module and is called by a forward hook.
-``adapter_layers.py`` defines the layers. Modules that return maps get convolutional adapters, and
-modules that return tokens get linear adapters. *Ring* adapters also read the neighbours of each
-view of a panorama. *Gates* restrict the correction to frames that they classify as corrupted.
+values of the backbone's weights nor its ``forward``, nor its output until ``up`` is trained. Each
+adapter is a child of its module and is called by a forward hook. Modules that return maps get
+convolutional adapters, and modules that return tokens get linear adapters. *Ring* adapters also
+read the neighbours of each view of a panorama. *Gates* restrict the correction to frames that they
+classify as corrupted.
 """
 
 from __future__ import annotations
@@ -168,9 +168,7 @@ def scale_adapters(model: nn.Module, strength: float) -> None:
 
 
 def trainable_share(model: nn.Module) -> float:
-    """Return the parameter count of the adapters, as a fraction of the backbone's parameter
-    count.
-    """
+    """Return the number of parameters of the adapters, divided by that of the backbone."""
     count = sum(p.numel() for p in adapter_parameters(model))
     return count / max(1, sum(p.numel() for p in model.parameters()) - count)
 
@@ -267,17 +265,11 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
 
 def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
-    """Return an adapter that has the given ``settings`` and the weights ``tensors``.
-
-    Settings and shapes are first checked on the meta device. So a damaged file cannot cause a large
-    memory allocation.
-
-    Raises:
-        TypeError, RuntimeError: If the settings and the tensors do not match.
-    """
+    """Return an adapter with these settings and weights; raise TypeError if they do not match."""
     arguments = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
     kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(str(settings.get("kind")), shape)
+    # checked on the meta device, so that a damaged file cannot cause a large memory allocation
     with torch.device("meta"):
         empty: Any = kind(**arguments)
     if json.dumps(empty.settings, sort_keys=True) != json.dumps(settings, sort_keys=True):
@@ -324,9 +316,7 @@ def reject_adapted(model: nn.Module) -> None:
 
 
 def attach_all(model: nn.Module, adapters: dict[str, Adapter]) -> None:
-    """Freeze ``model`` and attach all ``adapters``; if an adapter does not fit, attach none of
-    them.
-    """
+    """Freeze ``model`` and attach all ``adapters``, or none if one of them does not fit."""
     gates = _gates_of(adapters)
     judges = {name for name, adapter in adapters.items() if isinstance(adapter, FrameGate)}
     if idle := sorted(judges - {*gates.values()}):
@@ -372,9 +362,7 @@ def _judge_input(module: nn.Module, inputs: Any) -> None:
 
 
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:
-    """Return a dict that maps each adapter's name to the name of the nearest gate in its
-    encoder.
-    """
+    """Map each adapter's name to the name of the nearest gate in its encoder."""
     controllable = [n for n, m in adapters.items() if isinstance(m, (ConvAdapter, RingAdapter))]
     # adapter name: (name of the module that encloses the adapter and its gate, name of the gate)
     gates: dict[str, tuple[str, str]] = {}

@@ -13,7 +13,7 @@ from __future__ import annotations
 import copy
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -100,9 +100,7 @@ class Agent:
         raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Update the agent's state after a motion that the agent did not choose itself.
-
-        The agent drops its plan.
+        """Update the agent's state, such as its plan, after a motion that it did not choose.
 
         Args:
             action: the action that is most similar to the motion, or -1 if no action is similar.
@@ -120,9 +118,7 @@ class Agent:
         return {}
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context in which identical frames are encoded only once, without changing any
-        action.
-        """
+        """Return a context in which identical frames are encoded only once; actions stay equal."""
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
@@ -149,12 +145,6 @@ class SideBySide(Agent):
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
     ) -> list[int]:
-        """Return one action per episode, for up to ``together`` episodes.
-
-        Raises:
-            KeyError, TypeError, ValueError: If an observation is invalid
-                (``agents/observation.py``).
-        """
         # the batch is always filled up to ``together``, so that sums are rounded identically
         padding = self.together - len(memories)
         observations = [*observations, *[observations[-1]] * padding]
@@ -218,9 +208,7 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return the settings of ``agent`` (its ``settings`` may be a method or a mapping), or None if
-    it has none.
-    """
+    """Return ``agent.settings``, which is a method or a mapping, as a dict; None if missing."""
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 
@@ -301,16 +289,27 @@ class Decisions(Protocol):
     def to(self, device: Any) -> Any: ...
 
 
+@dataclass
+class Batch:
+    """Base class of batches of decisions."""
+
+    def to(self, device: Any) -> Any:
+        """Return a copy of the batch on ``device``; dicts of tensors are copied, too."""
+
+        def moved(value: Any) -> Any:
+            if isinstance(value, dict):
+                return type(value)({name: moved(item) for name, item in value.items()})
+            return value.to(device) if isinstance(value, Tensor) else value
+
+        return replace(self, **{name: moved(value) for name, value in vars(self).items()})
+
+
 @runtime_checkable
 class Trainable(Protocol):
-    """The interface of an agent that objectives can train: an :class:`Agent` and an
-    ``nn.Module``.
-    """
+    """An agent that objectives can train: an :class:`Agent` that is also an ``nn.Module``."""
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the modules that can be frozen, trained and adapted; together they hold all
-        parameters.
-        """
+        """Return the modules that can be frozen, trained and adapted, with all parameters."""
 
     def collect(
         self,
@@ -363,12 +362,7 @@ class KnowsEntropy(Protocol):
 
 @runtime_checkable
 class Seeing(Protocol):
-    """A trainable agent whose encoders can be trained on single observations, without episodes.
-
-    Attributes:
-        encoders: maps a sensor to the names of the parts that read it.
-        labels: maps a sensor to the entry of a world's ``truth()`` that holds the training labels.
-    """
+    """A trainable agent whose encoders can be trained on single observations, without episodes."""
 
     encoders: Mapping[str, tuple[str, ...]]
     labels: Mapping[str, str]

@@ -1,6 +1,4 @@
-"""Define attention, transformer layers, and the instruction encoder of the planner and the
-policy.
-"""
+"""Attention, transformer layers, and the instruction encoder of the planner and the policy."""
 
 from __future__ import annotations
 
@@ -26,10 +24,7 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """Apply attention with queries from x [B, n, width] and keys and values from memory.
-
-        ``memory`` has the shape [B, m, width]. If ``rows`` is set, it uses ``memory[rows]``.
-        """
+        """Let x [B, n, width] attend to ``memory`` [B, m, width], or to ``memory[rows]``."""
 
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
@@ -57,13 +52,10 @@ class Layer(nn.Module):
     def forward(
         self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
     ) -> Tensor:
-        """Apply the layer.
+        """Apply the layer to x [B, n, width]; ``mask`` [B, n] is True where attention is allowed.
 
-        Args:
-            x: [B, n, width].
-            mask: bool [B, n], True where attention is allowed; None allows it everywhere.
-            text: text features [E, L, width], their mask [B, L], and for each row of x the index of
-                its text (int [B]).
+        ``text`` holds text features [E, L, width], their mask [B, L], and for each row of x the
+        index of its text (int [B]).
         """
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)
@@ -73,15 +65,7 @@ class Layer(nn.Module):
 
 
 class TextReader(nn.Module):
-    """Base class of networks that read an instruction with a small transformer.
-
-    Args:
-        vocabulary: words of the instructions.
-        width: width of all layers.
-        heads: attention heads.
-        layers: transformer layers over the text.
-        dropout: dropout rate.
-    """
+    """Base class of networks that read an instruction with a small transformer."""
 
     concept_words: Tensor
     seen: nn.Linear  # layers of :meth:`concept_features`, which a subclass creates
@@ -103,10 +87,7 @@ class TextReader(nn.Module):
         self.text_norm = nn.LayerNorm(width)
 
     def concept_features(self, concepts: Tensor) -> list[Tensor]:
-        """Return three features [..., width]: for objects, for near objects and for other concepts.
-
-        ``concepts`` holds the probability of each concept, [..., C].
-        """
+        """Return features [..., width] of objects, near objects and others in ``concepts``."""
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         parts = ((self.seen, THINGS), (self.close, NEAR), (self.kinds, slice(NEAR.stop, None)))
         return [layer(concepts[..., part] @ meaning[part]) for layer, part in parts]

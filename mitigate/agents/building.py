@@ -32,15 +32,13 @@ def build_agent(
 
     Args:
         node: the config of the agent, with ``_target_``.
-        weights: file or folder of the initial weights; None initialises them randomly with
-            ``seed``.
+        weights: file or folder of the initial weights; None initialises them with ``seed``.
         seed: seed of random initial weights.
         parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    # Invalid settings are rejected before the agent is built.
-    # A huge width would exhaust the memory, and some patterns take too long to match.
-    if loading.is_ours(node["_target_"]):
+    # checked first: a huge width would exhaust the memory, and some patterns match too slowly
+    if node["_target_"] in schema.KINDS:
         config = plain(node)
         known = schema.schema_of(config["_target_"])
         config = {name: value for name, value in config.items() if name in known}
@@ -80,11 +78,7 @@ def settings_of(
 ) -> dict[str, Any]:
     """Return ``node`` with the settings stored with ``weights`` (:func:`stored_settings`).
 
-    Args:
-        node: the config of the agent.
-        weights: file or folder of the weights.
-        overrides: options of the command line (``agent.blind=[rgb]``); these options take
-            precedence.
+    Options in ``overrides`` (``agent.blind=[rgb]``) take precedence.
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     overridden = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
@@ -96,10 +90,9 @@ def settings_of(
 
 
 def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
-    """Return ``node``; settings that are null or missing are taken from ``weights``.
+    """Take settings that are null or missing, such as the vocabulary, from ``weights``.
 
-    Examples of such settings are the adapters and the vocabulary. If ``weights`` is None, ``node``
-    is returned unchanged. Raises the same errors as :func:`stored_settings`.
+    Raises the same errors as :func:`stored_settings`.
     """
     if weights is None:
         return node
@@ -108,13 +101,10 @@ def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[st
 
 
 def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
-    """Return the agent settings stored in ``config.yaml`` next to ``weights``, read as plain data.
-
-    If the file does not exist, the result is empty.
+    """Return the agent settings in ``config.yaml`` next to ``weights``, if there is such a file.
 
     Raises:
-        ValueError: If the file was changed, if the weights belong to a different kind of agent than
-            ``node``, or if the file holds a value that the agent does not accept.
+        ValueError: If the file was changed, or does not fit the kind of agent in ``node``.
     """
     place = find(weights)
     if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):
@@ -124,7 +114,7 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
         return {}
     if problem := folders.problem(file):
         raise ValueError(f"{file} {problem}. {folders.AGAIN}")
-    if loading.is_ours(node["_target_"]):
+    if node["_target_"] in schema.KINDS:
         return loading.agent_settings(file, node["_target_"])
     constructor = locate(node["_target_"])
     names = {*signature(constructor).parameters, *map(str, node)} - {"_target_"}
@@ -133,11 +123,9 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """Return ``["agent=NAME"]`` for the kind of agent to which ``weights`` belong.
+    """Return ``["agent=NAME"]`` for the shipped kind of agent to which ``weights`` belong.
 
-    This agent config also sets the world options that the agent needs. The result is empty if
-    ``options`` already choose an agent, or if the kind of agent is the default kind, not shipped,
-    or unknown.
+    The result is empty for the default kind, or if ``options`` already choose an agent.
     """
     if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
         return []
@@ -150,9 +138,7 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
 
 
 def with_kind(options: Sequence[str]) -> list[str]:
-    """Return the ``options`` of an evaluation, with the ``agent=`` option that fits the weights in
-    ``checkpoint=``.
-    """
+    """Add the ``agent=`` option that fits the weights in ``checkpoint=``."""
     weights = values(options, "checkpoint")
     added = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *added]

@@ -35,8 +35,7 @@ KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # record hooks of this module by name only: state_dict() already contains the adapters they call
 _OWN_HOOKS = "mitigate.agents.adapters"
-# The fingerprint skips the attributes that torch itself adds to modules.
-# It also skips the hook handle of an adapter and the last logits of a gate (``judged``).
+# attributes of torch itself, the hook handle of an adapter and the last logits of a gate
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -53,15 +52,10 @@ _SOURCE = (type, types.FunctionType, property, types.MemberDescriptorType)  # in
 
 @dataclass(frozen=True)
 class Contents:
-    """The data that a fingerprint is computed from, and the state that could not be read.
+    """The data that a fingerprint is computed from, and the state that could not be read."""
 
-    Attributes:
-        parts: plain data by name.
-        unreadable: the reason for each unreadable attribute, by its dotted path.
-    """
-
-    parts: Mapping[str, Any]
-    unreadable: Mapping[str, str]
+    parts: Mapping[str, Any]  # plain data by name
+    unreadable: Mapping[str, str]  # the reason for each unreadable attribute, by its dotted path
 
     def explain(self) -> str:
         """Return the first unreadable attributes and their reasons as text."""
@@ -75,11 +69,8 @@ def fingerprint(
 ) -> str:
     """Return the fingerprint of ``agent`` with the ``sensors`` of a world.
 
-    Args:
-        agent: any object.
-        sensors: the sensors of the world.
-        front: fingerprints of the guards between the world and the agent.
-        version: a string, set by the user, that identifies state that cannot be read.
+    ``front`` are the fingerprints of the guards between them. ``version`` is a string of the user
+    that identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -87,9 +78,8 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    For a shipped agent, this includes the attributes whose values differ from those of a new agent
-    with the same settings. For an agent whose ``settings()`` is missing or inherited, this
-    includes all its attributes.
+    This includes the attributes of a shipped agent that differ from those of a new agent with the
+    same settings, and all attributes of an agent whose ``settings()`` is missing or inherited.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
@@ -120,29 +110,20 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
 
 def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` describes all attributes.
-
-    An inherited ``settings`` does not describe all attributes, because a subclass may add
-    attributes.
-    """
+    """Return whether ``settings`` describes all attributes: a subclass may have added some."""
     return _definer(agent) in (agent, type(agent))
 
 
 def _definer(agent: Any) -> Any:
-    """Return the object or class that defines ``settings``, or None.
-
-    Settings that come from ``__getattr__`` are ignored, because they belong to a wrapped object.
-    """
+    """Return the object or class that defines ``settings``, or None."""
+    # settings from ``__getattr__`` do not count, because they belong to a wrapped object
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
     return next(definers, None)
 
 
 def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
-    """Return the differences in attributes and layers between a shipped agent and a new agent.
-
-    Weights, and the attributes that ``run_state`` names, are excluded.
-    """
+    """Return the attributes and layers, except ``run_state``, that differ from a new agent's."""
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
     usual, _ = _entries(new, {"": new}, True)
@@ -160,17 +141,10 @@ def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
 def _entries(
     agent: Any, nets: Mapping[str, nn.Module], attributes: bool
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return two dicts: descriptions of the agent's contents, and reasons for unreadable contents.
+    """Return descriptions of attributes, layers and hooks, and why others are unreadable, by path.
 
-    The contents are attributes, layers and hooks. The keys of both dicts are dotted paths in the
-    agent.
-
-    Args:
-        agent: the agent.
-        nets: its networks.
-        attributes: whether the attributes of the agent and of the user's modules are included.
-            Attributes of other modules are always included, because ``settings()`` might not list
-            them.
+    Without ``attributes``, those of the agent and of the user's modules are left out. Those of
+    other modules are always included, because ``settings()`` might not list them.
     """
     entries: dict[str, Any] = {}
     unreadable: dict[str, str] = {}
@@ -201,11 +175,7 @@ def _entries(
 def _add_hooks(
     module: nn.Module, place: str, entries: dict[str, Any], unreadable: dict[str, str]
 ) -> None:
-    """Add a description of each forward hook of ``module`` to ``entries``.
-
-    A hook is described by its method ``fingerprint()``, or by its name if ``adapters.py`` defines
-    it. Any other hook is added to ``unreadable``.
-    """
+    """Describe each forward hook by its method ``fingerprint()``, or by its name for our hooks."""
     if type(module).__module__.startswith("torch.jit"):
         unreadable[place] = "a TorchScript module"
         return
@@ -310,10 +280,7 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
 
 
 def _attributes_of_data(value: Any) -> dict[str, Any] | None:
-    """Return the attributes of a gymnasium space or of a frozen dataclass of this project.
-
-    The random generator of a space is left out. Return None for any other value.
-    """
+    """Return the attributes of a gymnasium space or of a frozen dataclass of this project."""
     kind = type(value)
     if any(f"{each.__module__}.{each.__qualname__}" in _SPACES for each in kind.__mro__):
         return {name: part for name, part in vars(value).items() if name != "_np_random"}
@@ -329,11 +296,7 @@ def _is_users_function(value: Any) -> bool:
 
 
 def _function(function: types.FunctionType, place: str, unreadable: dict[str, str]) -> Any:
-    """Return the bytecode of a user's function and of the user's functions that it calls.
-
-    The result also contains their default values and attributes, and the other values that they
-    use.
-    """
+    """Return bytecode, defaults, attributes and used values of a user's function and callees."""
     if place.count("().") > 1:  # functions that name each other in dicts would never end
         unreadable[place] = "nested too deeply"
         return None
@@ -352,11 +315,7 @@ def _function(function: types.FunctionType, place: str, unreadable: dict[str, st
 
 
 def array_sha(array: Any) -> str:
-    """Return the hash of an array's or tensor's type, shape and bytes.
-
-    Return "" if the value is not an array or has no readable bytes, because it is sparse, on the
-    meta device, or holds objects.
-    """
+    """Return the hash of the type, shape and bytes of an array or tensor, or "" if unreadable."""
     if type(array) not in (np.ndarray, torch.Tensor, nn.Parameter):
         return ""
     text = f"{array.dtype} {tuple(array.shape)}"
@@ -371,9 +330,7 @@ def array_sha(array: Any) -> str:
 
 
 def class_name(kind: Any) -> str:
-    """Return the name of a class or function; the module's name is included unless it is
-    user code.
-    """
+    """Return the name of a class or function, with its module unless it is user code."""
     if isinstance(kind, types.BuiltinFunctionType):
         return f"{kind.__module__}.{kind.__qualname__}"
     return kind.__qualname__ if is_users(kind) else f"{kind.__module__}.{kind.__qualname__}"
@@ -391,9 +348,7 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 
 
 def code_sha(objective: nn.Module, *others: type) -> str:
-    """Return the hash of the user's code in an objective, its agent and ``others``, or "" if there
-    is no user code.
-    """
+    """Return the hash of the user's code in an objective, its agent and ``others``, or ""."""
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
     code = "\n".join(code_of(type(objective), *kinds, *others).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]

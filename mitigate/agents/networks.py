@@ -13,8 +13,7 @@ from torch import nn
 
 from mitigate.agents.source import is_users, methods, named_values
 
-# maximum number of values that are visited (heuristic; takes less than a second)
-MOST_VALUES = 100_000
+MOST_VALUES = 100_000  # values that are visited at most (heuristic; less than a second)
 _SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 
 
@@ -66,15 +65,11 @@ def _parts(value: Any) -> Iterable[tuple[Any, Any]]:
 
 @contextmanager
 def in_eval_mode(agent: Any) -> Iterator[None]:
-    """Put every network of ``agent`` into eval mode, and restore the modes of all modules at the
-    end.
-
-    Each network's ``eval()`` is called, because a class may override it.
-    """
+    """Put every network of ``agent`` into eval mode, and restore all modes at the end."""
     roots = [net for net in networks(agent).values() if _has_mode(net)]
     modes = {m: m.training for net in roots for m in net.modules() if _has_mode(m)}
     for net in roots:
-        net.eval()
+        net.eval()  # a class may override it
     try:
         yield
     finally:

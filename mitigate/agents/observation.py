@@ -17,41 +17,27 @@ from mitigate.agents.text import MAX_WORDS, UNKNOWN, Vocabulary
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# Depth is rejected if most values exceed FARTHEST metres (heuristic).
-# Indoors, at least the floor is always nearer than that.
+# depth is rejected if most values exceed this (heuristic): indoors, at least the floor is nearer
 FARTHEST = 50.0
-# A panorama causes a warning if its depth never exceeds NEAREST metres (heuristic).
-# In almost every room, at least one surface is farther away.
+# a panorama whose depth never exceeds this causes a warning (heuristic): rooms are larger
 NEAREST = 1.0
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 
 
 def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
-    """Check that a world has the sensors and the number of views that an agent declares.
+    """Raise ValueError if a world lacks the sensors or the number of views that an agent needs.
 
-    Args:
-        agent: any agent; its ``sensors`` and ``views`` are compared.
-        sensors: the sensors of the world.
-        world: name of the world, for messages.
-
-    Raises:
-        ValueError: If RGB or depth is missing, or the number of views differs.
+    ``world`` is the name of the world, for messages.
     """
     contract = as_agent(agent)
     declared = contract.sensors
     read = declared if isinstance(declared, Sequence) else ()
-    for name in (RGB, DEPTH):
-        if name in read and name not in sensors:
-            raise ValueError(
-                f"{type(agent).__name__} reads {name}, which the world {world} does not have: it "
-                f"has {', '.join(sensors)}. Choose another agent, or another world (env=...)."
-            )
     for name in read:
         if name not in (*sensors, POSE):
             raise ValueError(
-                f"{type(agent).__name__}.sensors: {unknown('sensor', name, sensors)} These are the "
-                f"sensors of the world {world}."
+                f"{type(agent).__name__} reads {name}, which the world {world} does not have: "
+                f"{unknown('sensor', name, sensors)} Or choose another agent or world (env=...)."
             )
     expected = contract.views
     if expected not in (1, VIEWS):
@@ -72,18 +58,10 @@ def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
-    """Return the entry "rgb" (uint8) or "depth" (float32 metres), ready for torch.
-
-    A warning is issued for depth that looks normalised.
-
-    Args:
-        observation: an observation of the world.
-        name: "rgb" or "depth".
-        views: the number of views, 1 or 12.
+    """Return the entry "rgb" (uint8) or "depth" (float32 metres) of 1 or 12 ``views``.
 
     Returns:
-        An array [12, H, H, c] for 12 views, or [H, H, c] for one view. The array is C-contiguous
-        and writeable.
+        An array [12, H, H, c], or [H, H, c] for one view, ready for torch.
 
     Raises:
         KeyError: If the entry is missing.
@@ -117,12 +95,7 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
 
 
 def pose(observation: Mapping[str, Any]) -> np.ndarray:
-    """Check the pose [3] and return it unchanged.
-
-    Raises:
-        KeyError: If the pose is missing.
-        ValueError: If the pose does not consist of three finite numbers.
-    """
+    """Return the pose [3]; raise KeyError or ValueError if it is missing or not finite."""
     array = _entry(observation, POSE)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise ValueError(
@@ -132,8 +105,8 @@ def pose(observation: Mapping[str, Any]) -> np.ndarray:
     return array
 
 
-def instruction(text: str, vocabulary: Vocabulary) -> str:
-    """Return ``text``, and warn if it contains no word of ``vocabulary``, or too many words.
+def instruction(text: str, vocabulary: Vocabulary) -> None:
+    """Warn if ``text`` contains no word of ``vocabulary``, or too many words.
 
     Raises:
         TypeError: If ``text`` is not a string.
@@ -151,7 +124,6 @@ def instruction(text: str, vocabulary: Vocabulary) -> str:
             f"{MAX_WORDS}.",
             stacklevel=3,
         )
-    return text
 
 
 def _entry(observation: Mapping[str, Any], name: str) -> np.ndarray:

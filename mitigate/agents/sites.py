@@ -19,37 +19,25 @@ MAP, TOKENS = "map", "tokens"
 
 @dataclass(frozen=True)
 class Site:
-    """Describes the output of a module.
+    """Describes the output of a module."""
 
-    Attributes:
-        kind: "map" for ``[n, C, h, w]``, or "tokens" if C is the last axis (including vectors).
-        channels: number of channels C.
-        batch: axis along which the frames of a batch lie.
-        shape: shape of the output for a batch of two frames.
-        calls: number of calls of the module in one forward pass.
-    """
-
-    kind: str
+    kind: str  # MAP for [n, C, h, w], or TOKENS if C is the last axis (including vectors)
     channels: int
-    batch: int
-    shape: tuple[int, ...]
-    calls: int
+    batch: int  # axis along which the frames of a batch lie
+    shape: tuple[int, ...]  # for a batch of two frames
+    calls: int  # number of calls of the module in one forward pass
 
 
 def first(output: Any) -> Any:
-    """Return ``output``, or its first item if it is a tuple or list (as Hugging Face blocks
-    return).
-    """
+    """Return the first item of a tuple or list (as Hugging Face blocks return), or ``output``."""
     return output[0] if isinstance(output, (tuple, list)) and len(output) else output
 
 
 @torch.no_grad()
 def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
-    """Return a dict from the name of every module that ``run`` calls to a description of its
-    output.
+    """Return, for every module that ``run`` calls, a :class:`Site` or why no adapter fits.
 
-    The description is a :class:`Site`, or a text that explains why no adapter fits. To find the
-    axis of the frames, the encoder runs on two frames and on three: this axis grows from 2 to 3.
+    To find the axis of the frames, the encoder runs on two frames and on three.
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
@@ -60,9 +48,7 @@ def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
 
 
 def _shapes(model: nn.Module, run: Run, count: int) -> dict[str, tuple[Any, int]]:
-    """Return the output shape (or type name) and the number of calls of each module, in call
-    order.
-    """
+    """Return each module's output shape (or type name) and number of calls, in call order."""
     seen: dict[str, tuple[Any, int]] = {}
 
     def watch(name: str) -> Callable:
@@ -103,11 +89,7 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     """Return the names of up to ``count`` blocks, spread evenly from the first to the last.
 
     A block is a numbered item of a list (``layers.3``) that contains modules and returns a map or
-    tokens once per forward pass. If lists are nested, the outermost list with at least four blocks
-    is used. A ResNet, for example, has four stages in one list, and each stage is a list of blocks.
-
-    Raises:
-        ValueError: If the encoder has no list of at least four blocks.
+    tokens once per forward pass. The outermost list with at least four blocks is used.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
@@ -139,12 +121,9 @@ def listed(what: str, targets: Iterable[str]) -> list[str]:
 
 
 def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
-    """Return the names of the modules that match ``targets``.
+    """Return the names of modules whose dotted name, or its last parts, matches a target.
 
-    A target is a regular expression that must match a dotted name or its last parts.
-
-    Raises:
-        ValueError: If a target matches no module or is not a regular expression.
+    Raises ValueError if a target matches no module or is not a regular expression.
     """
     names = [name for name, _ in model.named_modules() if name]
     matches: set[str] = set()
@@ -167,9 +146,7 @@ def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
 
 
 def channels_of(name: str, module: nn.Module) -> int:
-    """Return the number of output channels of a module, from its last convolution or
-    normalisation.
-    """
+    """Return the output channels of a module, from its last convolution or normalisation."""
     channels = 0
     for part in module.modules():
         if isinstance(part, nn.Conv2d):

@@ -88,10 +88,8 @@ def _file(module: str) -> str:
 
 @cache
 def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
-    """Return the source of a module without comments and layout, and the names that it imports.
-
-    The result is cached: a later edit of the file does not change the loaded ``module``.
-    """
+    """Return the source of a module without comments and layout, and the names that it imports."""
+    # cached, because a later edit of the file does not change the loaded ``module``
     try:
         tree = ast.parse(Path(file).read_bytes(), file)
     except (OSError, SyntaxError, ValueError):  # there is no file, or it is not Python
@@ -108,9 +106,7 @@ def _read(file: str, name: str, module: Any) -> tuple[str | None, list[str]]:
 
 
 def methods(kind: type) -> dict[str, types.FunctionType]:
-    """Return the functions that the class ``kind`` defines, by name and without their
-    decorators.
-    """
+    """Return the functions that a class defines, by name and without their decorators."""
     output = {}
     for name, member in vars(kind).items():
         function = read(member, "__func__", "fget", "__wrapped__", default=member)

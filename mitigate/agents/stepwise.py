@@ -7,14 +7,14 @@ with the expert's answers, and evaluates batches of decisions.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import torch
 from torch import Tensor, nn
 
-from mitigate.agents.agent import Agent, Output, check_logits, entropy_of, sample
+from mitigate.agents.agent import Agent, Batch, Output, check_logits, entropy_of, sample
 from mitigate.core.observation import RGB, STOP, Observation
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, expert_of
@@ -31,31 +31,15 @@ class Frames(dict[str, Tensor]):
 
 
 @dataclass
-class StepDecisions:
-    """A batch of B steps with the expert's answers.
+class StepDecisions(Batch):
+    """A batch of B steps with the expert's answers."""
 
-    Attributes:
-        frames: inputs by name, [B, ...].
-        clean: the inputs before corruption, or an empty dict if they were not kept.
-        texts: the instruction of each step.
-        target: [B, actions], one-hot.
-        weight: [B].
-        episode_ids: the episode of each step.
-    """
-
-    frames: Frames
-    clean: Frames
+    frames: Frames  # inputs by name, [B, ...]
+    clean: Frames  # the inputs before corruption, empty if they were not kept
     texts: list[str]
-    target: Tensor
-    weight: Tensor
+    target: Tensor  # [B, actions], one-hot
+    weight: Tensor  # [B]
     episode_ids: list[str]
-
-    def to(self, device: Any) -> StepDecisions:
-        """Return a copy of the batch on ``device``."""
-        frames = Frames({name: tensor.to(device) for name, tensor in self.frames.items()})
-        clean = Frames({name: tensor.to(device) for name, tensor in self.clean.items()})
-        target, weight = self.target.to(device), self.weight.to(device)
-        return replace(self, frames=frames, clean=clean, target=target, weight=weight)
 
 
 class StepwiseAgent(Agent, nn.Module):

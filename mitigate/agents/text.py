@@ -4,10 +4,8 @@ The RGB encoder predicts the concepts in the central 36 degrees of each view. Th
 the recurrent policy multiply the probability of each concept by the text embedding of its word. So
 the concepts in views and the words of instructions share one embedding space.
 
-A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint. Loading weights with a different vocabulary of the same size would raise no error, but
-each embedding would represent a wrong word.
+fingerprint: with a different vocabulary, each embedding would represent a wrong word.
 """
 
 from __future__ import annotations
@@ -16,6 +14,7 @@ import re
 from collections.abc import Sequence
 
 import torch
+from torch import Tensor
 from torch.nn.utils.rnn import pad_sequence
 
 THING_NAMES = (
@@ -90,20 +89,21 @@ class Vocabulary:
         ids = [self.ids.get(word, UNKNOWN) for word in _WORD.findall(lowered)]
         return ids[:MAX_WORDS] or [UNKNOWN]
 
-    def concept_words(self) -> torch.Tensor:
-        """Return a matrix float32 [concepts, vocabulary] whose row c averages the words of concept
-        c.
+    def batch(self, texts: Sequence[str], blank: bool = False) -> Tensor:
+        """Return the ids of n texts, int64 [n, longest], padded with ``PAD``.
+
+        With ``blank``, every text is read as if it were empty.
         """
+        rows = [torch.tensor(self.encode("" if blank else text)) for text in texts]
+        return pad_sequence(rows, True, PAD)
+
+    def concept_words(self) -> Tensor:
+        """Return float32 [concepts, vocabulary], the mean of each concept's one-hot words."""
         out = torch.zeros(len(CONCEPTS), len(self))
         for row, concept in enumerate(CONCEPTS):
             ids = [self.ids[word] for word in _words_of(concept)]
             out[row, ids] = 1.0 / len(ids)
         return out
-
-
-def pad(rows: list[list[int]]) -> torch.Tensor:
-    """Return token rows as int64 [n, longest], padded with ``PAD``."""
-    return pad_sequence([torch.tensor(row) for row in rows], True, PAD)
 
 
 def _words_of(concept: str) -> list[str]:

@@ -98,14 +98,10 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 
 
 def describe(error: Exception, line: int = 0) -> str:
-    """Describe an error in the user's code: "KeyError: 'x', in net.py, line 3".
-
-    Only one line of the error's message is included: the line with the index ``line``.
-    """
+    """Return one line of an error in the user's code: "KeyError: 'x', in net.py, line 3"."""
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
-    # the message of a SyntaxError already contains file and line
-    if isinstance(error, SyntaxError):
+    if isinstance(error, SyntaxError):  # its message already contains file and line
         return message
     frame = traceback.extract_tb(error.__traceback__)[-1]
     return f"{message}, in {frame.filename}, line {frame.lineno}"
@@ -142,11 +138,7 @@ def _exported(path: Path) -> nn.Module:
 
 
 def find_weights(weights: str) -> Path:
-    """Return the path of a file of weights; ``weights`` is a path or pkg://package/path.
-
-    The second form names a file in an installed package. Raises FileNotFoundError if the file is
-    missing.
-    """
+    """Return the path of a file of weights; pkg://package/path is in an installed package."""
     if weights.startswith(INSTALLED):
         package, _, inside = weights.removeprefix(INSTALLED).partition("/")
         spec = importlib.util.find_spec(package)
@@ -164,12 +156,7 @@ def find_weights(weights: str) -> Path:
 
 
 def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
-    """Load a state dict into ``model``.
-
-    Args:
-        model: the encoder.
-        weights: as in :func:`find_weights`.
-        prefix: prefix of the entries to load; it is removed from their names.
+    """Load the entries of a state dict whose names begin with ``prefix`` into ``model``.
 
     Raises:
         FileNotFoundError: If the file does not exist.
@@ -197,11 +184,10 @@ def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
 
 
 def _fits(loaded: Tensor | None, expected: Tensor | None) -> bool:
-    """Return whether a loaded tensor may replace a weight: shapes must be equal; float types may
-    differ, but an integer cannot replace a float.
-    """
+    """Return whether a loaded tensor may replace a weight of the same shape."""
     if loaded is None or expected is None:
         return False
+    # float types may differ, but an integer cannot replace a float
     same = loaded.shape == expected.shape and loaded.layout == expected.layout
     return same and (loaded.is_floating_point() or not expected.is_floating_point())
 
@@ -214,10 +200,7 @@ def _form(value: Tensor | None) -> str:
 
 
 def read_state(path: Path) -> dict[str, Tensor]:
-    """Return the tensors in a file of weights, by name and on the CPU.
-
-    Raises the same errors as :func:`load_weights`.
-    """
+    """Return the tensors in a file of weights, by name and on the CPU."""
     if path.suffix == ".safetensors":
         return checkpoint.load_tensors(path)
     state = _load(path)
@@ -231,10 +214,7 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors in a mapping by name.
-
-    If it contains no tensors, return the tensors in nested mappings, under dotted names.
-    """
+    """Return the tensors in a mapping by name, or else those in nested mappings (dotted names)."""
     if not isinstance(state, Mapping):
         return {}
     tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}
@@ -257,14 +237,10 @@ def _is_compressed(path: Path) -> bool:
 
 
 class PassedOver:
-    """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``.
-
-    Objects of other classes would not work, because ``torch.load(weights_only=True)`` sets items
-    only on ``dict``, ``OrderedDict`` and ``Counter``.
-    """
+    """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``."""
 
     def __new__(cls, *_: Any) -> Any:
-        return OrderedDict()
+        return OrderedDict()  # torch sets items only on dict, OrderedDict and Counter
 
 
 class Ignored:
@@ -282,21 +258,14 @@ def _stand_in(name: str) -> Any:
 
 
 def _named(path: Path) -> list[str]:
-    """Return the names of classes in a checkpoint that torch refuses to load.
-
-    The list is empty if torch cannot find them, for example in files from before torch 1.6.
-    """
-    with suppress(Exception):
+    """Return the names of classes in a checkpoint that torch refuses to load."""
+    with suppress(Exception):  # torch cannot find them in files from before torch 1.6
         return list(torch.serialization.get_unsafe_globals_in_checkpoint(path))
     return []
 
 
 def _load(path: Path) -> Any:
-    """Load a file with ``torch.load(weights_only=True)``.
-
-    Classes that torch does not allow, such as the class of a config, are replaced by
-    :class:`PassedOver`, so that none of their code runs.
-    """
+    """Load a file with ``torch.load(weights_only=True)``; stand-ins replace forbidden classes."""
     if pointer := lfs_problem(path):
         raise ValueError(f"The weights {path} cannot be read: the file {pointer}.")
     problem = "its parts are compressed, which torch never does" if _is_compressed(path) else ""

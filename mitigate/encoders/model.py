@@ -105,11 +105,7 @@ class Transform:
 
 
 def transform_of(options: Mapping[str, Any]) -> Transform:
-    """Return a transform with the arguments ``options``.
-
-    Raises:
-        ValueError: If an argument is unknown or invalid.
-    """
+    """Return a transform with the arguments ``options``; ValueError if one is unknown."""
     known = [field.name for field in fields(Transform)]
     for name in options:
         if name not in known:
@@ -204,13 +200,10 @@ class Encoder(nn.Module):
         adapters: Mapping[str, Any] | None = None,
     ) -> None:
         super().__init__()
-        for name, value, allowed in (
-            ("sensor", sensor, SENSORS),
-            ("pool", pool, POOL),
-            ("tune", tune, TUNE),
-        ):
+        choices = {"sensor": (sensor, SENSORS), "pool": (pool, POOL), "tune": (tune, TUNE)}
+        for name, (value, allowed) in choices.items():
             if value not in allowed:
-                raise ValueError(unknown(f"agent.{name}", value, list(allowed)))
+                raise ValueError(unknown(f"agent.{name}", value, allowed))
         if model is None:
             raise ValueError(
                 "agent.model is not set. Set it to your encoder: package.module:callable, or an "
@@ -259,10 +252,9 @@ class Encoder(nn.Module):
         return self
 
     def forward(self, frames: Tensor) -> Tensor:
-        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, in the shape of the
-        model's output.
+        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]`` for ``frames``.
 
-        ``frames`` are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
+        Frames are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
         """
         inputs = self.transform(frames)
         modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
@@ -294,9 +286,7 @@ class Encoder(nn.Module):
         sites: int = SITES,
         **options: Any,
     ) -> None:
-        """Freeze the encoder and insert adapters, which do not change its output before
-        training.
-        """
+        """Freeze the encoder and insert adapters, which change its output only after training."""
         if targets == AUTO:
             chosen = choose(find_sites(self.model, self._probe), self.model, sites)
             targets = [re.escape(name) for name in chosen]
@@ -306,9 +296,7 @@ class Encoder(nn.Module):
         say(f"adapters after {', '.join(names)}: {share:.1%} of the encoder's weights")
 
     def _probe(self, count: int) -> Any:
-        """Return the output for random frames; for constant frames, some normalisations would give
-        NaN.
-        """
+        """Return the output for random frames; constant frames give NaN in some encoders."""
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
         like = next(self.model.parameters(), noise)
@@ -379,8 +367,7 @@ class Encoder(nn.Module):
 def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
     """Raise ValueError if two calls of ``model`` give different weights.
 
-    Adapters work only with the weights that they were trained with. Random weights would be lost
-    after training, because only the adapters are saved.
+    Random weights would be lost after training, because only the adapters are saved.
     """
     if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return

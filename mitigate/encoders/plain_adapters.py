@@ -107,9 +107,7 @@ class _Adapter:
         return self.adapt(output)
 
     def fingerprint(self):
-        """Return plain data that determine what this hook computes, for mitigate's fingerprint of
-        agents.
-        """
+        """Return what determines the output of this hook, for mitigate's fingerprint of agents."""
         return [self.tokens, self.batch, self.pad, tensors_sha(self.weights)]
 
     def adapt(self, x):
@@ -161,9 +159,7 @@ def _sums(folder):
 
 
 def read(folder):
-    """Return the settings (a dict) and the tensors (by name) of a folder. Raises the same errors as
-    ``attach``.
-    """
+    """Return the settings and the tensors of a folder; raises the same errors as ``attach``."""
     folder = str(folder)
     path = os.path.join(folder, WEIGHTS)
     if os.path.getsize(path) > LARGEST:
@@ -234,9 +230,7 @@ def parse(data, path="the file"):
 
 
 def backbone_sha(model):
-    """Return the first 12 hex digits of the sha256 over names, types, shapes and bytes of the
-    weights.
-    """
+    """Return 12 hex digits of the sha256 over names, types, shapes and bytes of the weights."""
     return tensors_sha(model.state_dict())
 
 

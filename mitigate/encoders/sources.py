@@ -29,32 +29,22 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-# maximum number of frames per block if all frames are in one folder or episode (heuristic)
-BLOCK = 50
-# This is the minimum number of held-out blocks if all frames are in one folder (heuristic).
-# The bootstrap for confidence intervals resamples these blocks instead of scenes.
-FEWEST_UNSEEN = 5
-# minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
+BLOCK = 50  # frames per block at most if all are in one folder or episode (heuristic)
+FEWEST_UNSEEN = 5  # held-out blocks at least, which the bootstrap resamples (heuristic)
+# at least this fraction of valid depth must be nearer than ``FARTHEST`` metres (heuristic),
 NEAR = 0.05
-# at least a fraction ``NEAR`` of the valid depth must exceed this many metres (heuristic)
-NEAREST = 0.02
+NEAREST = 0.02  # and at least the same fraction farther than this many metres (heuristic)
 EVERY = 2  # only every second view of a panorama is used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
 
 @dataclass(frozen=True)
 class Shot:
-    """One frame.
+    """One frame."""
 
-    Attributes:
-        frame: uint8 [H, W, 3] or float32 metres [H, W, 1].
-        heading: direction of the camera in radians (``core/observation.py``), or None.
-        labels: labels [L] in {0, 1}, or None.
-    """
-
-    frame: np.ndarray
-    heading: float | None = None
-    labels: np.ndarray | None = None
+    frame: np.ndarray  # uint8 [H, W, 3] or float32 metres [H, W, 1]
+    heading: float | None = None  # direction of the camera in radians (``core/observation.py``)
+    labels: np.ndarray | None = None  # [L] in {0, 1}
 
 
 @runtime_checkable
@@ -79,10 +69,6 @@ class WorldFrames:
         unseen: an episode list, whose scenes are the unseen scenes.
         label: name of an entry of the ground truth ([views, L] or [L], with values 0 and 1), or
             None for no labels.
-
-    Raises:
-        ValueError: If the world cannot render from arbitrary poses or lacks the sensor, or if a
-            scene is in both splits.
     """
 
     files = False
@@ -249,23 +235,16 @@ Item = TypeVar("Item")
 
 
 def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
-    """Return the last scenes: a fraction ``held_out`` of all scenes, but at least one. If there is
-    only one scene, the list is empty.
-    """
+    """Return the last fraction ``held_out`` of the scenes, at least one, but not the only one."""
     count = max(1, round(held_out * len(names)))
     return list(names)[-count:] if len(names) > 1 else []
 
 
 def split_single(scenes: Mapping[str, list[Item]], held_out: float) -> dict[str, list[Item]]:
-    """If there is only one scene, split it into blocks of consecutive frames; return several scenes
-    unchanged.
+    """Split a single scene into blocks of consecutive frames; return several scenes unchanged.
 
     A block has at most ``BLOCK`` frames, or fewer if otherwise fewer than ``FEWEST_UNSEEN`` blocks
-    would be held out.
-
-    Args:
-        scenes: frames of each scene.
-        held_out: fraction of the blocks that are held out.
+    would be held out, given the fraction ``held_out``.
     """
     if len(scenes) > 1:
         return dict(scenes)
@@ -305,10 +284,9 @@ def _is_between(value: object, below: float) -> bool:
 
 
 def _metres(depth: np.ndarray) -> np.ndarray:
-    """Set invalid depth to 0, and check that the other values are plausible as metres.
+    """Set invalid depth to 0; raise ValueError if the other values are not plausible as metres.
 
-    If they are not, this raises a ValueError. Its message begins with a verb, because the caller
-    puts the path of the file before it.
+    The message begins with a verb, because the caller puts the path of the file before it.
     """
     metres = np.where(np.isfinite(depth) & (depth > 0), depth, 0)
     known = metres[metres > 0]
@@ -339,14 +317,10 @@ def source_of(
     split: str,
     label: str | None,
 ) -> Source:
-    """Return the source of frames that an ``env`` config describes.
+    """Return the source that ``world()`` returns, or a source of frames rendered in its world.
 
-    If ``world()`` returns a source, such as a folder of frames, it is used. If it returns a world,
-    frames are rendered from random poses in this world, and the scenes of the episode list
-    ``split`` are the unseen scenes.
-
-    Raises:
-        ValueError: If the episode list does not exist, or the source cannot be used.
+    The scenes of the episode list ``split`` are the unseen scenes of a world. Raises ValueError if
+    this list does not exist, or the world cannot be used.
     """
     result = world()
     if isinstance(result, Source):
@@ -361,20 +335,12 @@ MOST_BYTES = 6 << 30  # maximum size of frames in memory (heuristic)
 
 @dataclass
 class Frames:
-    """All frames of a split, which are kept in memory.
+    """All frames of a split, which are kept in memory."""
 
-    Attributes:
-        frames: uint8 [N, H, W, 3] or float32 metres [N, H, W, 1].
-        headings: direction of each frame in radians, or None.
-        labels: [N, L] in {0, 1}, or None.
-        scene: for each frame, the index of its scene.
-        names: names of the scenes.
-    """
-
-    frames: np.ndarray
-    headings: list[float | None]
-    labels: np.ndarray | None
-    scene: np.ndarray
+    frames: np.ndarray  # uint8 [N, H, W, 3] or float32 metres [N, H, W, 1]
+    headings: list[float | None]  # direction of each frame in radians, if it is known
+    labels: np.ndarray | None  # [N, L] in {0, 1}
+    scene: np.ndarray  # for each frame, the index of its scene in ``names``
     names: list[str]
 
     def __len__(self) -> int:

@@ -16,7 +16,7 @@ from typing import Any
 
 import yaml
 
-from mitigate.agents import adapters, loading
+from mitigate.agents import adapters, loading, schema
 from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
 from mitigate.core.markdown import markdown_of, markdown_table
@@ -63,7 +63,7 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
         "uncommitted": uncommitted(),
         "versions": {package: _version(package) for package in VERSIONS},
         "class": kind,
-        "license": LICENCE if loading.is_ours(kind) else UNKNOWN,
+        "license": LICENCE if kind in schema.KINDS else UNKNOWN,
     }
 
 
@@ -226,7 +226,7 @@ def _cell(numbers: list[float | None]) -> str:
 def _use(card: dict[str, Any]) -> str:
     load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
     whole = card.get("program", True)
-    of_user = not whole and not loading.is_ours(card.get("class", ""))
+    of_user = not whole and card.get("class") not in schema.KINDS
     start = (
         f"## Use\n\n```python\nimport mitigate\n\nagent = {load}"
         f"{', agent=Mine(...)' if of_user else ''})\n```\n\n"

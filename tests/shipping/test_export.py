@@ -462,7 +462,7 @@ def test_folder_of_another_agent_than_its_card_is_rejected(copied):
         loading.load_hardened(copied)
     own_value = TopologicalAgent(**TINY).eval()
     # ``fill`` does not compare the hash of the agent, because adapters may have been trained
-    assert loading.fill(own_value, copied) is own_value
+    loading.fill(own_value, copied)
 
 
 @pytest.mark.parametrize(

@@ -2,9 +2,7 @@
 
 A frontier is the border between known and unknown space. The agent goes to the most promising
 frontier until the object is found, and then to the object. The method follows VLFM, L3MVN and
-WMNav. Only the RGB encoder, which recognises objects, is learned. ``reset(instruction)`` starts an
-episode; ``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same
-for several episodes at once.
+WMNav. Only the RGB encoder, which recognises objects, is learned.
 """
 
 from __future__ import annotations
@@ -47,8 +45,7 @@ from mitigate.core.observation import (
     TURN_DEGREES,
 )
 
-# number of initial turns: after 270 degrees, a 90-degree camera has seen the full circle
-TURNS = 18
+TURNS = 18  # initial turns: after 270 degrees, a 90-degree camera has seen the full circle
 AGAIN = 8  # number of actions until the agent plans again
 LEG = 1.5  # distance in metres that the agent goes straight before it checks its route again
 STUCK = 0.05  # a forward step that moves less than this distance (metres) was blocked
@@ -56,17 +53,14 @@ STUCK = 0.05  # a forward step that moves less than this distance (metres) was b
 # After BUMPS such steps on the way to the object, the agent acts as if it had arrived.
 SLID, BUMPS = 0.2, 4
 LAST = 400  # after this many actions, the agent goes to the most likely known place and stops
-# weight of a frontier's value, relative to the path cost in metres (chosen on val_seen_ogn)
-WORTH = 6.0
+WORTH = 6.0  # weight of a frontier's value against path cost in metres (chosen on val_seen_ogn)
 # The agent goes to the object if the evidence for it is at least FOUND.
 # After LAST actions, the agent uses the lower threshold MAYBE instead.
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
-# the agent stops if the predicted probability that the object is near exceeds this
-NEAR_ENOUGH = 0.4
+NEAR_ENOUGH = 0.4  # the agent stops if the object is near with a higher probability
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-# weight of the distance from a cell to the object's centre; path cost has weight 1 (heuristic)
-MIDDLE = 3.0
+MIDDLE = 3.0  # weight of the distance to the object's centre; path cost has weight 1 (heuristic)
 # objects that each room is likely to contain; L3MVN asks a language model for these
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
@@ -105,8 +99,7 @@ class FrontierAgent(SideBySide, nn.Module):
     }
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
-    # number of episodes at once (heuristic): a frame takes twice as long if it is encoded alone
-    together = 8
+    together = 8  # (heuristic) a frame takes twice as long if it is encoded alone
     encoders = {RGB: ("rgb_encoder",)}
     labels = {RGB: LABELS[RGB]}
     grid: Grid  # set at the first observation of an episode
@@ -131,7 +124,7 @@ class FrontierAgent(SideBySide, nn.Module):
             insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments, which the config stores."""
+        """Return the constructor's arguments."""
         return copy.deepcopy(self._settings)
 
     def parts(self) -> dict[str, nn.Module]:
@@ -145,11 +138,7 @@ class FrontierAgent(SideBySide, nn.Module):
     # closed loop ------------------------------------------------------------------------------
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; warn if ``instruction`` names no object that the agent knows.
-
-        Raises:
-            TypeError: If ``instruction`` is not a string.
-        """
+        """Start an episode; warn if ``instruction`` names no object that the agent knows."""
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         self.thing = None if "instruction" in self.blind else named(instruction)
@@ -175,21 +164,11 @@ class FrontierAgent(SideBySide, nn.Module):
         memories: Sequence[FrontierAgent],
         count: int,
     ) -> list[int]:
-        """Return one action for each of the first ``count`` episodes; their frames are encoded
-        together.
-        """
         concepts = self._recognise(np.stack([checked.frame(o, RGB, 1) for o in observations]))
         episodes = [*zip(memories, observations, concepts, strict=True)][:count]
         return [runner._act(observation, columns) for runner, observation, columns in episodes]
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return one low-level action.
-
-        Raises:
-            RuntimeError: If ``reset`` was not called first.
-            KeyError, TypeError, ValueError: If the observation is invalid
-                (``agents/observation.py``).
-        """
         check_started(self._started)
         return self.answers([observation], [self], 1)[0]
 
@@ -203,10 +182,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return action
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the route after a motion that the agent did not choose; the next step plans
-        again.
-        """
-        self._planned = 0
+        self._planned = 0  # plan again at the next step
         if action != FORWARD:
             self._before = None
 
@@ -218,9 +194,7 @@ class FrontierAgent(SideBySide, nn.Module):
     def _update_map(
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
-        """Add an observation to the map; mark the cells ahead as blocked if the last forward step
-        was too short.
-        """
+        """Add an observation to the map; a forward step that was too short blocks cells ahead."""
         if self.actions == 0:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
@@ -281,9 +255,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.controller.action(pose)
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
-        """Turn to the object's cells, and stop if the object is visible nearby. Otherwise discard
-        the evidence of these cells.
-        """
+        """Turn to the object's cells; then stop if it is visible nearby, or discard evidence."""
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
         error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)
@@ -299,10 +271,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return bool(np.hypot(*(self.grid.place(target[None])[0] - pose[:2])) < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
-        """Return the best cell [2] within ``ARRIVED`` of the object, or None.
-
-        The choice balances path cost and distance to the object's centre.
-        """
+        """Return the cell [2] within ``ARRIVED`` of the object with the best cost, or None."""
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
         around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
@@ -317,10 +286,7 @@ class FrontierAgent(SideBySide, nn.Module):
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
-        """Return the nearest cell [2] of the best frontier, or None if there is no frontier.
-
-        The best frontier has the highest difference between its value and its path cost.
-        """
+        """Return the nearest cell [2] of the frontier with the best value minus cost, or None."""
         best, target = -np.inf, None
         for group in frontiers(self.grid):
             cost = ways.at(group)
@@ -332,11 +298,7 @@ class FrontierAgent(SideBySide, nn.Module):
 
 
 def named(text: str) -> int | None:
-    """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
-
-    In a route description, the object named last is the goal. An instruction such as "find a chair"
-    names only one object.
-    """
+    """Return the index in ``THING_NAMES`` of the object named last, a route's goal, or None."""
     ends = [
         (match.end(), len(name), i)
         for i, name in enumerate(THING_NAMES)
@@ -348,8 +310,7 @@ def named(text: str) -> int | None:
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
     """Return the likelihood [n] that the object lies in the direction of each column.
 
-    The likelihood is high if the column shows the object. It is lower if the column only shows a
-    room that is likely to contain the object.
+    It is lower if a column only shows a room that is likely to contain the object.
     """
     if thing is None:
         return np.zeros(len(concepts), np.float32)

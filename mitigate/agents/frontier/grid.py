@@ -24,8 +24,7 @@ CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
 REACH = 5.0  # maximum depth in metres that is used (as in VLFM)
 LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
-# surfaces between these heights in metres can belong to objects
-THINGS_LOW, THINGS_HIGH = 0.05, 2.3
+THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # surfaces between these heights can belong to objects
 # Observing an occupied cell adds HIT to its log-odds, and observing a free cell subtracts MISS.
 # The absolute value of the sum is at most MOST.
 HIT, MISS, MOST = 0.9, 0.4, 3.5
@@ -34,13 +33,10 @@ SLACK = 0.3  # tolerance in metres for the distance NEAR (heuristic)
 SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
 RADIUS = 0.2  # distance in metres that the agent keeps from occupied cells
-# cells that are less than WIDE metres from an obstacle cost TIGHT times as much
-TIGHT, WIDE = 3.0, 0.4
-# cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
-UNKNOWN = 4.0
+TIGHT, WIDE = 3.0, 0.4  # cells less than WIDE metres from an obstacle cost TIGHT times as much
+UNKNOWN = 4.0  # cost factor of unknown cells, finite so that missing depth encloses no agent
 MARGIN = 12  # planning includes a margin of this many cells around the known area
-# minimum evidence of the object's cells, as a fraction of the highest evidence (heuristic)
-SHARE = 0.7
+SHARE = 0.7  # least evidence of the object's cells, as a fraction of the highest (heuristic)
 SMALLEST = 4  # minimum number of cells of a frontier
 
 
@@ -85,7 +81,7 @@ class Grid:
             depth: float32 [H, W] metres, of a forward view of 90 degrees.
             pose: [3].
             seen: [n, 2], for each column from left to right, the probability that the object is
-                visible and the probability that it is visible within 2 m.
+                visible, and that it is visible within 2 m.
             worth: [n], the likelihood that the object lies in the direction of each column.
         """
         self._looks += 1
@@ -105,9 +101,7 @@ class Grid:
             self.blocked[i, j] = self.known[i, j] = True
 
     def settle(self, cell: np.ndarray) -> None:
-        """Mark all cells within half a metre of ``cell`` as known, so that no frontier remains
-        there.
-        """
+        """Mark all cells near ``cell`` as known, so that no frontier remains there."""
         reach = int(0.5 / CELL)
         i, j = np.maximum(cell - reach, 0)
         self.known[i : i + 2 * reach + 1, j : j + 2 * reach + 1] = True
@@ -193,17 +187,11 @@ def _witness(x, y, r, odds, seen, things):
 
 @dataclass
 class Routes:
-    """Costs of the paths from the agent to all cells in a window of the map.
+    """Costs of the paths from the agent to all cells in a window of the map."""
 
-    Attributes:
-        cost: float [h, w] in metres.
-        before: int [h * w], the predecessor of each cell on its path.
-        corner: row and column of the window's first cell.
-    """
-
-    cost: np.ndarray
-    before: np.ndarray
-    corner: tuple[int, int]
+    cost: np.ndarray  # float [h, w] in metres
+    before: np.ndarray  # int [h * w], the predecessor of each cell on its path
+    corner: tuple[int, int]  # row and column of the window's first cell
 
     def to(self, cell: np.ndarray) -> np.ndarray:
         """Return the cells [n, 2] of the path from the agent to ``cell`` [2]."""
@@ -215,9 +203,7 @@ class Routes:
         return np.stack([cells // width, cells % width], 1) + self.corner
 
     def at(self, cells: np.ndarray) -> np.ndarray:
-        """Return the path costs [n] of cells [n, 2] of the map; cells outside the window cost
-        infinity.
-        """
+        """Return the path costs [n] of cells [n, 2], infinite outside the window."""
         local = np.asarray(cells) - self.corner
         inside = ((local >= 0) & (local < self.cost.shape)).all(1)
         out = np.full(len(local), np.inf)
@@ -226,9 +212,7 @@ class Routes:
 
 
 def clearance(grid: Grid) -> np.ndarray:
-    """Return the distance in metres from each cell to the nearest occupied cell, float32 [SIDE,
-    SIDE].
-    """
+    """Return each cell's distance in metres to the nearest occupied cell, float32 [SIDE, SIDE]."""
     free = ((grid.occupied <= 0) & ~grid.blocked).astype(np.uint8)
     return cv2.distanceTransform(free, cv2.DIST_L2, 5) * CELL
 
@@ -252,11 +236,7 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """Return the 8-connected graph of open cells.
-
-    ``price`` is the cost per metre in each cell. The cost of an edge is its length times the mean
-    ``price`` of its two cells.
-    """
+    """Return the 8-connected graph of open cells; ``price`` is the cost per metre in each cell."""
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -283,10 +263,9 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 
 
 def object_cells(grid: Grid, least: float) -> np.ndarray:
-    """Return the group of cells [n, 2] with the most evidence for the object.
+    """Return the group of cells [n, 2] with the most evidence for the object, above ``least``.
 
-    A cell is in the group if its evidence is above both ``least`` and ``SHARE`` times the highest
-    evidence. So each observation that confirms earlier observations makes the group smaller.
+    The threshold rises with the highest evidence, so observations that agree shrink the group.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():
@@ -298,9 +277,8 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
 
 
 def clear_ahead(grid: Grid, path: np.ndarray, most: float) -> np.ndarray:
-    """Return the farthest cell of ``path`` [n, 2] that can be reached in a straight line.
+    """Return the farthest cell of ``path`` [n, 2] on a free straight line of at most ``most`` m.
 
-    The line keeps a distance of ``RADIUS`` from occupied cells and is at most ``most`` metres long.
     The first step is not checked, because the agent may already be closer to an obstacle.
     """
     gap, step = clearance(grid), int(np.ceil(FORWARD_METRES / CELL))

@@ -1,6 +1,5 @@
 """Trained policies from other libraries as agents: stable-baselines3, torchrl, plain torch.
 
-:mod:`~mitigate.agents.policies.wrapping` recognises a policy by its methods, without importing its
-library. Each supported library has a module with a subclass of
-:class:`~mitigate.agents.policies.policy.Policy`.
+``wrapping`` recognises a policy by its methods, without importing its library. Each supported
+library has a module with a subclass of ``Policy``.
 """

@@ -1,8 +1,4 @@
-"""Policies from other libraries as actor-critics, for reinforcement learning.
-
-:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
-estimate of the return from the current frame to the end of the episode.
-"""
+"""Add a critic to a policy, for reinforcement learning: it estimates the return of an episode."""
 
 from __future__ import annotations
 
@@ -13,13 +9,12 @@ from typing import Any
 import numpy as np
 import torch
 from torch import Tensor, nn
-from torch.distributions import Categorical, Distribution, OneHotCategorical
+from torch.distributions import Categorical, Distribution
 
+from mitigate.agents.policies.answers import DISCRETE
 from mitigate.agents.policies.policy import Policy, copied
 from mitigate.agents.policies.stable_baselines import StableBaselinesPolicy
 
-# torchrl's OneHotCategorical is a subclass of Categorical
-_CATEGORICAL = (Categorical, OneHotCategorical)
 HIDDEN = 64  # width of a new critic, the default of stable-baselines3
 
 
@@ -32,7 +27,7 @@ class Joint(Distribution):
 
     def __init__(self, parts: Sequence[Distribution]) -> None:
         self.parts = [
-            Categorical(logits=part.logits) if isinstance(part, _CATEGORICAL) else part
+            Categorical(logits=part.logits) if isinstance(part, DISCRETE) else part
             for part in parts
         ]
         super().__init__(self.parts[0].batch_shape[:1], validate_args=False)
@@ -49,11 +44,7 @@ class Joint(Distribution):
         )  # type: ignore[return-value]
 
     def entropy(self) -> Tensor:
-        """Return the entropy of each action's distribution, [B].
-
-        Raises:
-            ValueError: If the distribution of a part has no known entropy.
-        """
+        """Return the entropy of each action's distribution, [B]; ValueError if it is unknown."""
         try:
             return sum(_per_action(part.entropy()) for part in self.parts)  # type: ignore[return-value]
         except NotImplementedError:
@@ -65,18 +56,12 @@ class Joint(Distribution):
 
 
 class ActorCritic(nn.Module):
-    """A policy with a critic.
+    """A policy (not copied) with a critic.
 
-    For a policy of stable-baselines3, the new critic starts as a copy of the critic in the policy.
-    Other policies get a new critic, a small network that reads the output of one of the policy's
-    modules. Training the critic does not train modules of the policy, so that wrong values cannot
+    The critic of a stable-baselines3 policy is a copy of the policy's critic. Other policies get a
+    small network that reads the output of ``module``; ``frames`` are example frames [1, ...] for
+    its size. Training the critic does not train modules of the policy, so that wrong values cannot
     change the actions directly.
-
-    Args:
-        policy: the policy. It is not copied.
-        frames: an example frame [1, ...] for each sensor; the frames determine the input size of a
-            new critic.
-        module: name of the module of the network whose output a new critic reads.
 
     Raises:
         ValueError: If the policy has a memory, or returns no distribution of its actions.

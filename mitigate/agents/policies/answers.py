@@ -17,7 +17,7 @@ from torch.distributions import (
     kl_divergence,
 )
 
-DISCRETE = (Categorical, OneHotCategorical)
+DISCRETE = (Categorical, OneHotCategorical)  # torchrl's OneHotCategorical is a Categorical
 # one distribution per part of the action, or a tensor [B, ...] of actions or of action values
 Answer = Sequence[Distribution] | Tensor
 
@@ -61,14 +61,12 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
 
 
 def imitation(teacher: Answer, student: Answer) -> Tensor:
-    """Return the student's error in predicting the teacher's most likely action, averaged over the
-    batch.
+    """Return the student's mean error in predicting the teacher's most likely action.
 
-    For discrete actions, the error is the cross-entropy. For continuous actions, and for values
-    without a distribution, it is the squared error divided by the variance of the teacher's answers
-    over the batch. Unlike the KL divergence, this error also counts differences where the teacher
-    is undecided: if the teacher's two best actions have probabilities of 0.50 and 0.48, a student
-    that swaps these probabilities acts differently.
+    For discrete actions, the error is the cross-entropy. Otherwise, it is the squared error divided
+    by the variance of the teacher's answers over the batch. Unlike the KL divergence, it also
+    counts differences where the teacher is undecided: if its two best actions have probabilities of
+    0.50 and 0.48, a student that swaps them acts differently.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         return divergence(teacher, student)
@@ -84,10 +82,8 @@ def imitation(teacher: Answer, student: Answer) -> Tensor:
 
 
 def _divergence(one: Distribution, other: Distribution) -> Tensor:
-    """Return KL(one || other), [B, ...].
-
-    torch's function gives infinity for discrete actions if a probability is rounded to 0.
-    """
+    """Return KL(one || other), [B, ...]."""
+    # for discrete actions, torch's function gives infinity if a probability is rounded to 0
     if isinstance(one, DISCRETE) and isinstance(other, DISCRETE):
         each = one.probs * (one.logits - other.logits)
         return torch.where(one.probs == 0, 0.0, each).sum(-1)
@@ -95,9 +91,7 @@ def _divergence(one: Distribution, other: Distribution) -> Tensor:
 
 
 def _base(distribution: Any) -> Distribution:
-    """Remove bijective transforms from a distribution, because they do not change the
-    divergence.
-    """
+    """Remove bijective transforms, because they do not change the divergence."""
     while isinstance(distribution, (Independent, TransformedDistribution)):
         distribution = distribution.base_dist
     return distribution

@@ -81,9 +81,7 @@ class Policy(Agent, nn.Module):
         return self.executable(first_answer)
 
     def executable(self, chosen: Tensor) -> Any:
-        """Convert an action of the network, such as a sample of its distribution, to one for the
-        world.
-        """
+        """Convert an action of the network, such as a sample of its distribution, for the world."""
         if isinstance(self.space, MultiDiscrete):
             return chosen.long().cpu().numpy().reshape(self.space.counts.shape)
         if isinstance(self.space, Discrete):
@@ -120,9 +118,7 @@ class Policy(Agent, nn.Module):
         return {"policy": self.name, "architecture": str(self.network), "native": repr(self.native)}
 
     def train(self, mode: bool = True) -> Any:
-        """Keep the network in eval mode, so that dropout is off and normalisation statistics do not
-        change.
-        """
+        """Keep the network in eval mode: no dropout, and fixed normalisation statistics."""
         return super().train(False)
 
     def reset(self, instruction: str) -> None:
@@ -138,11 +134,7 @@ class Policy(Agent, nn.Module):
         return self.action(answer)
 
     def entropy(self, observation: Mapping[str, Any]) -> Tensor:
-        """Return the entropy of the last action's distribution (``agents/agent.py``).
-
-        Raises:
-            ValueError: If the policy returns no distribution of actions.
-        """
+        """Return the entropy of the last action's distribution; ValueError if there is none."""
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]
         if isinstance(answer, Tensor):
@@ -196,11 +188,7 @@ def _forget(network: nn.Module) -> None:
 
 
 def copied(policy: Policy) -> Policy:
-    """Return a copy of a policy that shares no weights with the original.
-
-    Raises:
-        ValueError: If the network cannot be copied.
-    """
+    """Return a copy of a policy with its own weights; ValueError if it cannot be copied."""
     _forget(policy.network)
     try:
         twin = copy.copy(policy)
@@ -214,24 +202,19 @@ def copied(policy: Policy) -> Policy:
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution, or of the first layer if there is no convolution.
-
-    Raises:
-        ValueError: If the network has neither a convolution nor a linear layer.
-    """
-    layers = [
-        (name, isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d)))
-        for name, module in policy.network.named_modules()
-        if isinstance(module, (nn.Conv1d, nn.Conv2d, nn.Conv3d, nn.Linear))
-        and checkpoint.ADAPTER not in f".{name}."
-    ]
-    if not layers:
+    """Return the name of the last convolution, or of the first linear layer if there is none."""
+    modules = policy.network.named_modules()
+    layers = {n: module for n, module in modules if checkpoint.ADAPTER not in f".{n}."}
+    kinds = (nn.Conv1d, nn.Conv2d, nn.Conv3d)
+    if convolutions := [n for n, module in layers.items() if isinstance(module, kinds)]:
+        return convolutions[-1]
+    linear = [n for n, module in layers.items() if isinstance(module, nn.Linear)]
+    if not linear:
         raise ValueError(
             f"{policy.name} has no convolution and no linear layer. Name the module whose output "
             "is to be compared: module=..."
         )
-    convolutions = [name for name, is_convolution in layers if is_convolution]
-    return convolutions[-1] if convolutions else layers[0][0]
+    return linear[0]
 
 
 def flat(observation: Any, prefix: str = "") -> dict[str, Any]:

@@ -105,12 +105,7 @@ class ServedPolicy(Agent):
         return {"version": self.version, "cameras": cameras, "state": self.state}
 
     def reset(self, instruction: str) -> None:
-        """Start an episode.
-
-        Raises:
-            TypeError: If the instruction is not text.
-            ConnectionError: If the server cannot be reached.
-        """
+        """Start an episode; raise ConnectionError if the server cannot be reached."""
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         if self._episode is not None:
@@ -123,8 +118,7 @@ class ServedPolicy(Agent):
 
         Raises:
             KeyError: If the observation lacks an entry.
-            ValueError: If an entry is not an array of numbers, or the server returns no valid
-                action.
+            ValueError: If an entry is not an array of numbers, or the server's action is invalid.
             ConnectionError: If the server returns no usable answer in time.
         """
         check_started(self._episode is not None)

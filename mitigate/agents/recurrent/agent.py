@@ -1,9 +1,7 @@
 """The recurrent agent has one forward camera and a memory, and chooses one action per step.
 
 The agent corresponds to VLN-CE's recurrent agents. With RGB only, it has the same input as
-vision-language models with one camera. ``reset(instruction)`` starts an episode;
-``act(observation)`` returns one low-level action. ``begin`` and ``act_all`` do the same for several
-episodes at once.
+vision-language models with one camera.
 """
 
 from __future__ import annotations
@@ -41,15 +39,13 @@ from mitigate.agents.encoders import (
 )
 from mitigate.agents.recurrent.policy import ACTIONS, Odometer, Policy, State, Text
 from mitigate.agents.recurrent.rollout import Piece, TrainingWalk, WalkDecisions, piece_of
-from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary, pad
+from mitigate.agents.text import MAX_WORDS, PAD, Vocabulary
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3}
-# maximum number of steps in a training rollout (heuristic): the expert takes 53 steps on average
-LIMIT = 90
+LIMIT = 90  # steps of a training rollout at most (heuristic); the expert takes 53 on average
 _SCALE = 5.0  # unit of the predicted distance, in metres
 
 POLICY = {  # allowed values of the keyword arguments of ``Policy``
@@ -62,15 +58,12 @@ POLICY = {  # allowed values of the keyword arguments of ``Policy``
 
 @dataclass
 class Walk:
-    """Memory of one episode: its text, the state of the policy, and odometry.
-
-    ``before`` holds the state and the motion before the last decision.
-    """
+    """Memory of one episode."""
 
     text: Text
     state: State
     odometer: Odometer
-    before: tuple[State, np.ndarray] | None = None
+    before: tuple[State, np.ndarray] | None = None  # state and motion before the last decision
 
 
 class RecurrentAgent(SideBySide, nn.Module):
@@ -105,9 +98,8 @@ class RecurrentAgent(SideBySide, nn.Module):
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
-    # number of episodes at once (heuristic): an episode that runs alone takes 2.5 times as long
-    together = 8
-    loss_weights = LOSS_WEIGHTS
+    together = 8  # (heuristic) an episode that runs alone takes 2.5 times as long
+    loss_weights = {"distance": 0.3, "grounding": 0.3}
     _walk: Walk | None = None
 
     def __init__(
@@ -153,7 +145,7 @@ class RecurrentAgent(SideBySide, nn.Module):
             insert_adapters(self, **{**adapters, "views": 1})
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments, which the config stores."""
+        """Return the constructor's arguments."""
         return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
@@ -162,9 +154,7 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     def tokens(self, instructions: list[str]) -> Tensor:
         """Return padded token ids int64 [E, L] of instructions."""
-        encode = self.vocabulary.encode
-        rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
-        return pad(rows).to(self.device)
+        return self.vocabulary.batch(instructions, "instruction" in self.blind).to(self.device)
 
     # training ---------------------------------------------------------------------------------
 
@@ -184,10 +174,8 @@ class RecurrentAgent(SideBySide, nn.Module):
     ) -> Piece:
         """Run episodes and return the decisions with the expert's answers (``agents/agent.py``).
 
-        A rollout ends when the expert's STOP is executed, or after ``LIMIT`` steps. A STOP of the
-        agent is never executed, so that the agent also learns from the steps after a wrong STOP.
-        The result is plain data. If the encoders are frozen, the result holds their features
-        instead of frames.
+        A STOP of the agent is never executed, so that the agent also learns from the steps after a
+        wrong STOP. If the encoders are frozen, the result holds their features instead of frames.
         """
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
@@ -240,9 +228,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         )
 
     def decide(self, decisions: WalkDecisions, *, clean: bool = False) -> Output:
-        """Return logits over the actions, and the features "views" [N, F] and "state" [N,
-        width].
-        """
+        """Return logits over actions, and the features "views" [N, F] and "state" [N, width]."""
         seen, prefix = decisions.seen, "clean_" if clean else ""
         losses: dict[str, Tensor] = {}
         views = seen.get(f"{prefix}views")
@@ -275,9 +261,7 @@ class RecurrentAgent(SideBySide, nn.Module):
     def _perceive(
         self, frames: dict[str, Tensor], truth: dict[str, Tensor]
     ) -> tuple[Tensor, dict[str, Tensor]]:
-        """Return features [N, F] of frames, and the losses of the encoders for labels in
-        ``truth``.
-        """
+        """Return features [N, F] of frames, and the encoders' losses for labels in ``truth``."""
         views, losses = [], {}
         for sensor in (name for name in (RGB, DEPTH) if name in self.sensors):
             seen = torch.zeros_like(frames[sensor]) if sensor in self.blind else frames[sensor]
@@ -292,11 +276,7 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def begin(self, instruction: str) -> Walk:
-        """Return the memory of a new episode; warn if all words of ``instruction`` are unknown.
-
-        Raises:
-            TypeError: If ``instruction`` is not a string.
-        """
+        """Return the memory of a new episode; warn if all words of ``instruction`` are unknown."""
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
         # pad to one length, so that texts of several episodes can be joined
@@ -308,9 +288,6 @@ class RecurrentAgent(SideBySide, nn.Module):
     def answers(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Walk], count: int
     ) -> list[int]:
-        """Return the most probable actions of the first ``count`` episodes, and update their
-        memories.
-        """
         frames = {
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
@@ -319,7 +296,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         motions = [walk.odometer.moves() for walk in memories]
         moves = torch.from_numpy(np.stack(motions))
         text = Text(*map(torch.cat, zip(*(walk.text for walk in memories), strict=True)))
-        state = State.join([walk.state for walk in memories])
+        state = State(*map(torch.cat, zip(*(walk.state for walk in memories), strict=True)))
         state = self.policy.step(text, columns, moves.to(self.device), state)
         logits = check_logits(self.policy.answer(state.hidden), self)
         actions = logits.argmax(-1).tolist()[:count]
@@ -334,13 +311,6 @@ class RecurrentAgent(SideBySide, nn.Module):
         self._walk = self.begin(instruction)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return the most likely action.
-
-        Raises:
-            RuntimeError: If ``reset`` was not called first.
-            KeyError, TypeError, ValueError: If the observation is invalid
-                (``agents/observation.py``).
-        """
         check_started(self._walk is not None)
         return self.answers([observation], [self._walk], 1)[0]  # type: ignore[list-item]
 
@@ -354,7 +324,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         before, motion = walk.before
         # copied, because tensors that were created in inference mode cannot be used with gradients
         text = Text(*(part.clone() for part in walk.text))
-        state = State(*(part.clone() for part in vars(before).values()))
+        state = State(*(part.clone() for part in before))
         moves = torch.from_numpy(motion)[None].to(self.device)
         return entropy_of(
             self.policy.answer(self.policy.step(text, columns, moves, state).hidden)[0]

@@ -10,8 +10,6 @@ instructions describe routes in order.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -47,13 +45,7 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Correct the last step, in which the agent did not make the motion that it chose.
-
-        Args:
-            action: replaces the last action; -1 means no action.
-            metres: distance that the agent really moved forward.
-            radians: angle that the agent really turned to the left.
-        """
+        """Correct the last step: the agent did not make its own motion (see ``Agent.taken``)."""
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
         self.last = action
@@ -61,67 +53,44 @@ class Odometer:
         self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
-        """Return the features of the motion, float32 [9].
-
-        The first five values are a one-hot code of the last action (no action, or one of four). The
-        others are the sine and cosine of the heading relative to the start, the metres moved
-        divided by 5, and the number of steps divided by 50.
-        """
+        """Return the features of the motion, float32 [MOVES]."""
         out = np.zeros(MOVES, np.float32)
-        out[1 + self.last] = 1.0
+        out[1 + self.last] = 1.0  # one-hot: no action, or one of four
         out[5:7] = math.sin(self.heading), math.cos(self.heading)
         out[7:] = self.metres / _METRES, self.steps / _STEPS
         return out
 
 
 class Text(NamedTuple):
-    """The encoded words of E instructions.
+    """The encoded words of E instructions."""
 
-    Attributes:
-        keys: [E, L, KEYS].
-        values: [E, L, width].
-        mask: bool [E, L], True for words and False for padding.
-    """
-
-    keys: Tensor
-    values: Tensor
-    mask: Tensor
+    keys: Tensor  # [E, L, KEYS]
+    values: Tensor  # [E, L, width]
+    mask: Tensor  # bool [E, L], True for words and False for padding
 
     def rows(self, index: Tensor) -> Text:
         return Text(*(part[index] for part in self))
 
 
-@dataclass
-class State:
-    """Memory of E episodes.
+class State(NamedTuple):
+    """Memory of E episodes."""
 
-    Attributes:
-        hidden: [E, width].
-        last: the last attention over words, [E, L].
-        sum: the sum of all attentions so far, [E, L].
-    """
-
-    hidden: Tensor
-    last: Tensor
-    sum: Tensor
+    hidden: Tensor  # [E, width]
+    last: Tensor  # the last attention over words, [E, L]
+    sum: Tensor  # the sum of all attentions so far, [E, L]
 
     @classmethod
     def start(cls, text: Text) -> State:
-        last, added = (torch.zeros_like(text.mask, dtype=text.values.dtype) for _ in range(2))
-        return cls(text.values.new_zeros(len(text.values), text.values.shape[-1]), last, added)
-
-    @classmethod
-    def join(cls, states: Sequence[State]) -> State:
-        """Concatenate ``states`` whose texts have equal length."""
-        return cls(*(torch.cat([vars(s)[name] for s in states]) for name in vars(states[0])))
+        last = torch.zeros_like(text.mask, dtype=text.values.dtype)
+        return cls(torch.zeros_like(text.values[:, 0]), last, last.clone())
 
     def rows(self, index: Tensor) -> State:
-        return State(self.hidden[index], self.last[index], self.sum[index])
+        return State(*(part[index] for part in self))
 
     def put(self, index: Tensor, fresh: State) -> None:
         """Replace the rows of this state at ``index`` with the rows of ``fresh``, in place."""
-        for name, value in vars(fresh).items():
-            vars(self)[name][index] = value
+        for part, rows in zip(self, fresh, strict=True):
+            part[index] = rows
 
 
 def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
@@ -137,14 +106,7 @@ def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
 class Policy(TextReader):
     """Recurrent policy that reads instructions, views and motion.
 
-    Args:
-        rgb: number of RGB features per column, or 0 without RGB.
-        depth: number of depth features per column, or 0 without depth.
-        vocabulary: words of the instructions.
-        width: width of all layers.
-        heads: attention heads of the text layers.
-        text_layers: number of transformer layers over the text.
-        dropout: dropout rate.
+    ``rgb`` and ``depth`` are the numbers of features per column, 0 without that sensor.
     """
 
     def __init__(
@@ -201,20 +163,11 @@ class Policy(TextReader):
         return self.column_norm(x)
 
     def step(self, text: Text, columns: Tensor, moves: Tensor, state: State) -> State:
-        """Advance E episodes by one step.
-
-        Args:
-            text: the encoded instructions.
-            columns: features of four image columns, [E, 4, width].
-            moves: the last motions, [E, MOVES].
-            state: the memory before this step.
-        """
+        """Advance E episodes by one step, given columns [E, 4, width] and motions [E, MOVES]."""
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
-        """Return the part of both cells' inputs that needs no memory, [..., 6 * width], for all
-        steps.
-        """
+        """Return the part of both cells' inputs that needs no memory, [..., 6 * width]."""
         x = self.whole(columns.flatten(-2)) + self.move(moves)
         width = x.shape[-1]
         first = F.linear(x, self.first.weight_ih, self.first.bias_ih)
@@ -243,17 +196,12 @@ class Policy(TextReader):
         return self.act(self.dropout(hidden)).float()
 
     def forward(self, text: Text, views: Tensor, moves: Tensor) -> dict[str, Tensor]:
-        """Run all steps of E episodes.
-
-        Args:
-            text: E instructions.
-            views: [E, T, F].
-            moves: [E, T, MOVES].
+        """Run all steps of E episodes, given views [E, T, F] and moves [E, T, MOVES].
 
         Returns:
-            A dict with the entries "logits" [E, T, 4]; "distance" [E, T], the predicted metres to
-            the goal divided by 5; "grounding" [E, T, 4], one logit per column, which predicts
-            whether the column shows the goal's landmark; and "state" [E, T, width].
+            "logits" [E, T, 4]; "distance" [E, T], the predicted metres to the goal divided by 5;
+            "grounding" [E, T, 4], one logit per column for whether it shows the goal's landmark;
+            and "state" [E, T, width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

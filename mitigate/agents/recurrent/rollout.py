@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ import torch
 from torch import Tensor
 
 from mitigate.agents import observation as checked
-from mitigate.agents.agent import sample
+from mitigate.agents.agent import Batch, sample
 from mitigate.agents.encoders import LABELS
 from mitigate.agents.recurrent.policy import Odometer
 from mitigate.core.observation import POSE, STOP, Observation
@@ -24,51 +24,31 @@ Piece = dict[str, Any]
 
 
 @dataclass
-class WalkDecisions:
+class WalkDecisions(Batch):
     """A batch with all N steps of E rollouts.
 
-    Attributes:
-        walk: int64 [N], the rollout of each step.
-        time: int64 [N], the index of each step in its rollout.
-        moves: [N, MOVES].
-        tokens: [E, L].
-        target: [N, 4].
-        weight: [N].
-        metres: [N], the distance to the goal; NaN where it is unknown.
-        seen: the world's labels and observations by name. Observations are either features [N, F]
-            ("views" and "clean_views") or frames [N, H, W, c] ("rgb", "clean_rgb" and so on).
-        episode_ids: the episode of each step.
+    ``seen`` holds the world's labels and observations by name. Observations are either features
+    [N, F] ("views" and "clean_views") or frames [N, H, W, c] ("rgb", "clean_rgb" and so on).
     """
 
-    walk: Tensor
-    time: Tensor
-    moves: Tensor
-    tokens: Tensor
-    target: Tensor
-    weight: Tensor
-    metres: Tensor
+    walk: Tensor  # int64 [N], the rollout of each step
+    time: Tensor  # int64 [N], the index of each step in its rollout
+    moves: Tensor  # [N, MOVES]
+    tokens: Tensor  # [E, L]
+    target: Tensor  # [N, 4]
+    weight: Tensor  # [N]
+    metres: Tensor  # [N], the distance to the goal; NaN where it is unknown
     seen: dict[str, Tensor]
-    episode_ids: list[str]
-
-    def to(self, device: Any) -> WalkDecisions:
-        """Return a copy of the batch on ``device``."""
-        moved: dict[str, Any] = {
-            n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)
-        }
-        return replace(self, **moved, seen={n: v.to(device) for n, v in self.seen.items()})
+    episode_ids: list[str]  # the episode of each step
 
     def padded(self, flat: Tensor) -> Tensor:
-        """Return an array [N, ...] in the shape [E, T, ...], with zeros after the end of each
-        rollout.
-        """
+        """Return [N, ...] in the shape [E, T, ...], with zeros after the end of each rollout."""
         size = (len(self.tokens), int(self.time.max()) + 1)
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
 
 class TrainingWalk:
-    """One training rollout, with the observation, the action and the expert's answer of each
-    step.
-    """
+    """One training rollout, which records each step with the expert's answer."""
 
     def __init__(self, world: World, episode: Episode, sensors: Sequence[str]) -> None:
         self.world, self.episode, self.sensors = as_world(world), episode, sensors

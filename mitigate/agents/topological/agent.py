@@ -1,7 +1,6 @@
 """The reference agent extends its topological map at each decision and goes to a ghost node.
 
-``reset(instruction)`` starts an episode; ``act(observation)`` returns one low-level action. The
-agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
+The agent reads ``observation["rgb"]`` and ``["depth"]`` only when it decides, so that a lazy
 observation renders frames only for decisions.
 """
 
@@ -41,7 +40,7 @@ from mitigate.agents.encoders import (
     label_output,
     presence_loss,
 )
-from mitigate.agents.text import THINGS, Vocabulary, pad
+from mitigate.agents.text import THINGS, Vocabulary
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.perception import ImageNetEncoder, WaypointHead, select
 from mitigate.agents.topological.planner import Planner, collate
@@ -58,11 +57,6 @@ if TYPE_CHECKING:
 
 MAX_DECISIONS = 15  # maximum number of decisions; ETPNav uses 15 in R2R-CE
 PERCEPTION = ("rgb_encoder", "depth_encoder", "waypoint_head")
-# These are the weights of the auxiliary losses, chosen for the shipped agents.
-# The planner predicts the distance to the goal.
-# It also predicts the views that show the goal's landmark ("grounding").
-# Perception predicts the concepts in each view, and free space (the loss called "waypoints").
-LOSS_WEIGHTS = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
 _SCALE = 5.0  # the planner predicts distances in metres divided by this number
 OWN, IMAGENET = RGB_ENCODERS = ("own", "efficientnet_lite0")
 # names of the frozen modules of the ImageNet encoder
@@ -156,7 +150,7 @@ class TopologicalAgent(Agent, nn.Module):
             insert_adapters(self, **adapters)
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments, which are stored with the weights."""
+        """Return the constructor's arguments."""
         return {**self._settings, "vocabulary": list(self.vocabulary.words)}
 
     @property
@@ -166,11 +160,7 @@ class TopologicalAgent(Agent, nn.Module):
     # features, which training recipes use ----------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Encode P panoramas; inputs in ``blind`` are blanked.
-
-        Args:
-            rgb: uint8 [P, 12, H, W, 3].
-            depth: float32 metres [P, 12, H, W, 1].
+        """Encode P panoramas, uint8 [P, 12, H, W, 3] and metres [P, 12, H, W, 1].
 
         Returns:
             View features [P, 12, rgb + concepts + depth], which contain the probabilities of
@@ -195,13 +185,13 @@ class TopologicalAgent(Agent, nn.Module):
 
     def tokens(self, instructions: list[str]) -> Tensor:
         """Return padded token ids int64 [E, L] of instructions."""
-        encode = self.vocabulary.encode
-        rows = [[1] if "instruction" in self.blind else encode(text) for text in instructions]
-        return pad(rows).to(self.device)
+        return self.vocabulary.batch(instructions, "instruction" in self.blind).to(self.device)
 
     # training ---------------------------------------------------------------------------------
 
-    loss_weights = LOSS_WEIGHTS
+    # the planner predicts the distance to the goal and the views that show its landmark
+    # ("grounding"); perception predicts concepts and free space ("waypoints")
+    loss_weights = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = LABELS
     plain_walks = False
@@ -232,10 +222,7 @@ class TopologicalAgent(Agent, nn.Module):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> Piece:
-        """Run episodes and return the decisions with the oracle's answers (``agents/agent.py``).
-
-        If the perception is frozen, the result holds features instead of frames.
-        """
+        """Run episodes; with frozen perception, the result holds features instead of frames."""
         weights = self.named_parameters()
         trains = any(p.requires_grad for name, p in weights if name.startswith(PERCEPTION))
         labels = ("concepts", "free", "goal") if trains else ("goal",)
@@ -264,7 +251,6 @@ class TopologicalAgent(Agent, nn.Module):
         return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
-        """If ``clean`` is true, replace the clean frames by their features."""
         if clean and CLEAN_RGB in piece.seen:
             views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
@@ -275,10 +261,7 @@ class TopologicalAgent(Agent, nn.Module):
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Return the logits over [stop] and ghost nodes, and the features.
-
-        The features are "views" [P, 12, F] and "nodes" [n, width].
-        """
+        """Return logits over [stop] and ghosts, features "views" [P, 12, F] and "nodes" [n, C]."""
         views, losses, figures = self._perception(decisions, clean)
         planner, valid = self.planner, decisions.valid
         out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
@@ -292,10 +275,7 @@ class TopologicalAgent(Agent, nn.Module):
         return Output(out["logits"], features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """Return the view features of one sensor's frames (``agents/agent.py``).
-
-        The features of RGB frames include the probabilities of concepts.
-        """
+        """Return the view features of one sensor's frames, with concepts for RGB."""
         if sensor == DEPTH:
             features, logits = self.encode_depth(frames)
         else:
@@ -313,9 +293,7 @@ class TopologicalAgent(Agent, nn.Module):
     def _perception(
         self, seen: MapDecisions, clean: bool
     ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
-        """Return view features [P, 12, F], and the losses and metrics if perception is being
-        trained.
-        """
+        """Return view features [P, 12, F], and the losses and metrics of trained perception."""
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
@@ -343,12 +321,7 @@ class TopologicalAgent(Agent, nn.Module):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Cache the features of recent frames, so that :meth:`act` encodes identical frames only
-        once.
-
-        Actions do not change, because equal frames have equal features. The weights must not
-        change inside the context. In training mode, no features are cached.
-        """
+        """Cache the features of recent frames; the weights must not change inside the context."""
         before, self._memory = self._memory, Memory(FEATURES)
         try:
             yield
@@ -356,11 +329,7 @@ class TopologicalAgent(Agent, nn.Module):
             self._memory = before
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; warn if the agent knows no word of ``instruction``.
-
-        Raises:
-            TypeError: If ``instruction`` is not a string.
-        """
+        """Start an episode; warn if the agent knows no word of ``instruction``."""
         checked.instruction(instruction, self.vocabulary)
         self.map, self.controller = TopologicalMap(), Controller()
         self._started = True
@@ -373,20 +342,12 @@ class TopologicalAgent(Agent, nn.Module):
             self._text = self.planner.read(self.tokens([instruction]))
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return one low-level action; read frames only when a decision is due.
-
-        Raises:
-            RuntimeError: If ``reset`` was not called.
-            KeyError, TypeError, ValueError: If an entry of the observation is missing or has a
-                wrong dtype, shape or unit.
-        """
+        """Return one low-level action; read frames only when a decision is due."""
         check_started(self._started)
         self._decided: Decision | None = None  # the last decision in this call of act
-        action = self.controller.action(checked.pose(observation))
-        while action is None:
+        while (action := self.controller.action(checked.pose(observation))) is None:
             if self._final or not self._decide(observation):
                 return STOP
-            action = self.controller.action(checked.pose(observation))
         return action
 
     def entropy(self, observation: Mapping[str, np.ndarray]) -> Tensor | None:
@@ -403,19 +364,14 @@ class TopologicalAgent(Agent, nn.Module):
         return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Discard the route after a motion that the agent did not choose. The agent decides again
-        at its next step.
-        """
-        self.controller = Controller()
+        self.controller = Controller()  # without a route, the agent decides at its next step
         self._chosen = None
         self.decisions = 0  # the limit counts only decisions since the last intervention
         self._final = False
 
     @property
     def aim(self) -> np.ndarray | None:  # type: ignore[override]
-        """The end of the agent's route [2], in metres on the floor plan, or None without a
-        route.
-        """
+        """The end [x, y] of the agent's route in metres, or None without a route."""
         return self.controller.route[-1] if self.controller.route else None
 
     @torch.inference_mode()
@@ -455,9 +411,7 @@ class TopologicalAgent(Agent, nn.Module):
         return views, select(waypoints[0].float().cpu().numpy())
 
     def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
-        """Apply ``encode`` to a sensor's frames [12, H, H, c]; use the cache of
-        :meth:`remembering`.
-        """
+        """Apply ``encode`` to frames [12, H, H, c]; use the cache of :meth:`remembering`."""
         frames = np.zeros_like(frames) if sensor in self.blind else frames
 
         def encoded() -> tuple:

@@ -31,23 +31,14 @@ class Ghost:
 
 @dataclass(frozen=True)
 class Decision:
-    """The input of the planner for one decision; the order of tokens is [stop], nodes, ghosts.
+    """The input of the planner for one decision; the order of tokens is [stop], nodes, ghosts."""
 
-    Attributes:
-        panorama: index of the current panorama.
-        nodes: int [n], the panorama of each node.
-        sightings: int [g, SIGHTINGS, 2], the (panorama, view) pairs of each ghost, -1 where unused.
-        geometry: float32 [1 + n + g, GEOMETRY].
-        ghosts: ids of the ghosts, in order.
-        travel: metres along the map to each ghost.
-    """
-
-    panorama: int
-    nodes: np.ndarray
-    sightings: np.ndarray
-    geometry: np.ndarray
-    ghosts: list[int]
-    travel: np.ndarray
+    panorama: int  # index of the current panorama
+    nodes: np.ndarray  # int [n], the panorama of each node
+    sightings: np.ndarray  # int [g, SIGHTINGS, 2], (panorama, view) of each ghost, -1 where unused
+    geometry: np.ndarray  # float32 [1 + n + g, GEOMETRY]
+    ghosts: list[int]  # ids of the ghosts, in order
+    travel: np.ndarray  # metres along the map to each ghost
 
 
 @dataclass
@@ -64,9 +55,7 @@ class TopologicalMap:
     _born: int = 0
 
     def add(self, pose: np.ndarray, waypoints: np.ndarray) -> None:
-        """Add a panorama at ``pose`` [3], and its ``waypoints`` [n, 2] (clockwise yaw, and
-        metres).
-        """
+        """Add a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (clockwise yaw, metres)."""
         self.start = pose.copy() if self.start is None else self.start
         node = self._visit(pose[:2].astype(np.float64))
         for yaw, metres in waypoints:
@@ -98,11 +87,8 @@ class TopologicalMap:
             [min(distance[p] + self._gap(p, g) for p in self.ghosts[g].parents) for g in ids],
             np.float32,
         )
-        places = [
-            self.positions[self.current],
-            *self.positions,
-            *(self.ghosts[g].position for g in ids),
-        ]
+        ghosts = [self.ghosts[g].position for g in ids]
+        places = [self.positions[self.current], *self.positions, *ghosts]
         kinds = [_STOP, *[_NODE] * len(self.positions), *[_GHOST] * len(ids)]
         routes = np.concatenate([[0.0], distance, travel])
         sightings = np.full((len(ids), SIGHTINGS, 2), -1, np.int64)
@@ -144,12 +130,11 @@ class TopologicalMap:
         if self.current >= 0 and node != self.current:
             self._join(self.current, node)
         self.current = node
-        for ghost in [
-            g for g, item in self.ghosts.items() if np.hypot(*(item.position - position)) < MERGE
-        ]:
-            for parent in self.ghosts[ghost].parents:
-                self._join(parent, node)
-            del self.ghosts[ghost]
+        for ghost, item in [*self.ghosts.items()]:
+            if np.hypot(*(item.position - position)) < MERGE:
+                for parent in item.parents:
+                    self._join(parent, node)
+                del self.ghosts[ghost]
         return node
 
     def _sight(self, node: int, where: np.ndarray, sighting: tuple[int, int]) -> None:
@@ -177,9 +162,7 @@ class TopologicalMap:
         return float(np.hypot(*(self.positions[node] - self.ghosts[ghost].position)))
 
     def _dijkstra(self) -> tuple[np.ndarray, dict[int, int]]:
-        """Return the metres from the current node to every node, and the predecessor of each node
-        on the shortest path.
-        """
+        """Return the metres from the current node to each node, and each node's predecessor."""
         distance = np.full(len(self.positions), np.inf)
         distance[self.current] = 0.0
         before: dict[int, int] = {}

@@ -9,7 +9,7 @@ over the views that face the ghost. A cross-modal transformer then reads the map
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ import torch
 import torch.nn.functional as F
 from torch import Tensor, nn
 
+from mitigate.agents.agent import Batch
 from mitigate.agents.attention import Layer, TextReader
 from mitigate.agents.fusion import weigher
 from mitigate.agents.text import CONCEPTS, Vocabulary
@@ -25,38 +26,22 @@ from mitigate.core.observation import VIEW_STEP_DEGREES, VIEWS
 
 
 @dataclass
-class DecisionBatch:
-    """A batch of padded decisions; the order of tokens is [stop], nodes (N), ghosts (G).
+class DecisionBatch(Batch):
+    """A batch of padded decisions; the order of tokens is [stop], nodes (N), ghosts (G)."""
 
-    Attributes:
-        episode: int [B], index of each decision's text.
-        panorama: int [B], index of the current panorama.
-        nodes: int [B, N], panorama index or -1.
-        sightings: int [B, G, 4], flat view index (panorama * 12 + view) or -1.
-        geometry: float [B, 1 + N + G, GEOMETRY].
-        valid: bool [B, 1 + N + G], False for padding.
-        allowed: bool [B, 1 + N + G], the tokens that may be chosen: stop and ghosts.
-    """
-
-    episode: Tensor
-    panorama: Tensor
-    nodes: Tensor
-    sightings: Tensor
-    geometry: Tensor
-    valid: Tensor
-    allowed: Tensor
-
-    def to(self, device: Any) -> Any:
-        """Return a copy of the batch on ``device``."""
-        moved = {n: v.to(device) for n, v in vars(self).items() if isinstance(v, Tensor)}
-        return replace(self, **moved)
+    episode: Tensor  # int [B], index of each decision's text
+    panorama: Tensor  # int [B], index of the current panorama
+    nodes: Tensor  # int [B, N], panorama index or -1
+    sightings: Tensor  # int [B, G, 4], flat view index (panorama * 12 + view) or -1
+    geometry: Tensor  # float [B, 1 + N + G, GEOMETRY]
+    valid: Tensor  # bool [B, 1 + N + G], False for padding
+    allowed: Tensor  # bool [B, 1 + N + G], the tokens that may be chosen: stop and ghosts
 
 
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
     """Pad decisions and join them into a batch.
 
-    ``episodes[i]`` is the index of the text of decision i, and ``offsets[i]`` is the index of the
-    first panorama of its episode.
+    ``episodes`` are the indices of their texts; ``offsets``, of their episodes' first panoramas.
     """
     n = max(len(d.nodes) for d in decisions)
     g = max(1, max(len(d.ghosts) for d in decisions))
@@ -82,17 +67,8 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
 class Planner(TextReader):
     """Score [stop] and ghost nodes; the module's docstring describes the structure.
 
-    Args:
-        rgb_width: number of RGB features per view.
-        depth_width: number of depth features per view.
-        width: width of all layers.
-        heads: attention heads.
-        text_layers: transformer layers over the text.
-        layers: cross-modal layers.
-        dropout: dropout rate.
-        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Views with reliable
-            encoder features then get higher weights. If None, all views have equal weights.
-        vocabulary: words of the instructions, or None for the default vocabulary.
+    With ``fusion``, keyword arguments of ``fusion.weigher``, views with reliable encoder features
+    get higher weights; otherwise, all views have equal weights.
     """
 
     yaws: Tensor
@@ -159,12 +135,7 @@ class Planner(TextReader):
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
     ) -> dict[str, Tensor]:
-        """Score every token.
-
-        Args:
-            text: the result of ``read``.
-            views: [P, 12, ...], the result of ``look``.
-            batch: the padded decisions.
+        """Score every token, given the results of ``read`` and ``look``.
 
         Returns:
             "logits" [B, 1 + N + G], -inf for tokens that are not allowed; "distance" [B, 1 + N +

@@ -22,7 +22,6 @@ from torch.utils.checkpoint import checkpoint
 from mitigate.agents.agent import Output, check_logits, stop_figures
 from mitigate.agents.vlm.answers import Answer
 from mitigate.agents.vlm.conversation import SYSTEM, AnsweringAgent, Memory, views_of
-from mitigate.agents.vlm.processor import load_processor
 from mitigate.agents.vlm.rollout import (
     AnswerDecisions,
     Piece,
@@ -52,8 +51,7 @@ from mitigate.worlds.world import World
 
 INSTALL = "pip install -e '.[train,vlm]'"
 CONFIG, BASE = "adapter_config.json", "base.json"  # files of a saved agent, next to its weights
-# maximum number of decisions in a training rollout (heuristic), as for the recurrent agent
-LIMIT = 90
+LIMIT = 90  # decisions of a training rollout at most (heuristic), as for the recurrent agent
 
 
 class VLMAgent(AnsweringAgent, nn.Module):
@@ -138,10 +136,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
         self._read_template()
 
     def settings(self) -> dict[str, Any]:
-        """Return the constructor's arguments that determine the answers, except ``model``.
-
-        ``base_sha256`` identifies the model.
-        """
+        """Return the arguments that determine the answers; ``base_sha256`` stands for ``model``."""
         return dict(self._settings)
 
     @property
@@ -151,10 +146,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # prompts and likelihoods ------------------------------------------------------------------
 
     def _read_template(self) -> None:
-        """Read the special tokens, and the tokens of each answer, from the model's chat template.
-
-        Raises ValueError for a chat template that omits a part of the conversation.
-        """
+        """Read the special tokens, and the tokens of each answer, from the chat template."""
         tokenizer = self.processor.tokenizer
         added = tokenizer.added_tokens_decoder.values()
         special = {*tokenizer.all_special_tokens, *(t.content for t in added if t.special)}
@@ -199,11 +191,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
         return str(text)
 
     def _prompt(self, instruction: str, system: str | None, images: int) -> str:
-        """Return the text of the conversation before the answer.
-
-        Special tokens in the instruction and in the system prompt are removed, because such a token
-        could end the user's turn or stand for an image.
-        """
+        """Return the text of the conversation before the answer."""
+        # a special token in the text could end the user's turn or stand for an image
         instruction = self._special.sub(" ", instruction)
         system = None if system is None else self._special.sub(" ", system)
         return self._render(self.messages(instruction, system, [{"type": "image"}] * images), True)
@@ -298,10 +287,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # files ------------------------------------------------------------------------------------
 
     def save(self, folder: str | Path) -> None:
-        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model.
-
-        Raises ValueError if the agent has no LoRA weights.
-        """
+        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model."""
         with folders.write_folder(folder, "agent") as draft:
             tensors = {name: value.cpu().clone() for name, value in self._adapter().items()}
             self.network.peft_config["default"].base_model_name_or_path = self.model
@@ -315,8 +301,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.
 
-        Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
-        weights are damaged, or were trained for a different base model or for other modules.
+        Raises FileNotFoundError if there are none, and ValueError if they are damaged, or were
+        trained for a different base model or for other modules.
         """
         from peft import set_peft_model_state_dict
 
@@ -359,17 +345,35 @@ class VLMAgent(AnsweringAgent, nn.Module):
         return get_peft_model_state_dict(self.network)
 
 
+def load_processor(place: str) -> Any:
+    """Return the tokenizer and image processor of the model ``place`` (a folder or hub id).
+
+    The agent sends images only, and the video processors of transformers would require torchvision.
+    """
+    from transformers import AutoConfig
+    from transformers.models.auto.processing_auto import PROCESSOR_MAPPING
+
+    config = AutoConfig.from_pretrained(place, trust_remote_code=False)
+    if type(config) not in PROCESSOR_MAPPING:
+        raise ValueError(f"transformers has no processor for {config.model_type}.")
+    kind: Any = PROCESSOR_MAPPING[type(config)]
+
+    class ImagesOnly(kind):
+        @classmethod
+        def get_attributes(cls) -> list[str]:
+            return [name for name in kind.get_attributes() if "video" not in name]
+
+    processor = ImagesOnly.from_pretrained(place, trust_remote_code=False)
+    processor.__class__ = kind  # restore the class, because a local class cannot be pickled
+    return processor
+
+
 def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: Tensor) -> Tensor:
-    """Return the log-likelihood [n] of each answer after a prompt.
+    """Return the log-likelihood [n] of each answer (token ids [n, L]) after a prompt.
 
-    The prompt is computed once, and its keys and values are repeated for the answers. Answers are
-    padded on the right, and causal attention ignores later tokens.
-
-    Args:
-        network: a causal language model of the transformers library.
-        inputs: the model's inputs for the prompt, with batch size 1.
-        ids: token ids [n, L] of the answers.
-        mask: bool [n, L], False for padding.
+    The prompt (``inputs``, with batch size 1) is computed once, and its keys and values are
+    repeated for the answers. Answers are padded on the right (``mask`` is False), and causal
+    attention ignores later tokens.
     """
     prompt = network(**inputs, use_cache=True, logits_to_keep=1)
     # transformers 5.24 renamed this argument
@@ -387,10 +391,7 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
 
 
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
-    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``.
-
-    Raises ValueError if a name matches no module.
-    """
+    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``."""
     from peft import LoraConfig, get_peft_model
 
     language = {id(module) for module in network.get_decoder().modules()}

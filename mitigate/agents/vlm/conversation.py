@@ -29,29 +29,19 @@ MOST_FRAMES = 64  # maximum number of earlier frames in a prompt (heuristic)
 
 @dataclass
 class Memory:
-    """The memory of one episode.
-
-    Attributes:
-        instruction: the instruction.
-        system: the system prompt at the start of the episode, or None.
-        frames: the frames of all decisions so far, uint8 [H, W, 3].
-        pending: low-level actions of the last answer that were not taken yet.
-        unreadable: number of answers that were not one of the allowed answers.
-    """
+    """The memory of one episode."""
 
     instruction: str
-    system: str | None
-    frames: list[np.ndarray] = field(default_factory=list)
-    pending: list[int] = field(default_factory=list)
-    unreadable: int = 0
+    system: str | None  # the system prompt at the start of the episode
+    frames: list[np.ndarray] = field(default_factory=list)  # of all decisions, uint8 [H, W, 3]
+    pending: list[int] = field(default_factory=list)  # actions of the last answer, not taken yet
+    unreadable: int = 0  # number of answers that were not one of the allowed answers
 
 
 def views_of(count: int, history: int) -> list[int]:
     """Return the indices of the frames that the model sees, from the earliest to the last.
 
-    Args:
-        count: number of frames so far.
-        history: maximum number of earlier frames, which are spread evenly over the episode.
+    These are the last of ``count`` frames, and up to ``history`` earlier ones, spread evenly.
     """
     earlier = np.linspace(count - 2, 0, min(history, count - 1)).round().astype(int)
     return [*reversed(earlier.tolist()), count - 1]
@@ -116,10 +106,7 @@ class AnsweringAgent(Agent):
         return [{"role": "system", "content": [{"type": "text", "text": system}]}, user]
 
     def begin(self, instruction: str) -> Memory:
-        """Return the memory of a new episode.
-
-        Raises TypeError if the instruction is not a string.
-        """
+        """Return the memory of a new episode."""
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         return Memory(instruction, self.system_prompt)
@@ -127,10 +114,7 @@ class AnsweringAgent(Agent):
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Memory]
     ) -> list[int]:
-        """Return one low-level action per episode.
-
-        An episode's observation is ignored while actions from an earlier answer are still pending.
-        """
+        """Return one action per episode; actions of an earlier answer are taken first."""
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:
             memories[i].frames.append(checked.frame(observations[i], RGB, 1).copy())
@@ -143,13 +127,6 @@ class AnsweringAgent(Agent):
         self._memory = self.begin(instruction)
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return the next low-level action.
-
-        Raises:
-            RuntimeError: If ``reset`` was not called first.
-            KeyError, TypeError, ValueError: If the observation is invalid
-                (``agents/observation.py``).
-        """
         check_started(self._memory is not None)
         return self.act_all([observation], [self._memory])[0]  # type: ignore[list-item]
 

@@ -1,11 +1,10 @@
-"""Write episodes of a LeRobot dataset as conversations with images, in the format of LLaVA and
-NaVid.
-"""
+"""Write episodes of a LeRobot dataset as conversations with images, as LLaVA and NaVid read."""
 
 from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NamedTuple
 
@@ -91,15 +90,7 @@ def write_lerobot_conversations(
 
 
 class _Drive(NamedTuple):
-    """The rows of an episode that have a low-level action.
-
-    Attributes:
-        episode: the episode.
-        instruction: its task.
-        rows: indices of the rows.
-        times: seconds since the start of the episode, for each row.
-        actions: low-level action of each row.
-    """
+    """The rows of an episode that have a low-level action; times are seconds since its start."""
 
     episode: DatasetEpisode
     instruction: str
@@ -108,25 +99,15 @@ class _Drive(NamedTuple):
     actions: list[int]
 
 
+@dataclass(eq=False)
 class _RecordedWorld(World, Expert):
-    """World that replays drives. Its expert takes the recorded actions.
+    """World whose steps replay the rows of drives; its expert takes the recorded actions."""
 
-    Each step goes to the next row, independent of the action.
-    """
-
-    def __init__(
-        self,
-        dataset: Dataset,
-        camera: Camera,
-        drives: Mapping[str, _Drive],
-        size: int,
-        tolerance: float,
-    ) -> None:
-        self.dataset = dataset
-        self.camera = camera
-        self.drives = drives
-        self.size = size
-        self.tolerance = tolerance
+    dataset: Dataset
+    camera: Camera
+    drives: Mapping[str, _Drive]
+    size: int
+    tolerance: float
 
     def reset(self, episode: Episode) -> Observation:
         drive = self.drives[episode.episode_id]

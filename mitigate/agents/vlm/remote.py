@@ -90,10 +90,7 @@ class RemoteAgent(AnsweringAgent):
         return dict(self._settings)
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
-        """Return the answer of each episode; the requests run at the same time.
-
-        Raises ConnectionError if a request got no answer.
-        """
+        """Return each episode's answer; raise ConnectionError if a request got none."""
         if not memories:
             return []
         with ThreadPoolExecutor(len(memories)) as pool:

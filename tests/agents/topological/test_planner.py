@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.text import PAD, Vocabulary, pad
+from mitigate.agents.text import PAD, Vocabulary
 from mitigate.agents.topological.mapping import Decision, TopologicalMap
 from mitigate.agents.topological.planner import Planner, collate
 from mitigate.core.observation import VIEWS
@@ -52,7 +52,7 @@ def split(logits: torch.Tensor, output: Decision, nodes: int) -> tuple[torch.Ten
 
 def test_planner_ignores_padding_of_decisions(planner):
     short, long = decision(2), decision(6)
-    tokens = pad([Vocabulary().encode(text) for text in TEXT])
+    tokens = Vocabulary().batch(TEXT)
     alone = score(planner, [short], [0], [6], 8, tokens)
     together = score(planner, [long, short], [1, 0], [0, 6], 8, tokens)
     stop, ghosts = split(together[1], short, len(long.nodes))
@@ -64,14 +64,14 @@ def test_planner_ignores_padding_of_decisions(planner):
 
 
 def test_planner_ignores_padding_of_instructions(planner):
-    output, tokens = decision(3), pad([Vocabulary().encode(TEXT[0])])
+    output, tokens = decision(3), Vocabulary().batch([TEXT[0]])
     longer = torch.nn.functional.pad(tokens, (0, 9), value=PAD)
     one, other = (score(planner, [output], [0], [0], 3, t) for t in (tokens, longer))
     assert torch.allclose(one, other, atol=1e-5)
 
 
 def test_planner_permutes_scores_with_ghosts(planner):
-    output, tokens = decision(4), pad([Vocabulary().encode(TEXT[0])])
+    output, tokens = decision(4), Vocabulary().batch([TEXT[0]])
     count, first = len(output.ghosts), 1 + len(output.nodes)
     order = np.random.default_rng(0).permutation(count)
     geometry = output.geometry.copy()
@@ -92,13 +92,13 @@ def test_planner_permutes_scores_with_ghosts(planner):
 
 def test_planner_allows_only_stop_and_ghosts(planner):
     output = decision(3)
-    logits = score(planner, [output], [0], [0], 3, pad([Vocabulary().encode(TEXT[1])]))[0]
+    logits = score(planner, [output], [0], [0], 3, Vocabulary().batch([TEXT[1]]))[0]
     nodes = logits[1 : 1 + len(output.nodes)]
     assert torch.isinf(nodes).all() and torch.isfinite(logits).sum() == 1 + len(output.ghosts)
 
 
 def test_planner_reads_instruction_and_views(planner):
-    output, tokens = decision(3), pad([Vocabulary().encode(text) for text in TEXT])
+    output, tokens = decision(3), Vocabulary().batch(TEXT)
     first, second = (score(planner, [output], [row], [0], 3, tokens) for row in (0, 1))
     other = score(planner, [output], [0], [1], 4, tokens)  # different panoramas with the same map
     allowed = torch.isfinite(first)

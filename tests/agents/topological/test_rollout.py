@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 import torch
 
-from mitigate.agents.text import Vocabulary, pad
+from mitigate.agents.text import Vocabulary
 from mitigate.agents.topological.perception import select
 from mitigate.agents.topological.rollout import STOP_BEST, LiveWalk, roll_out
 from mitigate.agents.topological.stored import SPACING, ScenePoses, Store, StoredWalk
@@ -62,7 +62,7 @@ def look(worlds: list[RoomWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
 def traces_of(follow_oracle: float, seed: int = 0, limit: int = 12):
     agent = wanderer()
     worlds = [RoomWorld(n, sum(agent.planner.widths)) for n in range(5)]
-    tokens = pad([Vocabulary().encode(w.episode.instruction.text) for w in worlds])
+    tokens = Vocabulary().batch([w.episode.instruction.text for w in worlds])
     rngs = [np.random.default_rng([seed, i]) for i in range(len(worlds))]
     output = roll_out(
         agent.planner, tokens, worlds, look, follow_oracle=follow_oracle, rngs=rngs, limit=limit
