@@ -38,7 +38,7 @@ from mitigate.core.files import (
     write_json,
     write_text,
 )
-from mitigate.core.json_files import read_object
+from mitigate.core.json_files import read_json, read_object
 from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import short
 from mitigate.core.output import writing
@@ -322,6 +322,17 @@ def problem(file: Path) -> str:
     listed = [entries[file.name] for entries in versions if file.name in entries]
     sound = not listed or any(_matches(file, entry) for entry in listed)
     return "" if sound else f"does not have the sha256 in {MANIFEST}"
+
+
+def read_checked(file: Path, again: str) -> Any:
+    """Return the content of an untrusted JSON file, after a comparison with the folder's manifest.
+
+    Raises:
+        ValueError: If the file is damaged. The message ends with the advice ``again``.
+    """
+    if damage := problem(file):
+        raise ValueError(f"{file} is truncated or damaged: it {damage}. {again}")
+    return read_json(file, again)
 
 
 def is_listed(file: Path) -> bool:
