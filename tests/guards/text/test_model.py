@@ -13,8 +13,12 @@ import pytest
 import torch
 
 from mitigate.core import checkpoint, folders
-from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
-from mitigate.guards.text.language_models.tokens import collate, encode_pair
+from mitigate.guards.text.language_models.model import (
+    LanguageModel,
+    collate,
+    encode_pair,
+    open_adapter,
+)
 from mitigate.guards.text.learning.data import Pair
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.training import states

@@ -1,7 +1,4 @@
-"""Rewrite texts with a chat model behind an OpenAI-compatible endpoint.
-
-The answers can be cached on disk.
-"""
+"""Rewrite texts with a chat model behind an OpenAI-compatible endpoint."""
 
 from __future__ import annotations
 
@@ -23,15 +20,11 @@ class ChatEndpoint(ChatClient):
     """Rewrites texts by asking a chat model over HTTP.
 
     Args:
-        url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
+        url: see :class:`ChatClient`, which also describes errors.
         model: name of the model at the endpoint.
         prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
-        cache: SQLite file that stores the answer for each text, model and prompt, or None for no
-            cache.
-        request: remaining arguments of :class:`ChatClient`.
-
-    Raises:
-        ValueError: If the URL is invalid, or it contains a password or a key.
+        cache: SQLite file that stores the answer for each text, model and prompt, or None.
+        request: other arguments of :class:`ChatClient`.
     """
 
     def __init__(
@@ -49,10 +42,9 @@ class ChatEndpoint(ChatClient):
         self._cache = None if cache is None else AnswerCache(Path(cache))
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the model's answer to each text.
+        """Return the answer to each text, or None if no usable answer arrived within ``seconds``.
 
-        An answer is None if no usable answer arrived within ``seconds``. The attribute ``failures``
-        lists the reasons.
+        The attribute ``failures`` lists the reasons.
         """
         ends = None if seconds is None else time.monotonic() + seconds
         progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
@@ -62,15 +54,13 @@ class ChatEndpoint(ChatClient):
         prompt = PROMPTS[self.prompt]
         name = f"{digest(self.url, self.model, prompt, repr(self.options), text):032x}"
         answer = None if self._cache is None else self._cache.get(name)
-        if answer is None:
-            answer = self._ask(text, ends)
-            if self._cache is not None and answer is not None:
-                self._cache.put(name, answer)
-        return answer
-
-    def _ask(self, text: str, ends: float | None) -> str | None:
+        if answer is not None:
+            return answer
         try:
-            return self.ask(prompt_messages(text, self.prompt), gate.longest(text), ends)
+            answer = self.ask(prompt_messages(text, self.prompt), gate.longest(text), ends)
         except NoAnswer as error:
             self.failures.append(str(error))
             return None
+        if self._cache is not None:
+            self._cache.put(name, answer)
+        return answer
