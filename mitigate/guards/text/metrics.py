@@ -19,11 +19,10 @@ _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 @dataclass(frozen=True)
 class Repair:
-    """One repaired instruction.
+    """A repaired instruction.
 
     ``clean`` is the original, ``heard`` the safeguard's input, and ``repaired`` its output.
-    ``family`` is the corruption family, or "clean". ``injected`` lists the sentences that the
-    corruption inserted before the instruction.
+    ``family`` is the corruption family, or "clean". ``injected`` are the sentences of an attack.
     """
 
     family: str
@@ -61,10 +60,7 @@ class Scores:
 
 
 def score(repairs: Sequence[Repair]) -> Scores:
-    """Return the scores of ``repairs``.
-
-    Raises ValueError if the list is empty.
-    """
+    """Return the scores of ``repairs``; raise ValueError if there are none."""
     if not repairs:
         raise ValueError("There are no repairs to score: give at least one.")
     from sacrebleu.metrics import CHRF
@@ -91,10 +87,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
 
 def by_family(repairs: Sequence[Repair]) -> dict[str, Scores]:
-    """Return the scores by family.
-
-    Families are in order of appearance. The key "all" holds the scores of all repairs.
-    """
+    """Return the scores by family, in order of appearance, and of all repairs as "all"."""
     groups: dict[str, list[Repair]] = defaultdict(list)
     for repair in repairs:
         groups[repair.family].append(repair)
@@ -132,10 +125,7 @@ def _landmarks_kept(repair: Repair) -> tuple[int, int]:
 
 
 def pairs(text: str) -> list[tuple[str, str]]:
-    """Return the pairs of adjacent words.
-
-    For a text of one word, return the single pair (word, "").
-    """
+    """Return the pairs of adjacent words; a text of one word has the pair (word, "")."""
     tokens = words_of(text)
     return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]
 
