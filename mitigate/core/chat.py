@@ -77,12 +77,9 @@ class ChatClient:
     def ask(
         self, messages: Sequence[Mapping[str, Any]], longest: int, ends: float | None = None
     ) -> str:
-        """Return the answer to ``messages``.
+        """Return the answer to ``messages`` (OpenAI's format), of at most ``longest`` characters.
 
-        Args:
-            messages: the conversation in OpenAI's format.
-            longest: maximum length of the answer, in characters.
-            ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
+        ``ends`` is the value of ``time.monotonic()`` at which requests end, or None.
 
         Raises:
             NoAnswer: If all attempts failed, a failure was permanent, or the time limit has passed.
@@ -110,27 +107,24 @@ class ChatClient:
         raise NoAnswer(f"{self.url}: {problem}")
 
     def _post(self, messages: Sequence[Mapping[str, Any]], timeout: float, longest: int) -> Any:
-        body = {"model": self.model, "messages": messages, **self.options}
+        body = json.dumps({"model": self.model, "messages": messages, **self.options}).encode()
         headers = {"Content-Type": "application/json"}
         if os.environ.get(self.key):
             headers["Authorization"] = f"Bearer {os.environ[self.key]}"
         most = ENVELOPE + 6 * longest  # JSON may need six bytes per character
-        url = f"{self.url}/chat/completions"
-        return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
+        return parse_json(post(f"{self.url}/chat/completions", body, headers, timeout, most))
 
 
 def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
-    """Send ``body`` to ``url`` and return the answer.
+    """Send ``body`` to ``url`` and return the answer of at most ``most`` bytes.
 
-    ``seconds`` limits the total time, including name resolution, connecting and reading. The
-    request runs in a thread, because socket timeouts do not limit name resolution, and each address
-    of a host has its own timeout. A thread that exceeds the limit is abandoned; it ends when its
-    socket times out. Redirects are not followed, because they would send the text and the key to a
-    different host.
+    ``seconds`` limits the total time. The request runs in a thread, because socket timeouts do not
+    limit name resolution, and each address of a host has its own timeout. A thread that exceeds the
+    limit is abandoned; it ends when its socket times out.
 
     Raises:
         TimeoutError: If no complete answer arrived in time.
-        ValueError: If the answer has more than ``most`` bytes.
+        ValueError: If the answer is too long.
         _Refused: If the HTTP status is not 2xx.
     """
     answers: SimpleQueue[bytes | Exception] = SimpleQueue()
@@ -154,12 +148,14 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
 def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
     parts = urlsplit(url)
     proxy = urllib.request.getproxies().get(parts.scheme)
-    direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
-    pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    # urllib3 applies the connect timeout to each address of the host.
-    # Time must therefore remain for the next address.
+    if proxy is None or urllib.request.proxy_bypass(parts.hostname or ""):
+        pool = urllib3.PoolManager()
+    else:
+        pool = urllib3.ProxyManager(proxy)
+    # the connect timeout applies to each address of the host, so time must remain for the next one
     limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
+    # a redirect would send the text and the key to a different host
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
                          redirect=False, preload_content=False)  # fmt: skip
     try:

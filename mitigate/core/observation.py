@@ -69,12 +69,9 @@ class Sensor:
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
-    """Return the standard sensors, which this module's docstring describes.
+    """Return the standard sensors (see the docstring of this module) with ``size`` pixels.
 
-    Args:
-        size: height and width of a view in pixels.
-        views: number of views. 1 means a single forward camera, whose frames ``[H, W, c]`` have no
-            axis for views.
+    With ``views=1``, a single forward camera has frames ``[H, W, c]`` without an axis for views.
     """
     yaws = tuple(VIEW_STEP_DEGREES * k for k in range(views))
     shape = (views, size, size) if views > 1 else (size, size)
@@ -88,10 +85,7 @@ def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
 def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, ...]:
     """Return one line per sensor of a world that an agent reads.
 
-    Args:
-        sensors: the sensors that the world provides.
-        read: the names of the sensors that the agent reads. If the world has none of them, all
-            sensors of the world are listed.
+    ``read`` are the names that the agent reads; if no sensor has one of them, all are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
@@ -132,7 +126,6 @@ class Observation(Mapping[str, Any]):
 
     @property
     def clean(self) -> Observation:
-        """The observation before the corruption."""
         return self if self._clean is None else self._clean
 
     def __getitem__(self, name: str) -> Any:
