@@ -74,7 +74,10 @@ class Guard:
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the observation with other frames, without changing its arrays in place."""
+        """Return the observation that the agent receives, of which only frames may differ.
+
+        The arrays in ``observation`` must not be changed in place.
+        """
         return observation
 
     def for_episode(self) -> Guard:

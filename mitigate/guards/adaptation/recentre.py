@@ -167,6 +167,6 @@ def _axis(features: Tensor) -> int:
 
 
 def _means(output: Any) -> Tensor:
-    """Return the mean of each channel, computed over all other axes."""
+    """Return the mean of each channel over all other axes."""
     features = output[0] if isinstance(output, (tuple, list)) else output
     return features.detach().float().movedim(_axis(features), 0).flatten(1).mean(1)

@@ -76,37 +76,25 @@ def _word_terms(word: str) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Clause:
-    """A clause of an instruction with its features.
-
-    Attributes:
-        piece: Position of the clause in the text.
-        sentence: Index of the sentence.
-        words: Number of words.
-        letters: Number of letters. A Chinese, Japanese or Korean character counts as three.
-        script: "latin", "other", or "" if the clause has no letters.
-        product: Sum of the products of the clause's TF-IDF values and the attack weights.
-        square: Sum of the clause's squared TF-IDF values.
-        style: Log odds that the clause is in an unusual style.
-    """
+    """A clause of an instruction with its features."""
 
     piece: Piece
-    sentence: int
-    words: int
-    letters: int
-    script: str
-    product: float
-    square: float
-    style: float
+    sentence: int  # index of the sentence
+    words: int  # number of words
+    letters: int  # a Chinese, Japanese or Korean character counts as three
+    script: str  # "latin", "other", or "" if the clause has no letters
+    product: float  # sum of the products of TF-IDF values and attack weights
+    square: float  # sum of squared TF-IDF values
+    style: float  # log odds of an unusual style
 
 
 class Classifier:
     """The trained weights, and methods that score texts with them.
 
     Args:
-        config: The list of common words, and the biases of the two regressions.
-        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each of shape
-            [SIZE]. The weights of the networks (:class:`Segmenter`) are also included, except while
-            a classifier is trained.
+        config: the common words, and the biases of the two regressions.
+        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each [SIZE],
+            and the weights of the networks (:class:`Segmenter`), except during training.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:

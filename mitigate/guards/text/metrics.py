@@ -34,29 +34,17 @@ class Repair:
 
 @dataclass(frozen=True)
 class Scores:
-    """Means over ``count`` repairs.
-
-    Each mean is in [0, 1], or None if the measure is undefined.
-
-    ``exact`` is the fraction of repaired instructions that have the same words as the original.
-    ``token_f1`` is the F1 score of the bags of words. ``chrf`` is the corpus chrF2 (Popovic 2015)
-    from sacrebleu. ``directions`` is the fraction of repaired instructions that have the same
-    directions (left, right, up, down, stop ...) in the same order as the original. ``landmarks`` is
-    the fraction of the original landmarks that are kept. ``faithful`` is the fraction of
-    instructions for which ``fidelity.check`` finds no change of meaning. ``removed`` is the
-    fraction of injected sentences that were removed. ``changed`` is the fraction of clean
-    instructions whose meaning was changed.
-    """
+    """Means in [0, 1] over ``count`` repairs, or None if a measure is undefined."""
 
     count: int
-    exact: float
-    token_f1: float
-    chrf: float
-    directions: float
-    landmarks: float | None
-    faithful: float
-    removed: float | None
-    changed: float | None
+    exact: float  # instructions with the same words as the original
+    token_f1: float  # F1 score of the bags of words
+    chrf: float  # corpus chrF2 (Popovic 2015) from sacrebleu
+    directions: float  # instructions with the same directions (left, stop ...) in the same order
+    landmarks: float | None  # original landmarks that are kept
+    faithful: float  # instructions for which ``fidelity.check`` finds no change of meaning
+    removed: float | None  # injected sentences that were removed
+    changed: float | None  # clean instructions whose meaning was changed
 
 
 def score(repairs: Sequence[Repair]) -> Scores:
@@ -67,22 +55,20 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
     chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
-    landmark_counts = [_landmarks_kept(r) for r in repairs]
+    directions = [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
+    kept, landmarks = map(sum, zip(*map(_landmarks_kept, repairs), strict=True))
     removed = [left(text, r.repaired) < REMAINS for r in repairs for text in r.injected]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
         count=len(repairs),
-        exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]) or 0.0,
-        token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
+        exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]),
+        token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]),
         chrf=chrf.score / 100,
-        directions=_mean(
-            [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
-        )
-        or 0.0,
-        landmarks=_ratio(sum(k for k, _ in landmark_counts), sum(n for _, n in landmark_counts)),
-        faithful=1 - sum(problems) / len(problems),
-        removed=_mean(removed),
-        changed=_mean(clean),
+        directions=_mean(directions),
+        landmarks=kept / landmarks if landmarks else None,
+        faithful=1 - _mean(problems),
+        removed=_mean(removed) if removed else None,
+        changed=_mean(clean) if clean else None,
     )
 
 
@@ -136,9 +122,5 @@ def left(words: str, text: str) -> float:
     return sum(pair in here for pair in expected) / max(1, len(expected))
 
 
-def _mean(values: Sequence[float | bool]) -> float | None:
-    return _ratio(float(sum(values)), len(values))
-
-
-def _ratio(part: float, whole: int) -> float | None:
-    return part / whole if whole else None
+def _mean(values: Sequence[float]) -> float:
+    return float(sum(values)) / len(values)

@@ -1,10 +1,9 @@
 """Use small recurrent networks to find the span of clauses that forms an attack.
 
-A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
-the network predicts a score for whether it is part of an attack. For each boundary between clauses,
-it predicts a score for whether an attack starts or ends there. The score of a span is the sum of
-the scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
-network reads each clause in its context, it does not take an unusual style for an attack. The
+A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text, so that it does
+not take an unusual style for an attack. It predicts a score for each clause, which may be part of
+an attack, and for each boundary, where an attack may start or end. The score of a span is the sum
+of the scores of its clauses and its two boundaries, relative to the score of "no attack". The
 scores of several networks are averaged. Inference needs only numpy;
 :mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """

@@ -2,9 +2,8 @@
 
 These texts are training data. They are not in the package, only in the folder
 ``tools/safeguard/data/styles`` of a checkout. A line of a file ``<style>.jsonl`` has the form
-``{"task": "route", "parts": [[styled, plain], ...]}``. The task may also be "object". Each part
-consists of whole sentences and a plain translation of them. The translation is empty if the part
-does not describe the route.
+``{"task": "route", "parts": [[styled, plain], ...]}``. A part consists of whole sentences, and
+their plain translation, which is empty if they do not describe the route.
 """
 
 from __future__ import annotations
