@@ -37,7 +37,7 @@ from mitigate.core.files import (
     write_json,
     write_text,
 )
-from mitigate.core.json_files import read_json, read_object
+from mitigate.core.json_files import read_object
 from mitigate.core.locks import delete_abandoned
 from mitigate.core.names import short
 from mitigate.core.output import writing
@@ -61,17 +61,11 @@ class Entry(NamedTuple):
 
 
 class Manifest(NamedTuple):
-    """The kind and the files of a folder.
+    """The kind and the files of a folder."""
 
-    Attributes:
-        kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
-        files: files by name.
-        replaced: the previous files, while a folder is being replaced.
-    """
-
-    kind: str
-    files: dict[str, Entry]
-    replaced: dict[str, Entry]
+    kind: str  # "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard"
+    files: dict[str, Entry]  # by name
+    replaced: dict[str, Entry]  # the previous files, while a folder is being replaced
 
 
 @contextmanager
@@ -305,15 +299,15 @@ def problem(file: Path) -> str:
     return f"does not have the sha256 in {MANIFEST}"
 
 
-def read_checked(file: Path, again: str) -> Any:
-    """Return the content of an untrusted JSON file, after a comparison with the folder's manifest.
+def read_checked(file: Path, again: str) -> dict[str, Any]:
+    """Return the object in an untrusted JSON file, after a comparison with the folder's manifest.
 
     Raises:
         ValueError: If the file is damaged. The message ends with the advice ``again``.
     """
     if damage := problem(file):
         raise ValueError(f"{file} is truncated or damaged: it {damage}. {again}")
-    return read_json(file, again)
+    return read_object(file, again)
 
 
 def is_listed(file: Path) -> bool:

@@ -43,29 +43,17 @@ MAX_STEPS = 500  # VLN-CE
 
 @dataclass(frozen=True)
 class Sensor:
-    """Describes one entry of an observation.
+    """Describes one entry of an observation."""
 
-    Attributes:
-        kind: "rgb", "depth", "pose" or "text".
-        shape: shape of the array; the first axis counts views if there are several.
-        dtype: numpy name of the dtype.
-        unit: "m" for depth.
-        hfov: horizontal field of view in degrees.
-        yaws: directions of the views, in degrees to the right of the heading.
-        low: least valid value.
-        high: greatest valid value.
-        missing: value that means "no reading".
-    """
-
-    kind: str
-    shape: tuple[int, ...]
-    dtype: str
-    unit: str = ""
-    hfov: float | None = None
-    yaws: tuple[float, ...] = (0.0,)
-    low: float = -math.inf
-    high: float = math.inf
-    missing: float | None = None
+    kind: str  # "rgb", "depth", "pose" or "text"
+    shape: tuple[int, ...]  # the first axis counts views if there are several
+    dtype: str  # name in numpy
+    unit: str = ""  # "m" for depth
+    hfov: float | None = None  # horizontal field of view in degrees
+    yaws: tuple[float, ...] = (0.0,)  # directions of views in degrees to the right of the heading
+    low: float = -math.inf  # least valid value
+    high: float = math.inf  # greatest valid value
+    missing: float | None = None  # value that means "no reading"
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:

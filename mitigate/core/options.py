@@ -29,10 +29,7 @@ def paths_and_options(
 ) -> tuple[list[str], dict[str, str]]:
     """Return the paths and the ``key=value`` options (by name) of a command line.
 
-    Args:
-        arguments: all command-line arguments.
-        paths: names of the required paths, for messages.
-        known: names of the allowed options.
+    ``paths`` are the names of the required paths, and ``known`` those of the allowed options.
 
     Raises:
         ValueError: If the number of paths is wrong, an option is unknown or set twice, or an

@@ -37,23 +37,14 @@ class FolderLostError(OSError):
 
 @dataclass
 class Root:
-    """An output folder that this process uses.
+    """An output folder that this process uses."""
 
-    Attributes:
-        folder: The folder path as given by the user. It may be a link.
-        places: The absolute paths of the folder: as given, and with links resolved.
-        descriptor: Open file descriptor of the folder; while it is open, the inode is not reused.
-        lock: Path and status of the lock file, or None without a lock.
-        expected: Files and folders that must exist when the command ends.
-        seen: Subfolders that an earlier check found; they must not disappear.
-    """
-
-    folder: Path
-    places: tuple[Path, ...]
-    descriptor: int
-    lock: tuple[Path, os.stat_result] | None = None
-    expected: list[Path] = field(default_factory=list)
-    seen: set[Path] = field(default_factory=set)
+    folder: Path  # as the user wrote it; it may be a link
+    places: tuple[Path, ...]  # absolute paths of the folder: as written, and with links resolved
+    descriptor: int  # of the folder; while it is open, the inode is not reused
+    lock: tuple[Path, os.stat_result] | None = None  # path and status of the lock file
+    expected: list[Path] = field(default_factory=list)  # must exist when the command ends
+    seen: set[Path] = field(default_factory=set)  # subfolders that must not disappear any more
 
     def inner(self, path: Path) -> Path | None:
         """Return the absolute ``path`` relative to the folder, or None if it lies outside."""

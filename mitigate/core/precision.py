@@ -1,11 +1,9 @@
 """Choose the number format in which networks compute, once per run.
 
-The choice depends only on the device. The choice is not based on timing, because on a busy machine
-the same command could then choose a different format and train different weights.
-
-The trainer stores its choice in the checkpoint. The trainer runs all computations inside
-:func:`computing`: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
-evaluations compute in float32, so that rows from different machines can be compared.
+The choice depends only on the device and not on timing, so that the same command trains the same
+weights on a busy machine. The trainer stores its choice in the checkpoint, and computes only inside
+:func:`computing`. Weights stay float32, and evaluations compute in float32, so that rows from
+different machines can be compared.
 """
 
 from __future__ import annotations

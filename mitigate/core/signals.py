@@ -31,17 +31,12 @@ def raise_ended(number: int, frame: FrameType | None) -> None:
 
 
 class SignalDelay:
-    """Signal handler that is installed while a block delays signals.
-
-    Attributes:
-        number: number of the first signal, or None if no signal was received.
-        again: whether a second signal was received.
-        outer: the previous handlers; those that also delay signals receive each signal, too.
-    """
+    """Signal handler that is installed while a block delays signals."""
 
     def __init__(self) -> None:
-        self.number: int | None = None
-        self.again = False
+        self.number: int | None = None  # of the first signal that was received
+        self.again = False  # whether a second signal was received
+        # the previous handlers; those that also delay signals receive each signal, too
         self.outer = {number: signal.getsignal(number) for number in ENDING}
 
     def __call__(self, number: int, frame: FrameType | None) -> None:

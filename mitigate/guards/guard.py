@@ -31,17 +31,11 @@ RESTORER = "restorer-"  # prefix of the fingerprints of guards from ``restore=``
 
 @dataclass(frozen=True)
 class EpisodeStart:
-    """The information that a guard receives when an episode begins.
+    """The information that a guard receives when an episode begins."""
 
-    Attributes:
-        key: seed and episode id, for random numbers.
-        instruction: the instruction after corruption.
-        system_prompt: the agent's system prompt after corruption, or None.
-    """
-
-    key: Key
-    instruction: str
-    system_prompt: str | None = None
+    key: Key  # seed and episode id, for random numbers
+    instruction: str  # after corruption
+    system_prompt: str | None = None  # the agent's system prompt after corruption
 
 
 class Guard:

@@ -58,10 +58,10 @@ def card(folder: str | Path) -> dict[str, Any]:
     return content
 
 
-def _wrong(content: Any) -> str:
+def _wrong(content: dict[str, Any]) -> str:
     """Return a message about the first problem in a card, or "" if the card is valid."""
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        return f"it must be an object of format {FORMAT}"
+    if content.get("format") != FORMAT:
+        return f"it must have format {FORMAT}"
     settings = content.get("settings")
     if not isinstance(settings, dict) or not isinstance(content.get("hash"), str):
         return "it must have settings and a hash"

@@ -1,9 +1,8 @@
 """Find attacks in an instruction, and remove those whose removal the gate accepts.
 
-The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
-the text contains an attack, and where the attack begins and ends. The search is repeated, because a
-text can contain several attacks. The constants were chosen on one part of the test texts, called
-"choose" (``tools/safeguard``).
+The networks in :mod:`segmenter` decide whether the text contains an attack, and where it begins and
+ends. The search is repeated, because a text can contain several attacks. The constants were chosen
+on one part of the test texts, called "choose" (``tools/safeguard``).
 """
 
 from __future__ import annotations

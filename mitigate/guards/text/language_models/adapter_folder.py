@@ -89,7 +89,7 @@ def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
     """Return the JSON object in ``file``; ``kinds`` are the allowed types of required entries."""
     config = folders.read_checked(file, _AGAIN)
     for name, kind in kinds.items():
-        value = config.get(name) if isinstance(config, dict) else None
+        value = config.get(name)
         if type(value) not in kind:
             allowed = " or ".join(k.__name__ for k in kind)
             raise ValueError(f"{file}: {name} must be {allowed}, not {value!r:.80}. {_AGAIN}")
