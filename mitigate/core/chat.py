@@ -22,6 +22,7 @@ from mitigate.core.addresses import check_url
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 
+KEY = "OPENAI_API_KEY"  # environment variable with the key; if it is not set, no key is sent
 # HTTP status codes after which a retry may succeed
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})
 # maximum size in bytes of the parts of an answer other than its text, such as token counts
@@ -48,7 +49,6 @@ class ChatClient:
     Args:
         url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
         model: name of the model at the endpoint.
-        key: environment variable with the API key; if it is not set, no key is sent.
         timeout: seconds for one request.
         retries: number of retries after a temporary failure.
         pause: seconds before the first retry; the pause doubles before each later retry.
@@ -63,14 +63,13 @@ class ChatClient:
         url: str,
         model: str,
         *,
-        key: str = "OPENAI_API_KEY",
         timeout: float = 60.0,
         retries: int = 3,
         pause: float = 1.0,
         options: Mapping[str, Any] | None = None,
     ) -> None:
         check_url(url)
-        self.url, self.model, self.key = url.rstrip("/"), model, key
+        self.url, self.model = url.rstrip("/"), model
         self.timeout, self.retries, self.pause = timeout, retries, pause
         self.options = dict(options or {})
 
@@ -109,8 +108,8 @@ class ChatClient:
     def _post(self, messages: Sequence[Mapping[str, Any]], timeout: float, longest: int) -> Any:
         body = json.dumps({"model": self.model, "messages": messages, **self.options}).encode()
         headers = {"Content-Type": "application/json"}
-        if os.environ.get(self.key):
-            headers["Authorization"] = f"Bearer {os.environ[self.key]}"
+        if key := os.environ.get(KEY):
+            headers["Authorization"] = f"Bearer {key}"
         most = ENVELOPE + 6 * longest  # JSON may need six bytes per character
         return parse_json(post(f"{self.url}/chat/completions", body, headers, timeout, most))
 

@@ -101,7 +101,7 @@ def test_loss_counts_only_completion_and_end_mark(model):
 def test_adapter_reloads_to_the_same_answers(model, tmp_path):
     recipe = train(model, tmp_path / "run", 3)
     model.save(tmp_path / "adapter")
-    again = open_adapter(tmp_path / "adapter", "fp32")
+    again = open_adapter(tmp_path / "adapter")
     part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
         first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]
@@ -330,7 +330,8 @@ def test_model_trains_and_reloads_in_eight_bits(tiny_base, tmp_path):
     model = LanguageModel(tiny_base, "int8", LORA)
     recipe = train(model, tmp_path / "run", 2)
     model.save(tmp_path / "adapter")
-    again = open_adapter(tmp_path / "adapter", "int8")
+    again = LanguageModel(tiny_base, "int8", LORA)
+    again.load(tmp_path / "adapter")
     part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
         first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]

@@ -15,6 +15,8 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
+PROMPT = "prompted"  # name of the prompt that precedes the text
+
 
 class ChatEndpoint(ChatClient):
     """Rewrites texts by asking a chat model over HTTP.
@@ -22,7 +24,6 @@ class ChatEndpoint(ChatClient):
     Args:
         url: see :class:`ChatClient`, which also describes errors.
         model: name of the model at the endpoint.
-        prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
         cache: SQLite file that stores the answer for each text, model and prompt, or None.
         request: other arguments of :class:`ChatClient`.
     """
@@ -32,12 +33,10 @@ class ChatEndpoint(ChatClient):
         url: str,
         model: str,
         *,
-        prompt: str = "prompted",
         cache: str | Path | None = None,
         **request: Any,
     ) -> None:
         super().__init__(url, model, **request)
-        self.prompt = prompt
         self.failures: list[str] = []
         self._cache = None if cache is None else AnswerCache(Path(cache))
 
@@ -51,13 +50,12 @@ class ChatEndpoint(ChatClient):
         return [self._answer(text, ends) for text in progress]
 
     def _answer(self, text: str, ends: float | None) -> str | None:
-        prompt = PROMPTS[self.prompt]
-        name = f"{digest(self.url, self.model, prompt, repr(self.options), text):032x}"
+        name = f"{digest(self.url, self.model, PROMPTS[PROMPT], repr(self.options), text):032x}"
         answer = None if self._cache is None else self._cache.get(name)
         if answer is not None:
             return answer
         try:
-            answer = self.ask(prompt_messages(text, self.prompt), gate.longest(text), ends)
+            answer = self.ask(prompt_messages(text, PROMPT), gate.longest(text), ends)
         except NoAnswer as error:
             self.failures.append(str(error))
             return None

@@ -260,10 +260,10 @@ def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str,
     }
 
 
-def open_adapter(folder: str | Path, precision: str = "fp32") -> LanguageModel:
-    """Build the language model that an adapter folder describes in its card and config.
+def open_adapter(folder: str | Path) -> LanguageModel:
+    """Build the fp32 language model that an adapter folder describes in its card and config.
 
-    In "fp32", the adapter is merged into the base weights, which is faster and changes no answer.
+    The adapter is merged into the base weights, which is faster and changes no answer.
     """
     card, config = read_adapter(folder)
     # check the adapter's files first, because loading the base model is slow
@@ -274,10 +274,9 @@ def open_adapter(folder: str | Path, precision: str = "fp32") -> LanguageModel:
         "dropout": config["lora_dropout"],
         "targets": config["target_modules"],
     }
-    model = LanguageModel(card["base"], precision, lora, card["prompt"])
+    model = LanguageModel(card["base"], "fp32", lora, card["prompt"])
     model.load(folder)
-    if precision == "fp32":
-        model.network.merge_adapter()
+    model.network.merge_adapter()
     return model.eval()
 
 
