@@ -14,7 +14,7 @@ from collections import Counter
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.landmarks import CANONICAL
 from mitigate.corruptions.language.words import bag
-from mitigate.guards.text.learning.route_words import WORDS
+from mitigate.guards.text.learning.routes import WORDS
 
 _PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES

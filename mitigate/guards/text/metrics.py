@@ -19,17 +19,13 @@ _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 @dataclass(frozen=True)
 class Repair:
-    """A repaired instruction.
+    """A repaired instruction."""
 
-    ``clean`` is the original, ``heard`` the safeguard's input, and ``repaired`` its output.
-    ``family`` is the corruption family, or "clean". ``injected`` are the sentences of an attack.
-    """
-
-    family: str
-    clean: str
-    heard: str
-    repaired: str
-    injected: tuple[str, ...] = ()
+    family: str  # the corruption family, or "clean"
+    clean: str  # the original
+    heard: str  # the input of the safeguard
+    repaired: str  # the output of the safeguard
+    injected: tuple[str, ...] = ()  # sentences of an attack
 
 
 @dataclass(frozen=True)

@@ -26,18 +26,13 @@ ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_ro
 
 @dataclass(frozen=True)
 class Line:
-    """A training text that is either entirely an attack or entirely benign.
+    """A training text that is either entirely an attack or entirely benign."""
 
-    ``group`` names the mechanism, the style or the source of the text. Texts of one group resemble
-    each other. ``styled`` states whether a benign text is in an unusual style, or is None if this
-    is unknown. If an attack surrounds the route, its text contains the placeholder "{route}".
-    """
-
-    text: str
+    text: str  # with the placeholder "{route}" if an attack surrounds the route
     attack: bool
-    group: str
+    group: str  # mechanism, style or source; texts of one group resemble each other
     weight: float = 1.0
-    styled: bool | None = None
+    styled: bool | None = None  # whether a benign text is in an unusual style, if this is known
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:

@@ -1,20 +1,27 @@
 """Generate clean training instructions that describe a route through a building in many ways.
 
-All phrases were written for this project. No instruction contains a phrase of the apartments'
-validation templates, on which a safeguard is evaluated.
+``route_words.json`` lists words and phrases, which were written for this project. In a template,
+{a} and {aa} stand for different objects. Other fields are {room}, {door}, {stairs}, {place}, {look}
+(an adjective), {side} (left or right), {n} (a number) and {ordinal}.
+
+No instruction contains a phrase of the apartments' validation templates, on which a safeguard is
+evaluated.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
 from mitigate.core.seeding import pick
-from mitigate.guards.text.learning.route_words import WORDS
 from mitigate.worlds.apartments.instructions import TEMPLATES
 
+_FILE = Path(__file__).with_name("route_words.json")
+WORDS: dict[str, list[str]] = json.loads(_FILE.read_text(encoding="utf-8"))
 JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
 LONGEST = 7  # maximum number of clauses, without asides (heuristic)
 

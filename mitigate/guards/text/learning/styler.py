@@ -15,7 +15,7 @@ import numpy as np
 
 from mitigate.core.files import find
 from mitigate.core.seeding import pick
-from mitigate.guards.text.learning.route_words import WORDS
+from mitigate.guards.text.learning.routes import WORDS
 
 FILE = "tools/safeguard/data/styler.json"
 _THIRD = ("he", "she", "it", "the robot", "our hero", "the unit", "one", "the machine", "ROBOT")
