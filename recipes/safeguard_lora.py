@@ -14,8 +14,7 @@ from torch import Tensor
 from mitigate.core.files import sha256
 from mitigate.core.precision import to_device
 from mitigate.core.seeding import generator
-from mitigate.guards.text.language_models.model import LanguageModel
-from mitigate.guards.text.language_models.tokens import collate, encode_pair
+from mitigate.guards.text.language_models.model import LanguageModel, collate, encode_pair
 from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read_texts
 from mitigate.training.objective import Objective
 

@@ -22,6 +22,7 @@ from mitigate.core.addresses import check_url
 from mitigate.core.json_files import parse_json
 from mitigate.core.names import short
 
+KEY = "OPENAI_API_KEY"  # environment variable with the key; if it is not set, no key is sent
 # HTTP status codes after which a retry may succeed
 RETRIED = frozenset({408, 409, 425, 429, 500, 502, 503, 504})
 # maximum size in bytes of the parts of an answer other than its text, such as token counts
@@ -48,7 +49,6 @@ class ChatClient:
     Args:
         url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
         model: name of the model at the endpoint.
-        key: environment variable with the API key; if it is not set, no key is sent.
         timeout: seconds for one request.
         retries: number of retries after a temporary failure.
         pause: seconds before the first retry; the pause doubles before each later retry.
@@ -63,26 +63,22 @@ class ChatClient:
         url: str,
         model: str,
         *,
-        key: str = "OPENAI_API_KEY",
         timeout: float = 60.0,
         retries: int = 3,
         pause: float = 1.0,
         options: Mapping[str, Any] | None = None,
     ) -> None:
         check_url(url)
-        self.url, self.model, self.key = url.rstrip("/"), model, key
+        self.url, self.model = url.rstrip("/"), model
         self.timeout, self.retries, self.pause = timeout, retries, pause
         self.options = dict(options or {})
 
     def ask(
         self, messages: Sequence[Mapping[str, Any]], longest: int, ends: float | None = None
     ) -> str:
-        """Return the answer to ``messages``.
+        """Return the answer to ``messages`` (OpenAI's format), of at most ``longest`` characters.
 
-        Args:
-            messages: the conversation in OpenAI's format.
-            longest: maximum length of the answer, in characters.
-            ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
+        ``ends`` is the value of ``time.monotonic()`` at which requests end, or None.
 
         Raises:
             NoAnswer: If all attempts failed, a failure was permanent, or the time limit has passed.
@@ -110,27 +106,24 @@ class ChatClient:
         raise NoAnswer(f"{self.url}: {problem}")
 
     def _post(self, messages: Sequence[Mapping[str, Any]], timeout: float, longest: int) -> Any:
-        body = {"model": self.model, "messages": messages, **self.options}
+        body = json.dumps({"model": self.model, "messages": messages, **self.options}).encode()
         headers = {"Content-Type": "application/json"}
-        if os.environ.get(self.key):
-            headers["Authorization"] = f"Bearer {os.environ[self.key]}"
+        if key := os.environ.get(KEY):
+            headers["Authorization"] = f"Bearer {key}"
         most = ENVELOPE + 6 * longest  # JSON may need six bytes per character
-        url = f"{self.url}/chat/completions"
-        return parse_json(post(url, json.dumps(body).encode(), headers, timeout, most))
+        return parse_json(post(f"{self.url}/chat/completions", body, headers, timeout, most))
 
 
 def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
-    """Send ``body`` to ``url`` and return the answer.
+    """Send ``body`` to ``url`` and return the answer of at most ``most`` bytes.
 
-    ``seconds`` limits the total time, including name resolution, connecting and reading. The
-    request runs in a thread, because socket timeouts do not limit name resolution, and each address
-    of a host has its own timeout. A thread that exceeds the limit is abandoned; it ends when its
-    socket times out. Redirects are not followed, because they would send the text and the key to a
-    different host.
+    ``seconds`` limits the total time. The request runs in a thread, because socket timeouts do not
+    limit name resolution, and each address of a host has its own timeout. A thread that exceeds the
+    limit is abandoned; it ends when its socket times out.
 
     Raises:
         TimeoutError: If no complete answer arrived in time.
-        ValueError: If the answer has more than ``most`` bytes.
+        ValueError: If the answer is too long.
         _Refused: If the HTTP status is not 2xx.
     """
     answers: SimpleQueue[bytes | Exception] = SimpleQueue()
@@ -154,12 +147,14 @@ def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: i
 def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
     parts = urlsplit(url)
     proxy = urllib.request.getproxies().get(parts.scheme)
-    direct = proxy is None or urllib.request.proxy_bypass(parts.hostname or "")
-    pool = urllib3.PoolManager() if direct or proxy is None else urllib3.ProxyManager(proxy)
-    # urllib3 applies the connect timeout to each address of the host.
-    # Time must therefore remain for the next address.
+    if proxy is None or urllib.request.proxy_bypass(parts.hostname or ""):
+        pool = urllib3.PoolManager()
+    else:
+        pool = urllib3.ProxyManager(proxy)
+    # the connect timeout applies to each address of the host, so time must remain for the next one
     limit = urllib3.Timeout(connect=CONNECT_SHARE * seconds, read=seconds)
     ends = time.monotonic() + seconds
+    # a redirect would send the text and the key to a different host
     reply = pool.request("POST", url, body=body, headers=headers, timeout=limit, retries=False,
                          redirect=False, preload_content=False)  # fmt: skip
     try:

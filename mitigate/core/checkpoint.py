@@ -28,11 +28,7 @@ ADAPTER = ".adapter."
 
 
 def weights_file(path: str | Path) -> Path:
-    """Return the safetensors file that ``path`` names directly or by its folder.
-
-    Raises:
-        FileNotFoundError: If there is no safetensors file at ``path``.
-    """
+    """Return the safetensors file at ``path`` or in this folder, or raise FileNotFoundError."""
     path = Path(path)
     file = path if path.suffix == ".safetensors" else path / WEIGHTS
     if path.is_file() and path != file:
@@ -56,11 +52,7 @@ def weights_file(path: str | Path) -> Path:
 
 
 def save_weights(module: nn.Module, folder: str | Path) -> Path:
-    """Write the tensors of ``module.state_dict()`` and a manifest into ``folder``.
-
-    Returns:
-        The safetensors file.
-    """
+    """Write the state dict of ``module`` and a manifest; return the safetensors file."""
     with folders.write_folder(folder, "weights") as draft:
         write_tensors(module, draft / WEIGHTS)
     return Path(folder) / WEIGHTS
@@ -129,12 +121,9 @@ def check_finite(module: nn.Module, what: str) -> None:
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """Load only the part ``name`` of the weights at ``path`` into ``module``.
+    """Load the part ``name`` of the weights at ``path`` into ``module`` (:func:`load_weights`).
 
-    See :func:`load_weights` for the checks.
-
-    Tensors that ``module`` does not have are skipped. An example is a layer for a sensor that the
-    module does not read.
+    Tensors that ``module`` lacks, such as a layer for a sensor that it does not read, are skipped.
     """
     file = weights_file(path)
     prefix = f"{name}."
@@ -149,7 +138,6 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
 
 
 def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> None:
-    """Load the tensors of ``file`` into ``module``; raise ValueError if they do not match."""
     borrowed = _borrowed(module)
     state = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     expected = {k: v for k, v in {**state, **borrowed}.items() if k not in borrowed or k in tensors}
@@ -172,14 +160,15 @@ def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> No
 
 def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
     """Return whether shapes match and both are bool, both integer, both float or both complex."""
-    kinds = [
-        (x.dtype == torch.bool, x.is_complex(), x.is_floating_point()) for x in (value, expected)
-    ]
-    return value.shape == expected.shape and kinds[0] == kinds[1]
+
+    def kind(x: torch.Tensor) -> tuple[bool, bool, bool]:
+        return x.dtype == torch.bool, x.is_complex(), x.is_floating_point()
+
+    return value.shape == expected.shape and kind(value) == kind(expected)
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """Return the public tensors, which are not part of state dicts (:func:`borrow`)."""
+    """Return the public tensors of all modules (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
@@ -194,13 +183,12 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
         ValueError: If the file is damaged.
         PermissionError: If the user has no permission to read the file.
     """
-    # raises PermissionError if a permission is missing; the file may be undamaged
-    file.open("rb").close()
+    file.open("rb").close()  # raises PermissionError, although the file may be undamaged
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     try:
-        # safe_open compares the sizes of tensors in the header with the size of the file.
-        # Without this check, the sha256 of a sparse file of several terabytes would take hours.
+        # safe_open compares the header with the size of the file first, because the sha256 of a
+        # sparse file of several terabytes would take hours
         with safe_open(file, "pt"):
             problem = folders.problem(file)
         if not problem:
@@ -240,13 +228,9 @@ class OwnFormat(Protocol):
 
 
 def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) -> None:
-    """Write the weights of ``agent`` and its settings into ``folder``.
+    """Write ``agent`` and the text ``config`` of ``config.yaml``, if any, into ``folder``.
 
-    Args:
-        agent: the agent. If the agent has a method ``save`` (:class:`OwnFormat`), this method
-            writes the weights; otherwise :func:`save_weights` does.
-        folder: the folder.
-        config: text of ``config.yaml``, or None to write no such file.
+    An agent of :class:`OwnFormat` writes its weights itself.
     """
     if isinstance(agent, OwnFormat):
         agent.save(folder)
@@ -260,10 +244,7 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Load into ``agent`` the weights at ``path``, which :func:`save_agent` wrote.
-
-    Raises the same errors as :func:`load_weights`.
-    """
+    """Load what :func:`save_agent` wrote; raise the same errors as :func:`load_weights`."""
     if isinstance(agent, OwnFormat):
         agent.load(path)
     else:
@@ -273,9 +254,7 @@ def load_agent(agent: nn.Module, path: str | Path) -> None:
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     """Return 12 hex digits of the sha256 over the names, dtypes, shapes and bytes of all tensors.
 
-    Args:
-        module: the module.
-        leave_out: tensors are excluded if their name contains this text.
+    Tensors whose name contains the text ``leave_out`` are excluded.
     """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
@@ -286,16 +265,11 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     return sha.hexdigest()[:12]
 
 
-# Public weights inside a module of this project are never copied into its checkpoints.
-# Such a checkpoint contains only the other tensors, such as adapters.
-# It also contains the sha256 of the public file.
-
-
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
-    """Exclude public tensors of ``module`` from its state dicts while they are unchanged.
+    """Exclude unchanged public tensors of ``module`` from its state dicts and checkpoints.
 
-    When such a state dict is loaded, the excluded tensors get their public values. Loading a state
-    dict that was made with a different public file raises ValueError.
+    A state dict contains the sha256 of the public file instead. When it is loaded, the tensors get
+    their public values; with a different public file, ValueError is raised.
 
     Args:
         module: the module.

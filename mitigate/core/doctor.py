@@ -28,13 +28,7 @@ ROOM = 5.0  # free GB on the disk for the environment, runs and caches (heuristi
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the report.
-
-    The only option is ``--help``; any other option exits with status 2.
-
-    Returns:
-        0 if training can run on this machine, else 1.
-    """
+    """Print the report, and return 0 if training can run on this machine, else 1."""
     parser = argparse.ArgumentParser(prog="mitigate doctor", description=__doc__)
     parser.parse_args(arguments)
     problems = [*_machine(), *_packages(), *_renderer(), *_files()]
@@ -74,10 +68,7 @@ def _flags() -> set[str]:
 
 
 def processor(flags: set[str]) -> str:
-    """Describe which vector instructions, such as AVX2, a processor with ``flags`` supports.
-
-    Without native bf16, torch emulates bf16, which is several times slower than fp32.
-    """
+    """Describe which vector instructions, such as AVX2, a processor with ``flags`` supports."""
     if not flags:
         return "unknown (no flags in /proc/cpuinfo)"
     has = [name for name, needed in LEVELS.items() if needed <= flags]
@@ -85,9 +76,7 @@ def processor(flags: set[str]) -> str:
 
 
 def compiler() -> str | None:
-    """Return the path of a C++ compiler, or None. If the variable CXX is set, it names the
-    compiler.
-    """
+    """Return the path of the compiler CXX or of another C++ compiler, or None."""
     named = os.environ.get("CXX", "").split()[:1]
     return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
@@ -110,9 +99,7 @@ def _packages() -> list[str]:
 
 
 def _requirements() -> dict[str, list[str]]:
-    """Map each extra of the installed mitigate to its packages; the key "" has the required
-    packages.
-    """
+    """Map each extra of the installed mitigate, and "" (no extra), to its packages."""
     extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")
@@ -155,9 +142,7 @@ def _renderer() -> list[str]:
 
 
 def _software_frame() -> tuple[int, int]:
-    """Render one empty offscreen frame with the software renderer, and return its size in
-    pixels.
-    """
+    """Render an empty offscreen frame with the software renderer, and return its size."""
     from panda3d import core
 
     core.load_prc_file_data("", "load-display p3tinydisplay\nnotify-level-display error")
@@ -179,11 +164,8 @@ def _software_frame() -> tuple[int, int]:
 def _files() -> list[str]:
     root = Path(__file__).resolve().parents[2]
     problems = []
-    for name, what in {
-        "conf": "options",
-        "recipes": "recipes",
-        "checkpoints/base": "base agent",
-    }.items():
+    needed = {"conf": "options", "recipes": "recipes", "checkpoints/base": "base agent"}
+    for name, what in needed.items():
         exists = (root / name).is_dir() or (root / "mitigate" / name).is_dir()
         _line(name, "found" if exists else "missing")
         if not exists:

@@ -26,11 +26,9 @@ _INSTALLED = {"site-packages", "dist-packages"}
 
 
 def error_message(error: ValueError | OSError) -> str:
-    """Return a paragraph that explains an error.
+    """Return a paragraph that explains an error, with control characters escaped.
 
-    For an error in the user's code, the paragraph names the file and line. For a system error, the
-    paragraph names the file and, if the disk is full, says what to do. Control characters are
-    escaped.
+    It names the file and line of the user's code, or the file of a system error.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
@@ -45,10 +43,9 @@ def error_message(error: ValueError | OSError) -> str:
 
 
 def command(name: str) -> Callable[[Main], Main]:
-    """Return a decorator that makes the main function of a command explain errors.
+    """Return a decorator for the main function of the command ``name``.
 
-    For a ValueError or OSError of the main function, the decorated function prints one paragraph
-    instead of a traceback, and returns the exit status 2. The paragraph begins with ``name``.
+    After a ValueError or OSError, it prints one paragraph and returns the exit status 2.
     """
 
     def decorate(main: Main) -> Main:
@@ -68,10 +65,9 @@ def command(name: str) -> Callable[[Main], Main]:
 
 
 def own_place(error: BaseException) -> str:
-    """Return the file, line and function of the user's code that raised ``error``.
+    """Return the file, line and function of the user's code that raised ``error``, or "".
 
-    A library that the user's code called is treated as the user's code. The result is empty if this
-    project, or a library that this project called, raised the error.
+    A library counts as part of the code that called it.
     """
     place = ""
     for frame in traceback.extract_tb(error.__traceback__):
@@ -101,9 +97,7 @@ def too_large_message(error: Exception) -> str:
 
 
 def missing_package_message(what: str, error: ModuleNotFoundError, extra: str = "train") -> str:
-    """Return how to install the missing package that ``what`` needs, or "" if no extra contains
-    it.
-    """
+    """Return how to install the package that ``what`` needs, or "" if no extra contains it."""
     name = (error.name or "").partition(".")[0]
     if name not in PACKAGES:
         return ""

@@ -10,9 +10,8 @@ Every folder that this project ships or trains has the same layout::
 A folder in the format of another library keeps the names of that library, such as
 ``adapter_config.json`` of PEFT.
 
-When a folder is updated, files are replaced one by one. During the update, the manifest lists both
-the new files and the files that they replace. A reader therefore gets either all old files or all
-new files, or rejects the folder.
+During an update, the manifest lists both the new files and the files that they replace. A reader
+therefore gets either all old files or all new files, or rejects the folder.
 """
 
 from __future__ import annotations
@@ -62,26 +61,18 @@ class Entry(NamedTuple):
 
 
 class Manifest(NamedTuple):
-    """The kind and the files of a folder.
+    """The kind and the files of a folder."""
 
-    Attributes:
-        kind: "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard".
-        files: files by name.
-        replaced: the previous files, while a folder is being replaced.
-    """
-
-    kind: str
-    files: dict[str, Entry]
-    replaced: dict[str, Entry]
+    kind: str  # "weights", "agent", "hardened", "adapters", "encoder", "restorer" or "safeguard"
+    files: dict[str, Entry]  # by name
+    replaced: dict[str, Entry]  # the previous files, while a folder is being replaced
 
 
 @contextmanager
 def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
-    """Yield an empty temporary folder; if the block succeeds, its files replace those in
-    ``folder``.
+    """Yield an empty temporary folder, whose files replace those of the manifest in ``folder``.
 
-    Files of the earlier manifest that are not in the temporary folder are deleted. Files that no
-    manifest lists are kept.
+    Nothing is replaced if the block raises an error. Files that no manifest lists are kept.
 
     Raises:
         OSError: If the folder cannot be written.
@@ -157,11 +148,7 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
 
 
 def seal(folder: str | Path, kind: str) -> None:
-    """Write the manifest of the files in ``folder``.
-
-    Use this only for a complete temporary folder that no other process changes before it is
-    renamed.
-    """
+    """Write the manifest of a complete temporary folder, before it is renamed."""
     _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
 
 
@@ -185,9 +172,7 @@ def _entries(folder: Path) -> dict[str, Entry]:
 
 
 def _sound_files(folder: Path, new: Iterable[str]) -> dict[str, Entry]:
-    """Return the entries of the files that are being replaced, or {} if any of these files is
-    damaged.
-    """
+    """Return the entries of the files that are being replaced, or {} if any is damaged."""
     try:
         manifest = check(folder)
         if manifest is not None:
@@ -212,8 +197,7 @@ def read_manifest(folder: str | Path, again: str = AGAIN) -> Manifest | None:
     """Return the manifest of ``folder``, or None if it has none.
 
     Raises:
-        ValueError: If the manifest is invalid. The message ends with the text ``again``, which says
-            how to continue.
+        ValueError: If the manifest is invalid. The message ends with the advice ``again``.
     """
     file = Path(folder) / MANIFEST
     if not output.is_regular(file):
@@ -240,19 +224,14 @@ def _read_entries(file: Path, listed: Any, again: str) -> dict[str, Entry]:
         size, digest = fields.get("bytes"), fields.get("sha256")
         if type(size) is not int or not isinstance(digest, str) or not _SHA256.fullmatch(digest):
             raise ValueError(f"{file} must give bytes and sha256 of {short(name)}. {again}")
-        entries[name] = Entry(digest, size)
-    _check_names(file, entries)
-    return entries
-
-
-def _check_names(file: Path, names: Iterable[str]) -> None:
-    for name in names:
         plain = Path(name).name == name and name not in ("", ".", "..") and name.isprintable()
         if not plain or len(name.encode()) > LONGEST:
             raise ValueError(
                 f"{file} lists {short(name)}, which is not a plain file name. Do not use this "
                 "folder: its manifest was not written by this project."
             )
+        entries[name] = Entry(digest, size)
+    return entries
 
 
 def check(
@@ -263,7 +242,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: advice at the end of each message: how to replace a damaged folder.
+        again: advice at the end of each message.
 
     Raises:
         FileNotFoundError: If a file is missing.
@@ -300,19 +279,14 @@ def _compare(folder: Path, files: dict[str, Entry], optional: Iterable[str], aga
 
 
 def _matches(file: Path, entry: Entry) -> bool:
-    """Return whether a file matches its entry; the file is read only if its size is right."""
+    """Return whether a file matches its entry."""
     return entry.size == file.stat().st_size and sha256(file) == entry.sha256
 
 
 def problem(file: Path) -> str:
-    """Compare ``file`` with the manifest of its folder.
+    """Return a predicate such as "does not have the sha256 ...", or "" if ``file`` is intact.
 
-    Returns:
-        A predicate such as "does not have the sha256 ...". It is "" if the file is intact, or if no
-        manifest lists it.
-
-    Raises:
-        PermissionError: If the user has no permission to read the file; it may be intact.
+    A file that no manifest lists counts as intact. Raises PermissionError if it cannot be read.
     """
     try:
         manifest = read_manifest(file.parent)
@@ -320,8 +294,20 @@ def problem(file: Path) -> str:
         return f"cannot be compared with its manifest ({error})"
     versions = (manifest.files, manifest.replaced) if manifest else ()
     listed = [entries[file.name] for entries in versions if file.name in entries]
-    sound = not listed or any(_matches(file, entry) for entry in listed)
-    return "" if sound else f"does not have the sha256 in {MANIFEST}"
+    if not listed or any(_matches(file, entry) for entry in listed):
+        return ""
+    return f"does not have the sha256 in {MANIFEST}"
+
+
+def read_checked(file: Path, again: str) -> dict[str, Any]:
+    """Return the object in an untrusted JSON file, after a comparison with the folder's manifest.
+
+    Raises:
+        ValueError: If the file is damaged. The message ends with the advice ``again``.
+    """
+    if damage := problem(file):
+        raise ValueError(f"{file} is truncated or damaged: it {damage}. {again}")
+    return read_object(file, again)
 
 
 def is_listed(file: Path) -> bool:

@@ -33,7 +33,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
 
     Raises:
         ValueError: If the file has more than ``most`` bytes, holds a number that is not finite, or
-            is damaged. Each message ends with the text ``again``, which says how to continue.
+            is damaged. Each message ends with the advice ``again``.
         UnsafePathError: If the path is a FIFO, a socket or a device.
     """
     try:
@@ -47,12 +47,7 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
 
 
 def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, Any]:
-    """Return the JSON object in ``path``; it is read with :func:`read_json`.
-
-    Raises:
-        ValueError: If the file is damaged or holds a different kind of value, such as null or a
-            list. The message names the file and ends with the text ``again``.
-    """
+    """Read a JSON object like :func:`read_json`; raise ValueError for another kind of value."""
     value = read_json(path, again, most)
     if not isinstance(value, dict):
         raise ValueError(f"{path} must hold a JSON object, got {short(value)}. {again}")
@@ -83,9 +78,8 @@ _FINITE = json.JSONDecoder(parse_constant=_no_number, parse_float=_finite)
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the pairs (key, value) of the JSON object in ``path``; keep only one value in memory.
 
-    If the value of the key ``streamed`` is a list, an iterator over its items is yielded instead of
-    the list. Raises ValueError if the file is not text, is malformed or truncated, does not contain
-    a JSON object, or contains anything after the object.
+    For the key ``streamed``, an iterator over the items of a list is yielded instead of the list.
+    Raises ValueError unless the file contains exactly one JSON object.
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
@@ -108,9 +102,7 @@ def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
 
 
 class _JsonFile:
-    """Reads JSON values from an open text file; ``_at`` is the current position in the buffer
-    ``_text``.
-    """
+    """Reads JSON values from an open text file through the buffer ``_text``."""
 
     _decode = json.JSONDecoder().raw_decode
     _space = re.compile(r"[ \t\r\n]*")
@@ -119,7 +111,7 @@ class _JsonFile:
         self._file = file
         self._path = path
         self._text = ""
-        self._at = 0
+        self._at = 0  # current position in the buffer
         self._before = 0  # number of characters in the file before the buffer
 
     def until(self, bracket: str) -> Iterator[None]:
@@ -133,7 +125,6 @@ class _JsonFile:
             self.expect(",", f"',' or '{bracket}'")
 
     def expect(self, character: str, name: str) -> None:
-        """Skip the next character; raise ValueError if it is not ``character``."""
         if not self.accept(character):
             self._fail(f"expected {name}")
 
@@ -148,7 +139,6 @@ class _JsonFile:
         return accepted
 
     def end(self) -> None:
-        """Raise ValueError if the rest of the file contains anything except white space."""
         self.accept("")
         if self._at < len(self._text):
             self._fail("expected the end of the file")
@@ -171,10 +161,9 @@ class _JsonFile:
                 self._fail("too many levels")
 
     def _more(self) -> bool:
-        """Discard the parsed part of the buffer, and append more text from the file.
+        """Replace the parsed part of the buffer by more text; return False at the end of the file.
 
-        The appended part is as long as the rest or longer, so a long value needs few reads.
-        Returns False at the end of the file.
+        The new part is as long as the rest or longer, so a long value needs few reads.
         """
         self._before += self._at
         self._text = self._text[self._at :]

@@ -13,14 +13,9 @@ LONGEST_MESSAGE = 16000  # maximum length of a command's message, in characters 
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
-    """Return the error paragraph for an unknown ``name``.
+    """Return the error paragraph for an unknown ``name`` of a ``what``, such as "corruption".
 
-    The paragraph suggests the nearest allowed name, and lists all allowed names.
-
-    Args:
-        what: kind of thing, such as "corruption".
-        name: the unknown name.
-        allowed: the names that exist; a set is sorted.
+    It suggests the nearest of the ``allowed`` names, and lists all of them; a set is sorted.
     """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
     near = difflib.get_close_matches(str(name)[:LONGEST_NAME], allowed, n=1)
@@ -35,10 +30,7 @@ def counted(count: int, what: str) -> str:
 
 
 def short(value: object, most: int = 60) -> str:
-    """Return an untrusted ``value`` as printable text on one line.
-
-    The text has at most about ``most`` characters.
-    """
+    """Return an untrusted ``value`` as printable text of about ``most`` characters on one line."""
     text = ascii(value[: most + 1] if isinstance(value, str) else value)
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
@@ -58,21 +50,18 @@ def file_name(text: str) -> str:
 
 
 def printable(message: str) -> str:
-    """Return ``message`` without control characters except line breaks, for output on a terminal.
+    """Return ``message``, cut to ``LONGEST_MESSAGE``, without control characters except newlines.
 
-    A message may quote names from files, which can contain terminal escape sequences. A message
-    longer than ``LONGEST_MESSAGE`` characters is cut.
+    Names from files, which a message may quote, can contain terminal escape sequences.
     """
     lines = message[:LONGEST_MESSAGE].split("\n")
     return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)
 
 
 def name_of(weights: str) -> str:
-    """Return a display name for the weights at a path.
+    """Return a display name for weights: the name of a run, or the kind of a shipped agent.
 
-    For the folder ``agent`` of a run, the display name is the name of the run. For shipped weights,
-    it is the kind of agent: ``checkpoints/frontier/base`` is named "frontier", and ``.../teacher``
-    is named "frontier_teacher".
+    ``checkpoints/frontier/base`` is "frontier", and ``.../teacher`` is "frontier_teacher".
     """
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):

@@ -28,9 +28,7 @@ _KINDS = (
 
 
 class UnsafePathError(ValueError):
-    """Raised if the path of an output file is a link, a FIFO or a device, or goes through a
-    link.
-    """
+    """Raised for an output path that is a link, a FIFO or a device, or goes through a link."""
 
 
 class FolderLostError(OSError):
@@ -39,23 +37,14 @@ class FolderLostError(OSError):
 
 @dataclass
 class Root:
-    """An output folder that this process uses.
+    """An output folder that this process uses."""
 
-    Attributes:
-        folder: The folder path as given by the user. It may be a link.
-        places: The absolute paths of the folder: as given, and with links resolved.
-        descriptor: Open file descriptor of the folder; while it is open, the inode is not reused.
-        lock: Path and status of the lock file, or None without a lock.
-        expected: Files and folders that must exist when the command ends.
-        seen: Subfolders that an earlier check found; they must not disappear.
-    """
-
-    folder: Path
-    places: tuple[Path, ...]
-    descriptor: int
-    lock: tuple[Path, os.stat_result] | None = None
-    expected: list[Path] = field(default_factory=list)
-    seen: set[Path] = field(default_factory=set)
+    folder: Path  # as the user wrote it; it may be a link
+    places: tuple[Path, ...]  # absolute paths of the folder: as written, and with links resolved
+    descriptor: int  # of the folder; while it is open, the inode is not reused
+    lock: tuple[Path, os.stat_result] | None = None  # path and status of the lock file
+    expected: list[Path] = field(default_factory=list)  # must exist when the command ends
+    seen: set[Path] = field(default_factory=set)  # subfolders that must not disappear any more
 
     def inner(self, path: Path) -> Path | None:
         """Return the absolute ``path`` relative to the folder, or None if it lies outside."""
@@ -70,12 +59,7 @@ class Root:
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Check each folder along ``inner``, a path relative to the output folder.
-
-        Raises:
-            UnsafePathError: If one of these folders is a link or is not a folder.
-            FolderLostError: If a folder that was checked earlier is missing now.
-        """
+        """Check each folder along the relative path ``inner``: neither a link, nor lost."""
         place = self.places[0]
         for part in inner.parts:
             place = place / part
@@ -123,10 +107,9 @@ def lost(*paths: Path) -> FolderLostError:
 
 
 def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
-    """Watch an existing ``folder`` until :func:`unregister`.
+    """Watch an existing ``folder`` and its ``lock`` until :func:`unregister`.
 
-    While the folder is watched, every write below it checks that the folder and its ``lock`` are
-    unchanged, and that no subfolder on the path is a link.
+    Every write below it checks that both are unchanged, and that no folder on the path is a link.
     """
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
@@ -146,10 +129,7 @@ def unregister(root: Root) -> None:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Explain system errors that occur while the block writes the file or folder ``path``.
-
-    The error keeps its type. Its message states that the path cannot be written, and what to do.
-    """
+    """Explain system errors (OSError) of a block that writes ``path``; they keep their type."""
     try:
         yield
     except OSError as error:
@@ -166,8 +146,8 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
     """Create ``folder`` and watch it while the block runs.
 
     Args:
-        folder: The folder that the user named; it may be a link.
-        expected: Names of files that must be in the folder when the block ends.
+        folder: the folder; it may be a link.
+        expected: names of files that must be in the folder when the block ends.
 
     Raises:
         FolderLostError: If the folder was removed or replaced while the block ran.
@@ -202,7 +182,7 @@ def make_checked(folder: Path | str) -> None:
 
 
 def forget(folder: Path | str) -> None:
-    """Declare that ``folder`` will be deleted, so that its absence is not reported as an error."""
+    """Declare that ``folder`` will be deleted, so its absence is no error."""
     folder = Path(os.path.abspath(folder))
     for root in _roots:
         root.seen = {path for path in root.seen if not path.is_relative_to(folder)}
@@ -234,8 +214,7 @@ def is_regular(path: Path | str) -> bool:
     """Return whether the file ``path`` exists; links are followed.
 
     Raises:
-        UnsafePathError: If ``path`` is a FIFO, a socket or a device, since reading it could block
-            forever.
+        UnsafePathError: If ``path`` is a FIFO, a socket or a device.
     """
     try:
         mode = os.stat(path).st_mode
@@ -259,12 +238,7 @@ def _check_folder(folder: Path) -> None:
 
 
 def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
-    """Open a regular file for writing.
-
-    Args:
-        path: Path of the file; its folder must exist.
-        mode: A mode of ``open``: "w", "a", "x" or "r+", with "b" and "+".
-        options: Other arguments of ``open``, such as ``encoding``.
+    """Open a regular file in an existing folder for writing; the arguments are those of ``open``.
 
     Raises:
         UnsafePathError: If ``path`` is a symbolic link, a folder, a FIFO, a socket or a device, has

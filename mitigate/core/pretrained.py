@@ -1,7 +1,7 @@
 """Load pretrained networks in Hugging Face's format, optionally in 8 or 4 bits.
 
 A folder or hub id may come from an untrusted source, so its code is never run, and its weights must
-be safetensors files. Every error message states the cause and a command that fixes it.
+be safetensors files.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     """Return the network at ``place``, built by a class such as ``AutoModelForCausalLM``.
 
     Args:
-        auto: the Auto class of the library transformers that loads the network.
+        auto: class of the library transformers that loads the network.
         place: a local folder, or the id of a model on the Hugging Face Hub.
         precision: precision of the weights: "fp32", "bf16", "int8" (bitsandbytes LLM.int8) or
             "nf4" (bitsandbytes, 4-bit NormalFloat, computed in bf16).
@@ -45,8 +45,8 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     safe = {"use_safetensors": True, "trust_remote_code": False}
     network = auto.from_pretrained(place, dtype=dtype, **{**safe, **options})
     for module in network.modules():
-        # On CPUs with AVX512-BF16, bitsandbytes repacks 4-bit weights in eval mode.
-        # The repacked layers then give no gradients in training.
+        # On CPUs with AVX512-BF16, bitsandbytes repacks 4-bit weights in eval mode, and such layers
+        # give no gradients in training.
         if "support_avx512bf16_for_cpu" in vars(module):
             module.support_avx512bf16_for_cpu = False
     return network
@@ -74,13 +74,7 @@ def local_folder(base: str) -> str:
 
 @contextmanager
 def explained(base: str, precision: str, install: str) -> Iterator[None]:
-    """Convert errors of transformers to errors with a one-paragraph message.
-
-    Args:
-        base: name of the model.
-        precision: precision of its weights.
-        install: command that installs missing packages.
-    """
+    """Explain errors of transformers; ``install`` is the command for missing packages."""
     try:
         yield
     except ImportError as error:
@@ -98,10 +92,7 @@ def explained(base: str, precision: str, install: str) -> Iterator[None]:
 
 
 def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
-    """Return one sha256 over the contents of all weight files in a folder, sorted by name.
-
-    For a hub id, return the sha256 of the id itself.
-    """
+    """Return one sha256 of all weight files in a folder, sorted by name, or of a hub id itself."""
     files = sorted(Path(place).glob(pattern))
     sha = hashlib.sha256()
     for file in files:

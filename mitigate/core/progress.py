@@ -24,9 +24,7 @@ class Progress:
         title: name of the job.
         total: number of units.
         unit: name of a unit, in the singular.
-        start: number of units that were done before.
-
-    Raises ValueError unless ``start`` is between 0 and ``total``.
+        start: number of units that were done before, from 0 to ``total``.
     """
 
     def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
@@ -93,9 +91,7 @@ class Progress:
         say(text)
 
     def line(self) -> str:
-        """Return a line such as ``train: step 120/700, 3.1 steps/s, 3 min 10 s left,
-        loss 0.31``.
-        """
+        """Return a line such as ``train: step 12/70, 3.1 steps/s, 18 s left, loss 0.31``."""
         pace = self._pace()
         if pace is None:
             return self._line(f"{duration(time.monotonic() - self._began)} so far")
@@ -111,9 +107,8 @@ class Progress:
     def _pace(self) -> float | None:
         """Return the mean seconds per unit, or None while the mean is unknown.
 
-        The mean excludes the first units, because their time includes compiling code and opening
-        files. The mean is unknown until another 1 % of all units is done, because each worker
-        compiles code during its first units.
+        The mean excludes the first units, which compile code and open files. It is unknown until
+        another 1 % of all units is done, because each worker compiles code.
         """
         least = max(1, (self.total - self.start) // 100)
         if self._first is None or self.done - self._first[0] < least:
@@ -138,9 +133,7 @@ def say(text: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or (if infinite)
-    ``unknown time``.
-    """
+    """Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or ``unknown time``."""
     if math.isinf(seconds):
         return "unknown time"
     whole = round(seconds)

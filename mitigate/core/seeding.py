@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import hashlib
 import random
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 import numpy as np
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     import torch
 
 Key = int | str
+Item = TypeVar("Item")
 
 
 def digest(*key: Key) -> int:
@@ -31,6 +32,11 @@ def digest(*key: Key) -> int:
 def generator(*key: Key) -> np.random.Generator:
     """Return a new numpy generator (Philox, counter-based) for ``key``."""
     return np.random.Generator(np.random.Philox(key=digest(*key)))
+
+
+def pick(options: Sequence[Item], rng: np.random.Generator) -> Item:
+    """Return a random one of ``options``."""
+    return options[int(rng.integers(len(options)))]
 
 
 def torch_generator(*key: Key) -> torch.Generator:

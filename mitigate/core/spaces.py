@@ -19,11 +19,7 @@ class ActionSpace:
     """Base class of action spaces."""
 
     def check(self, action: Any) -> Any:
-        """Check ``action`` and convert it to the format that the world accepts.
-
-        Raises:
-            ValueError: If the action is not in the space.
-        """
+        """Convert ``action`` to the world's format; raise ValueError if it is not in the space."""
         raise NotImplementedError
 
     def sample(self, rng: np.random.Generator) -> Any:
@@ -79,9 +75,7 @@ class Box(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class MultiDiscrete(ActionSpace):
-    """An array of integers; each integer is at least 0 and less than the entry of ``counts`` at its
-    position.
-    """
+    """An array of integers from 0 to ``counts - 1``."""
 
     counts: np.ndarray
 
@@ -125,11 +119,7 @@ class Composite(ActionSpace):
 
 
 def from_gymnasium(space: Any) -> ActionSpace:
-    """Return the action space that corresponds to ``space`` of gymnasium or gym.
-
-    Raises:
-        ValueError: If the kind of space is not supported, for example text or a graph.
-    """
+    """Convert a space of gymnasium or gym; raise ValueError for an unsupported kind."""
     kind = type(space).__name__
     if kind == "Discrete":
         # spaces of gym before 0.22 have no start

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any
 from mitigate.agents import adapters
 from mitigate.core import checkpoint, folders
 from mitigate.core.files import write_json, write_text
-from mitigate.core.json_files import read_object
 
 if TYPE_CHECKING:
     from mitigate.encoders.model import Encoder
@@ -77,9 +76,7 @@ def card(folder: str | Path) -> dict[str, Any]:
             f"{folder} must contain a hardened encoder, but {CARD} is missing. Give the path of "
             "the folder `agent` that `make train RECIPE=encoder` writes into its run folder."
         )
-    if damage := folders.problem(file):
-        raise ValueError(f"{file} is truncated or damaged: it {damage}. {_AGAIN}")
-    return read_object(file, _AGAIN)
+    return folders.read_checked(file, _AGAIN)
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:

@@ -31,17 +31,11 @@ RESTORER = "restorer-"  # prefix of the fingerprints of guards from ``restore=``
 
 @dataclass(frozen=True)
 class EpisodeStart:
-    """The information that a guard receives when an episode begins.
+    """The information that a guard receives when an episode begins."""
 
-    Attributes:
-        key: seed and episode id, for random numbers.
-        instruction: the instruction after corruption.
-        system_prompt: the agent's system prompt after corruption, or None.
-    """
-
-    key: Key
-    instruction: str
-    system_prompt: str | None = None
+    key: Key  # seed and episode id, for random numbers
+    instruction: str  # after corruption
+    system_prompt: str | None = None  # the agent's system prompt after corruption
 
 
 class Guard:
@@ -74,39 +68,31 @@ class Guard:
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the observation that the agent receives.
+        """Return the observation that the agent receives, of which only frames may differ.
 
-        Only frames may differ from ``observation``. The arrays in ``observation`` must not be
-        changed in place.
+        The arrays in ``observation`` must not be changed in place.
         """
         return observation
 
     def for_episode(self) -> Guard:
-        """Return the guard for one episode.
+        """Return the guard for one episode; a guard that remembers frames returns a new guard.
 
-        A guard that remembers earlier frames must override this method, and return a new guard that
-        remembers nothing yet. The method ``observe`` of such a guard is called at every step, even
-        if the agent does not read the frames.
+        The method ``observe`` of such a guard is called at every step, even if the agent does not
+        read the frames.
         """
         return self
 
     def attach(self, agent: Any) -> AbstractContextManager:
-        """Return a context manager that adapts ``agent`` for one episode.
-
-        When the context ends, the changes to the agent must be undone.
-        """
+        """Return a context that adapts ``agent`` for one episode and then undoes all changes."""
         return nullcontext()
 
     def restart(self) -> None:
         """Forget all earlier episodes. Continual guards are restarted before each condition."""
 
     def calibrate(self, agent: Any, world: World, episode: Callable[[int], Episode]) -> None:
-        """Measure properties of the agent that the guard needs; called before the evaluation.
+        """Measure properties of the agent in a world without corruptions, before the evaluation.
 
-        Args:
-            agent: the agent.
-            world: a world, without corruptions.
-            episode: function that returns a training episode, given its number.
+        ``episode`` returns the training episode with a given number.
         """
 
     def check_agent(self, agent: Any) -> None:
@@ -115,7 +101,7 @@ class Guard:
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
         """Return the guard to send to the worker processes that run these episodes.
 
-        A guard with a large model can compute all its answers here, so that workers need no model.
+        A guard with a large model computes all its answers here, so that workers need no model.
         """
         return self
 
@@ -152,8 +138,7 @@ class Guard:
 
 def overrides(guard: Guard, method: str) -> bool:
     """Return whether the class of ``guard`` overrides ``method``."""
-    classes = type(guard).__mro__
-    return any(method in vars(cls) for cls in classes[: classes.index(Guard)])
+    return getattr(type(guard), method) is not getattr(Guard, method)
 
 
 class Guards(Guard):
@@ -171,13 +156,11 @@ class Guards(Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
-        """The sensors whose frames at least one guard reads or changes."""
         names = (name for guard in self._overriding("observe") for name in guard.frames)
         return tuple(dict.fromkeys(names))
 
     @property
     def adapts(self) -> bool:
-        """Whether at least one guard changes the agent."""
         return bool(self._overriding("attach"))
 
     def begin(self, episode: EpisodeStart) -> str:
@@ -195,7 +178,6 @@ class Guards(Guard):
 
     @property
     def remembers(self) -> bool:
-        """Whether a guard remembers earlier frames of the episode."""
         return bool(self._overriding("for_episode"))
 
     def for_episode(self) -> Guards:
@@ -205,7 +187,6 @@ class Guards(Guard):
 
     @property
     def continual(self) -> bool:  # type: ignore[override]
-        """Whether at least one guard uses state from earlier episodes."""
         return any(guard.continual for guard in self.guards)
 
     @contextmanager
@@ -237,16 +218,14 @@ class Guards(Guard):
     def fingerprint(self) -> str:
         """Return the fingerprints of all guards, joined by "+".
 
-        If no guard changes the instruction, the text starts with "none". If there are no guards at
-        all, the text is only "none".
+        The text starts with "none" if no guard changes the instruction.
         """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
 
     def frames_hash(self) -> str | None:
-        """Return the fingerprints of all guards that change frames, joined by "+".
-
-        The prefix of a restorer's fingerprint is removed. If no guard changes frames, return None.
+        """Return the fingerprints of the guards that change frames, without ``RESTORER``, or None
+        if no guard changes frames.
         """
         fingerprints = [guard.fingerprint() for guard in self._overriding("observe")]
         return "+".join(part.removeprefix(RESTORER) for part in fingerprints) or None
@@ -265,10 +244,9 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """World wrapper in which guards change the frames.
+    """World wrapper in which guards change the frames; ``observation.clean`` does not change.
 
-    The guard runs only when the agent reads a frame, so frames that are not read cost nothing. A
-    guard that remembers frames receives all of them. ``observation.clean`` does not change.
+    A guard runs only when the agent reads a frame, unless a guard remembers frames.
     """
 
     def __init__(self, world: World, guards: Guards) -> None:

@@ -13,11 +13,7 @@ RESETS = (EPISODE, NEVER)
 
 
 def parsed(choice: str) -> list[tuple[str, str]]:
-    """Return the pairs (method, reset) that ``choice`` lists.
-
-    Raises:
-        ValueError: If a method or a value of reset is unknown.
-    """
+    """Return the pairs (method, reset) that ``choice`` lists; raise ValueError for unknown ones."""
     parts = []
     for part in str(choice).split("+"):
         method, _, reset = part.partition(":")

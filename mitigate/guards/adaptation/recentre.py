@@ -19,7 +19,6 @@ from torch import Tensor, nn
 from mitigate.agents.agent import as_agent
 from mitigate.agents.networks import in_eval_mode
 from mitigate.agents.policies.policy import Policy, last_convolution
-from mitigate.core.contracts import missing_members
 from mitigate.core.precision import computing
 from mitigate.guards.adaptation.adaptation import Adaptation
 from mitigate.guards.adaptation.choices import EPISODE
@@ -33,16 +32,14 @@ class Recentre(Adaptation):
     """Shift the features of some modules to their clean mean.
 
     Args:
-        modules: names of the modules whose outputs are shifted. The modules belong to the agent, or
-            to the network of a policy. The default is the agent's image encoders, or the last
-            convolution of a policy.
+        modules: names of the modules of the agent, or of a policy's network, whose outputs are
+            shifted. The default is the agent's image encoders, or a policy's last convolution.
         prior: number of observations that the clean mean counts as when it is averaged with the
             observations of the episode. A larger value shifts the first frames less.
         reset: see :class:`Adaptation`.
 
     Attributes:
-        means: the clean mean [C] of each module's output, in order. :meth:`calibrate` sets these
-            means.
+        means: the clean mean [C] of each module's output, in order, from :meth:`calibrate`.
 
     Raises:
         ValueError: If ``prior`` or ``reset`` is invalid.
@@ -77,15 +74,9 @@ class Recentre(Adaptation):
             )
 
     def calibrate(self, agent: Any, world: Any, episode: Callable[[int], Episode]) -> None:
-        """Run clean episodes with the agent to measure the means, unless they are already known.
-
-        Args:
-            agent: the agent.
-            world: a world.
-            episode: function that returns a training episode, given its number.
-        """
+        """Run clean episodes with the agent to measure the means, unless they are already known."""
         modules = _modules(agent, self.modules)
-        if self.means:  # measured before
+        if self.means:
             return
         sums: list[Any] = [0.0] * len(modules)
         counts = [0] * len(modules)
@@ -120,7 +111,7 @@ class Recentre(Adaptation):
         self.means = [s / n for s, n in zip(sums, counts, strict=True)]
 
     def tensors(self, agent: Any) -> list[Tensor]:
-        """Return the means of the episode, which are tensors of this guard and not of the agent."""
+        """Return the means of the episode, which belong to this guard and not to the agent."""
         self._now = [t for mean in self.means for t in (mean.clone(), torch.zeros(1))]
         return self._now
 
@@ -149,19 +140,13 @@ class Recentre(Adaptation):
 
 
 def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
-    """Return the modules with these names.
-
-    If ``names`` is None, return the image encoders of the agent.
-
-    Raises:
-        ValueError: If a module does not exist, or the agent declares no encoders.
-    """
+    """Return the modules with these names; None means the default of :class:`Recentre`."""
     root: Any = agent.network if isinstance(agent, Policy) else agent
     if names is None and isinstance(agent, Policy):
         names = [last_convolution(agent)]
     if names is None:
         names = [parts[0] for parts in as_agent(agent).encoders.values()]
-    if not names or missing_members(root, ("get_submodule",)):
+    if not names or not hasattr(root, "get_submodule"):
         raise ValueError(
             f"adapt=recentre does not know the features of {type(agent).__name__}, which declares "
             "no encoders (mitigate/agents/agent.py). Name modules of the network: "
@@ -182,6 +167,6 @@ def _axis(features: Tensor) -> int:
 
 
 def _means(output: Any) -> Tensor:
-    """Return the mean of each channel, computed over all other axes."""
+    """Return the mean of each channel over all other axes."""
     features = output[0] if isinstance(output, (tuple, list)) else output
     return features.detach().float().movedim(_axis(features), 0).flatten(1).mean(1)

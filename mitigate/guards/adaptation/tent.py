@@ -110,6 +110,6 @@ class Tent(Adaptation):
     def _step(self, adapted: list[Tensor]) -> None:
         """Take a gradient descent step, unless a gradient is not finite."""
         pairs = [(weight, weight.grad) for weight in adapted if weight.grad is not None]
-        if all(bool(torch.isfinite(gradient).all()) for _, gradient in pairs):
+        if all(torch.isfinite(gradient).all() for _, gradient in pairs):
             for weight, gradient in pairs:
                 weight.sub_(gradient, alpha=self.lr)

@@ -20,10 +20,7 @@ _CALLABLE = re.compile(r"([A-Za-z_][\w.]*):([A-Za-z_]\w*)(?:@(.+))?")
 
 
 class CallableChoice(NamedTuple):
-    """The parts of ``module:name@version``.
-
-    The field ``version`` is None if the text has no version.
-    """
+    """The parts of ``module:name@version``."""
 
     module: str
     name: str
@@ -31,20 +28,13 @@ class CallableChoice(NamedTuple):
 
 
 def parted(choice: str) -> tuple[str, str | None]:
-    """Return the folder and the sensor to restore.
-
-    The sensor is None if all sensors of the restorer are restored.
-    """
+    """Return the folder and the sensor to restore, or None for all sensors of the restorer."""
     folder, colon, sensor = str(choice).rpartition(":")
     return (folder, sensor) if colon and sensor in SENSORS else (str(choice), None)
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``, or None if ``choice`` names a folder.
-
-    ``choice`` names a folder if this path exists, or if it has the form ``FOLDER:SENSOR``, as in
-    ``FOLDER:rgb``.
-    """
+    """Return the parts of ``module:callable``, or None if ``choice`` names a folder."""
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():
         return None
@@ -52,11 +42,7 @@ def callable_of(choice: str) -> CallableChoice | None:
 
 
 def label(choice: str) -> str:
-    """Return the text that ``choice`` adds to a column name.
-
-    For a folder, the text contains the folder's name and the sensor. For a callable, it contains
-    the names of the module and the callable, and the version.
-    """
+    """Return the text that ``choice`` adds to a column name."""
     named = callable_of(str(choice))
     if named is not None:
         text = f"{named.module.rpartition('.')[2]}.{named.name}"

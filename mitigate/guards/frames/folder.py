@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from mitigate.core import checkpoint, folders
 from mitigate.core.files import write_json
-from mitigate.core.json_files import read_json
 from mitigate.core.observation import DEPTH, RGB
 
 if TYPE_CHECKING:
@@ -26,8 +25,8 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=rest
 def write(restorer: Restorer, folder: str | Path, *, half: bool = False) -> Path:
     """Write ``restorer`` into ``folder`` and return the folder.
 
-    The card contains the hash of the weights that are read from the folder. Therefore, with
-    ``half``, the weights of ``restorer`` are also rounded to float16.
+    With ``half``, the weights of ``restorer`` itself are also rounded to float16, because the card
+    contains the hash of the weights that are read from the folder.
     """
     with folders.write_folder(folder, "restorer") as draft:
         checkpoint.write_tensors(restorer, draft / checkpoint.WEIGHTS, half=half)
@@ -53,20 +52,16 @@ def card(folder: str | Path) -> dict[str, Any]:
             "with `make train RECIPE=restore` (its folder is runs/.../agent), or name "
             "checkpoints/restorer or a function (module:callable)."
         )
-    damage = folders.problem(folder / CARD)
-    if damage:
-        raise ValueError(f"{folder / CARD} is truncated or damaged: it {damage}. {_AGAIN}")
-    content = read_json(folder / CARD, _AGAIN)
-    wrong = _wrong(content)
-    if wrong:
+    content = folders.read_checked(folder / CARD, _AGAIN)
+    if wrong := _wrong(content):
         raise ValueError(f"{folder / CARD}: {wrong}. {_AGAIN}")
     return content
 
 
-def _wrong(content: Any) -> str:
+def _wrong(content: dict[str, Any]) -> str:
     """Return a message about the first problem in a card, or "" if the card is valid."""
-    if not isinstance(content, dict) or content.get("format") != FORMAT:
-        return f"it must be an object of format {FORMAT}"
+    if content.get("format") != FORMAT:
+        return f"it must have format {FORMAT}"
     settings = content.get("settings")
     if not isinstance(settings, dict) or not isinstance(content.get("hash"), str):
         return "it must have settings and a hash"
@@ -92,24 +87,21 @@ def problem(settings: dict[str, Any]) -> str:
 def fill(restorer: Restorer, folder: str | Path) -> None:
     """Load the weights in ``folder`` into ``restorer``.
 
-    The settings of ``restorer`` must equal those in the card. Raises the errors of :func:`card`.
-    Raises ValueError if the settings differ, or if a checksum is missing or does not match the
-    weights.
+    Raises the errors of :func:`card`, and ValueError if the card has other settings, or if a
+    checksum is missing or does not match the weights.
     """
-    content, current = card(folder), restorer.settings()
-    names = [name for name, value in current.items() if content["settings"][name] != value]
-    if names:
-        name = names[0]
-        raise ValueError(
-            f"The restorer in {folder} has {name}={content['settings'][name]!r:.60}, not "
-            f"{current[name]!r:.60}. Set agent.{name} to that, or train from scratch (init=null)."
-        )
+    content = card(folder)
+    for name, value in restorer.settings().items():
+        if content["settings"][name] != value:
+            raise ValueError(
+                f"The restorer in {folder} has {name}={content['settings'][name]!r:.60}, not "
+                f"{value!r:.60}. Set agent.{name} to that, or train from scratch (init=null)."
+            )
     file = Path(folder) / checkpoint.WEIGHTS
     if not folders.is_listed(file):
         raise ValueError(f"{file} is not listed in the {folders.MANIFEST} of its folder. {_AGAIN}")
-    wrong = folders.problem(file)
     # load_weights would report this too, but would suggest deleting the checksum, which is required
-    if wrong:
+    if wrong := folders.problem(file):
         raise ValueError(f"{file} is truncated or damaged: it {wrong}. {_AGAIN}")
     checkpoint.load_weights(restorer, folder)
     if restorer.hash != content["hash"]:

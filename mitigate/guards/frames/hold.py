@@ -20,11 +20,10 @@ LIMIT = 10
 
 
 class HoldLast(Guard):
-    """Repeat the last view of a camera in place of an empty one.
+    """Repeat the last view of a camera in place of an empty one, at most ``limit`` times in a row.
 
     An RGB view is empty if all its values are 0. A depth view is empty if it has no finite reading
-    above 0. Each view of a panorama is treated separately. A view is repeated at most ``limit``
-    times in a row; after that, the agent receives the empty view.
+    above 0. Each view of a panorama is treated separately.
     """
 
     label = HOLD
@@ -51,7 +50,7 @@ class HoldLast(Guard):
         return {**observation, **changed} if changed else observation
 
     def _hold(self, name: str, views: np.ndarray) -> np.ndarray:
-        """Return ``views`` of shape [V, H, W, C] with empty views replaced where possible."""
+        """Return ``views`` [V, H, W, C] with empty views replaced where possible."""
         signal = np.isfinite(views) & (views > 0) if name == DEPTH else views > 0
         empty = ~signal.any(axis=(1, 2, 3))
         last = self._views.get(name)

@@ -30,9 +30,8 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
     """Return the geometry of the neighbouring views at -1, +1, -2 and +2 steps.
 
     Returns:
-        ``grid`` [4, size, size, 2] as in ``neighbour_grid``, and ``ahead`` [4, size, size].
-        ``ahead`` is the ratio of a point's depth along the neighbour's axis to its depth along the
-        view's own axis.
+        ``grid`` [4, size, size, 2] as in ``neighbour_grid``, and ``ahead`` [4, size, size], the
+        ratio of a point's depth along the neighbour's axis to its depth along the view's own axis.
     """
     half = math.tan(math.radians(HFOV_DEGREES) / 2)
     x = ((torch.arange(size) + 0.5) / size * 2 - 1) * half
@@ -47,18 +46,14 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
 
 
 def is_ring(views: int, height: int, width: int) -> bool:
-    """Return whether frames form a panorama of 12 square views.
-
-    Views can be compared only in such a panorama, because its geometry is known.
-    """
+    """Return whether frames form a panorama of 12 square views, whose geometry is known."""
     return views == VIEWS and height == width
 
 
 def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor, Tensor]:
     """Return the smallest and the largest value that other views show at every pixel.
 
-    At least three views show each direction. A value outside the range from smallest to largest
-    contradicts the other views.
+    At least three views show each direction. A value outside this range contradicts other views.
 
     Args:
         values: float [P * 12, c, s, s] in [0, 1]. Depth is measured along the axis of each view.
@@ -66,9 +61,8 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
         depth: whether ``values`` is depth.
 
     Returns:
-        The smallest values, the largest values (both [P * 12, c, s, s]), and a mask [P * 12, 1, s,
-        s]. The mask is 1 where another view has a valid pixel. Elsewhere, the smallest and largest
-        values equal ``values``.
+        The smallest and the largest values [P * 12, c, s, s], and a mask [P * 12, 1, s, s]. The
+        mask is 1 where another view has a valid pixel; elsewhere, both values equal ``values``.
     """
     low, high = torch.full_like(values, torch.inf), torch.full_like(values, -torch.inf)
     for value, weight, scale in _turned(values * valid, valid):
@@ -84,11 +78,7 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Yield each neighbour's values and weights, resampled into the view, and its depth scale.
-
-    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s]. The depth scale
-    [s, s] is the array ``ahead`` that :func:`neighbours` returns.
-    """
+    """Yield each neighbour's values and weights, resampled into the view, and its ``ahead``."""
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]
     ring = torch.cat([values, weights], 1).unflatten(0, (-1, VIEWS))
@@ -105,14 +95,12 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
     """Return the weighted mean of the values that other views show at every pixel.
 
     Args:
-        values: float [P * 12, c, s, s]. The values are colours, or depth along the axis of each
-            view in any unit.
+        values: float [P * 12, c, s, s]: colours, or depth along the axis of each view.
         trust: the weights in [0, 1], with shape [P * 12, 1 or c, s, s].
         depth: whether ``values`` is depth.
 
     Returns:
-        The mean [P * 12, c, s, s] and its confidence in [0, 1). The confidence has the shape of
-        ``trust``.
+        The mean, and its confidence in [0, 1) with the shape of ``trust``.
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)

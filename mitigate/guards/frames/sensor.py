@@ -30,12 +30,10 @@ from mitigate.guards.frames.network import FACTOR, Encoded, Gate, UNet, texture
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of the range (heuristic)
-# These margins are fractions of the range.
-# About 99 % of clean pixels differ from the other views by less than the margin.
-# On 20 panoramas of val_seen, the share was 98.6 % for RGB and 99.2 % for depth.
+# Clean pixels rarely differ from the other views by more than this fraction of the range.
+# On 20 panoramas of val_seen, 98.6 % (RGB) and 99.2 % (depth) differed by less.
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-# A pixel is trusted less if it lies outside the range of values in the other views.
-# This is the initial value of the trained weight of this effect (heuristic).
+# initial weight of the distance from the other views' range in the trust logit (heuristic)
 ALONE = 2.0
 LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
@@ -61,8 +59,7 @@ class SensorRestorer(nn.Module):
     Args:
         sensor: "rgb" or "depth".
         width: number of channels of the U-Net's finest feature maps.
-        size: shorter side in pixels of the frames that the network processes. Larger frames are
-            reduced to this size.
+        size: shorter side in pixels to which larger frames are reduced for the network.
         far: depth in metres that is scaled to 1.
 
     Attributes:
@@ -86,11 +83,9 @@ class SensorRestorer(nn.Module):
         return 255.0 if self.sensor == RGB else self.far
 
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
-        """Scale frames [n, H, W, c] of the sensor to values [n, c, H, W] in [0, 1].
+        """Scale frames [n, H, W, c] to values [n, c, H, W] in [0, 1] and a mask of valid pixels.
 
-        Returns:
-            The values, and a mask [n, 1, H, W] of valid pixels. Depth is valid if it is finite and
-            above 0.
+        Depth is valid if it is finite and above 0.
         """
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
@@ -104,14 +99,11 @@ class SensorRestorer(nn.Module):
         return tuple(max(1, round(n * scale / FACTOR)) * FACTOR for n in (height, width))  # type: ignore[return-value]
 
     def small(self, x: Tensor, valid: Tensor) -> tuple[Tensor, Tensor]:
-        """Resize values and mask to the working size.
-
-        Invalid pixels have no weight, so that they do not darken their neighbours.
-        """
+        """Resize values and mask to the working size."""
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
             return x, valid
-        weight = _resized(valid, size)
+        weight = _resized(valid, size)  # invalid pixels must not darken their neighbours
         return _resized(x * valid, size) / weight.clamp(min=1e-3), (weight > 0.5).float()
 
     def forward(self, frames: Tensor, views: int) -> Tensor:
@@ -127,10 +119,8 @@ class SensorRestorer(nn.Module):
         """Encode frames at the working size, and detect corruption.
 
         Returns:
-            Three values. The first one contains the feature maps of the U-Net. The second one is
-            how far each pixel is outside the range of the other views, float [n, c, h, w]. It is 0
-            for distances up to ``MARGIN``, and grows by 1 for each further ``MARGIN``. The third
-            one is the logit of the gate for each time step.
+            The feature maps of the U-Net; how many ``MARGIN`` each pixel is too far outside the
+            range of the other views, float [n, c, h, w]; and the gate's logit per time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
@@ -139,12 +129,8 @@ class SensorRestorer(nn.Module):
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
         """Return the input of the U-Net, and how far pixels are outside the other views' range.
 
-        The input consists of the following channels:
-
-        - the frame;
-        - the mask of valid pixels (only for depth);
-        - the differences from the smallest and the largest value in the other views;
-        - the mask of the pixels for which another view has a valid pixel.
+        The channels are the frame, the mask of valid pixels (only for depth), the differences from
+        the smallest and largest value in other views, and the mask of pixels that these views see.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
@@ -174,15 +160,12 @@ class SensorRestorer(nn.Module):
         around = ring.from_around(values, known)
         return values + (1 - known) * (around - values)
 
-    # one instant -------------------------------------------------------------------------------
-
     @torch.inference_mode()
     def judged(self, frames: Tensor) -> tuple[bool, Tensor]:
-        """Restore frames [V, H, W, c] if the gate classifies them as corrupted.
+        """Return whether frames [V, H, W, c] of a time step were restored, and the result.
 
-        Returns:
-            Whether the frames were restored, and the resulting frames. Frames stay unchanged if
-            they are classified as clean, are outside the training range, or would change too much.
+        Frames stay unchanged if the gate classifies them as clean, if they are outside the training
+        range, or if they would change too much.
         """
         x, valid = self.scaled(frames)
         if not self.knows(frames, valid):
@@ -214,9 +197,8 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames are always within the range. Depth frames must have valid pixels, and no
-        more than a fraction :data:`BEYOND` of them may be beyond ``far``. If a larger fraction is
-        beyond ``far``, a warning is shown.
+        RGB frames always are. Depth frames must have valid pixels, of which at most a fraction
+        :data:`BEYOND` is beyond ``far``; otherwise a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB

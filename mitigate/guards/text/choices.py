@@ -1,7 +1,4 @@
-"""Parse the values of ``safeguard=``, and compute their labels and hashes.
-
-A value is a name, a folder or an endpoint.
-"""
+"""Parse the values of ``safeguard=`` (a name, a folder or an endpoint), and label and hash them."""
 
 from __future__ import annotations
 
@@ -36,10 +33,10 @@ def current(choice: str) -> str:
 
 
 def check(choice: object) -> None:
-    """Check that ``choice`` names a safeguard.
+    """Check that ``choice`` names a safeguard, without reading weights or sending requests.
 
     Raises ValueError if there is no such safeguard, and FileNotFoundError if ``choice`` is a folder
-    without a safeguard. No weights are read and no requests are sent.
+    without a safeguard.
     """
     text = choice if isinstance(choice, str) else ""
     # rejects a value that may contain a password, before a message can show the value
@@ -47,11 +44,9 @@ def check(choice: object) -> None:
     if is_endpoint(text) or text in (*CHOICES, EARLIER):
         return
     if not text or not find(text).is_dir():
-        cause = (
-            "This value is not the name of an existing safeguard. Choose one of: "
-            f"{', '.join(CHOICES)}."
-        )
-        # other values may contain a password, so the message does not show them
+        # a value that is not plain may contain a password, so the message does not show it
+        names = f"Choose one of: {', '.join(CHOICES)}."
+        cause = f"This value is not the name of an existing safeguard. {names}"
         if is_plain(choice):
             cause = unknown("safeguard", choice, CHOICES)
         raise ValueError(f"{cause} Or name a folder. {FOLDER}")
@@ -83,10 +78,9 @@ def kind(folder: str | Path) -> str | None:
 
 
 def label(choice: str) -> str:
-    """Return the label that identifies a safeguard in column names.
+    """Return the label of a safeguard in column names.
 
-    The label is the safeguard's name, the name of its folder with a hash, or the host and the model
-    of an endpoint.
+    It is a name, the name of a folder with a hash, or the host and the model of an endpoint.
     """
     choice = current(choice)
     if is_endpoint(choice):
@@ -101,10 +95,7 @@ def label(choice: str) -> str:
 
 
 def identity(choice: str) -> str:
-    """Return a safeguard's label, followed by a hash of its version and weights.
-
-    The weights of an endpoint are unknown, so they are not hashed. "none" has no hash.
-    """
+    """Return a safeguard's label, followed by a hash of its version and weights, if any."""
     if choice == "none":
         return choice
     choice = current(choice)

@@ -38,10 +38,7 @@ _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
-    """Return the counts of a clause's hashed terms.
-
-    Terms are words, pairs of words, groups of letters, punctuation, and marks of hidden text.
-    """
+    """Return the counts of a clause's hashed terms: words, pairs, letters, signs and marks."""
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -79,37 +76,25 @@ def _word_terms(word: str) -> tuple[int, ...]:
 
 @dataclass(frozen=True)
 class Clause:
-    """A clause of an instruction with its features.
-
-    Attributes:
-        piece: Position of the clause in the text.
-        sentence: Index of the sentence that contains the clause.
-        words: Number of words.
-        letters: Number of letters. A Chinese, Japanese or Korean character counts as three letters.
-        script: "latin", "other", or "" if the clause has no letters.
-        product: Sum of the products of the clause's TF-IDF values and the attack weights.
-        square: Sum of the clause's squared TF-IDF values.
-        style: Log odds that the clause is in an unusual style.
-    """
+    """A clause of an instruction with its features."""
 
     piece: Piece
-    sentence: int
-    words: int
-    letters: int
-    script: str
-    product: float
-    square: float
-    style: float
+    sentence: int  # index of the sentence
+    words: int  # number of words
+    letters: int  # a Chinese, Japanese or Korean character counts as three
+    script: str  # "latin", "other", or "" if the clause has no letters
+    product: float  # sum of the products of TF-IDF values and attack weights
+    square: float  # sum of squared TF-IDF values
+    style: float  # log odds of an unusual style
 
 
 class Classifier:
     """The trained weights, and methods that score texts with them.
 
     Args:
-        config: The list of common words, and the biases of the two regressions.
-        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each of shape
-            [SIZE]. The weights of the networks (:class:`Segmenter`) are also included, except while
-            a classifier is trained.
+        config: the common words, and the biases of the two regressions.
+        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each [SIZE],
+            and the weights of the networks (:class:`Segmenter`), except during training.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -124,7 +109,6 @@ class Classifier:
             self.arrays |= self.segmenter.arrays
 
     def clauses(self, text: str) -> list[Clause]:
-        """Split a text into clauses, and return them with their features."""
         results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
@@ -152,18 +136,14 @@ class Classifier:
         return float(self.log_odds(product, sum(clause.square for clause in clauses)))
 
     def log_odds(self, product: Any, square: Any) -> np.ndarray:
-        """Return the log odds of an attack, or 0 for an empty text.
-
-        ``product`` and ``square`` are sums of these attributes over the clauses of the text.
-        """
+        """Return the log odds for sums of ``product`` and ``square``, or 0 for an empty text."""
         odds = product / np.sqrt(np.maximum(square, EMPTY)) + self.bias
         return np.where(np.asarray(square) > EMPTY, odds, 0.0)
 
     def attack(self, text: str, clauses: Sequence[Clause], bonus: float) -> tuple[float, int, int]:
-        """Return the log odds that a text contains an attack, and the position of the attack.
+        """Return the log odds that a text contains an attack, and its first and last clause.
 
-        The position consists of the indices of the first and the last clause of the attack. A
-        larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
+        A larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
         """
         return self.segmenter.attack(features(text, clauses, self), bonus)
 
@@ -187,7 +167,8 @@ def load(folder: str | Path) -> Classifier:
 
     Raises FileNotFoundError if a file is missing, and ValueError if a file is damaged.
     """
-    config_file, file = Path(folder) / CONFIG, Path(folder) / WEIGHTS
+    config_file = Path(folder) / CONFIG
+    file = Path(folder) / WEIGHTS
     for needed in (config_file, file):
         if not needed.is_file():
             raise FileNotFoundError(

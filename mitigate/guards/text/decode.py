@@ -50,10 +50,7 @@ ENGLISH, HIDDEN = 0.6, 0.45
 
 @dataclass(frozen=True)
 class Decoded:
-    """A text after its hidden words were decoded.
-
-    ``marks`` names the methods by which words were hidden, such as "code" or "leet".
-    """
+    """A text with decoded words; ``marks`` names how they were hidden, such as "leet"."""
 
     text: str
     marks: frozenset[str]
@@ -75,8 +72,7 @@ def decode(text: str, known: Set[str]) -> Decoded:
     if len(re.findall(r"\b[a-z]+[A-Z]+[a-z]\w*|\b[A-Z][a-z]+[A-Z]\w*", text)) > 2:
         marks.add("case")
         text = text.lower()
-    tokens = _WORD.findall(text)
-    if len(tokens) > 2 and _share(text, known) <= HIDDEN:
+    if len(_WORD.findall(text)) > 2 and _share(text, known) <= HIDDEN:
         best = max(_ciphers(text), key=lambda read: _share(read, known))
         if _share(best, known) >= ENGLISH:
             marks.add("cipher")
@@ -85,11 +81,9 @@ def decode(text: str, known: Set[str]) -> Decoded:
 
 
 def visible(text: str) -> str:
-    """Return ``text`` without invisible characters.
+    """Return ``text`` without invisible characters, except joiners that some scripts need.
 
-    Joiners that follow a letter outside ASCII are kept, because some scripts need them. The
-    characters after a right-to-left override are reversed to match the order in which they are
-    displayed.
+    Characters after a right-to-left override are reversed, as they are displayed.
     """
     if text.isascii():
         return text
@@ -122,10 +116,7 @@ def _letters(text: str, marks: set[str]) -> str:
 
 
 def _decoded(read: Callable[[str], str], marks: set[str], match: re.Match[str]) -> str:
-    """Decode the encoded part of a text that a regular expression matched.
-
-    If the result does not consist mostly of letters, return this part unchanged.
-    """
+    """Decode a match, or return it unchanged if the result is not mostly letters."""
     coded = match.group()
     try:
         decoded = read(coded)
@@ -209,7 +200,5 @@ def _ciphers(text: str) -> Iterator[str]:
 def _share(text: str, known: Set[str]) -> float:
     """Return the fraction of the letters in ``text`` that belong to known words."""
     tokens = _WORD.findall(text.lower())
-    total = sum(map(len, tokens))
-    return sum(
-        len(word) for word in tokens if word in known and (len(word) > 1 or word in "ai")
-    ) / max(1, total)
+    words = [word for word in tokens if word in known and (len(word) > 1 or word in "ai")]
+    return sum(map(len, words)) / max(1, sum(map(len, tokens)))

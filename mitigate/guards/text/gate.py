@@ -13,7 +13,7 @@ from collections import Counter
 
 from mitigate.corruptions.language.fidelity import check, facts
 from mitigate.corruptions.language.words import CANONICAL, bag
-from mitigate.guards.text.learning.route_words import WORDS
+from mitigate.guards.text.learning.routes import WORDS
 
 _PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
@@ -33,18 +33,12 @@ _POLITE = re.compile(
 
 
 def words(text: str) -> list[str]:
-    """Return the words of a text in lower case.
-
-    The mask "[mask]" is one word.
-    """
+    """Return the words of a text in lower case; "[mask]" is one word."""
     return _WORD.findall(text.lower())
 
 
 def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
-    """Return the reason why ``rest`` is no longer an instruction, or "" if it is one.
-
-    ``rest`` is the text that remains after the piece ``removed`` was deleted.
-    """
+    """Return why the ``rest`` without ``removed`` is no longer an instruction, or "" if it is."""
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
     if not rest.isascii() or len(rest) > LONG:
@@ -82,10 +76,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
 
 
 def _is_aside(problem: str, heard: str) -> bool:
-    """Return whether ``problem`` reports a lost word that is probably not a landmark.
-
-    A lost word is probably not a landmark if it is unknown and no article precedes it.
-    """
+    """Return whether ``problem`` reports a lost word that is unknown and has no article."""
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False

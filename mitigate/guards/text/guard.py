@@ -52,7 +52,7 @@ class Decision:
 
     ``route`` is "clean" if the instruction is unchanged, "classifier" if it was changed without a
     language model, "model" if the model rewrote it, and "fallback" if no answer of the model was
-    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is the average computing
+    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is the mean computing
     time per instruction of the batch.
     """
 
@@ -92,17 +92,11 @@ class Safeguard:
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
-        """Return the decision on one instruction.
-
-        Raises TypeError if the instruction is not a string.
-        """
+        """Return the decision on one instruction; see :meth:`canonicalise_all`."""
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
-        """Return the decision on each text; the model rewrites passages of all texts in batches.
-
-        Raises TypeError if ``texts`` is a single string or if an instruction is not a string.
-        """
+        """Return the decision on each text; raise TypeError for anything but a list of strings."""
         if isinstance(texts, str):
             raise TypeError(f"texts must be a list of strings, got a string. Pass [{texts!r}].")
         texts = list(texts)
@@ -167,8 +161,8 @@ class _Draft:
         for place, heard in enumerate(self.parts):
             if heard not in self.requested:
                 continue
-            answer, last = answers[heard], place == len(parts) - 1
-            problem = gate.rewrite_refused(heard, answer, last)
+            answer = answers[heard]
+            problem = gate.rewrite_refused(heard, answer, last=place == len(parts) - 1)
             if problem:
                 self.reasons.append(f"kept {heard[:40]!r}: {problem}")
             elif answer is not None and answer != heard:
@@ -187,10 +181,9 @@ class _Draft:
     def decision(self, seconds: float) -> Decision:
         text = self.text
         if rules.MASK.search(text):
-            filled = rules.fill_masks(text)
-            if filled != text:
+            text = rules.fill_masks(text)
+            if text != self.text:
                 self.reasons.append("masks filled by rule")
-                text = filled
         route = "model" if self.accepted else "fallback" if self.requested else "classifier"
         if text == self.original and not self.requested:
             route = "clean"
@@ -198,9 +191,7 @@ class _Draft:
 
 
 def _beginning(text: str) -> str:
-    """Return the first ``READ`` characters of a text without repeated spaces, up to the end of a
-    sentence or, if there is none, of a word.
-    """
+    """Return the first ``READ`` characters without repeated spaces, up to a sentence's end."""
     text = re.sub(r"(\s)\s+", r"\1", text)
     if len(text) <= READ:
         return text
@@ -220,7 +211,7 @@ def open_safeguard(choice: str, log: str | Path | None = None) -> Safeguard | No
     - "lora" for the adapter ``checkpoints/safeguard``, or the folder of another adapter;
     - ``http://host/v1@model`` for a model behind an OpenAI-compatible endpoint.
 
-    Raises ValueError or FileNotFoundError if the choice is invalid.
+    Raises ValueError or FileNotFoundError if the choice is invalid (:func:`choices.check`).
     """
     choices.check(choice)
     name = choices.current(choice)

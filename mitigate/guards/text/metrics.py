@@ -19,82 +19,57 @@ _WORD = re.compile(r"[^\W_]+(?:['’][^\W_]+)*")
 
 @dataclass(frozen=True)
 class Repair:
-    """One repaired instruction.
+    """A repaired instruction."""
 
-    ``clean`` is the original, ``heard`` the safeguard's input, and ``repaired`` its output.
-    ``family`` is the corruption family, or "clean". ``injected`` lists the sentences that the
-    corruption inserted before the instruction.
-    """
-
-    family: str
-    clean: str
-    heard: str
-    repaired: str
-    injected: tuple[str, ...] = ()
+    family: str  # the corruption family, or "clean"
+    clean: str  # the original
+    heard: str  # the input of the safeguard
+    repaired: str  # the output of the safeguard
+    injected: tuple[str, ...] = ()  # sentences of an attack
 
 
 @dataclass(frozen=True)
 class Scores:
-    """Means over ``count`` repairs.
-
-    Each mean is in [0, 1], or None if the measure is undefined.
-
-    ``exact`` is the fraction of repaired instructions that have the same words as the original.
-    ``token_f1`` is the F1 score of the bags of words. ``chrf`` is the corpus chrF2 (Popovic 2015)
-    from sacrebleu. ``directions`` is the fraction of repaired instructions that have the same
-    directions (left, right, up, down, stop ...) in the same order as the original. ``landmarks`` is
-    the fraction of the original landmarks that are kept. ``faithful`` is the fraction of
-    instructions for which ``fidelity.check`` finds no change of meaning. ``removed`` is the
-    fraction of injected sentences that were removed. ``changed`` is the fraction of clean
-    instructions whose meaning was changed.
-    """
+    """Means in [0, 1] over ``count`` repairs, or None if a measure is undefined."""
 
     count: int
-    exact: float
-    token_f1: float
-    chrf: float
-    directions: float
-    landmarks: float | None
-    faithful: float
-    removed: float | None
-    changed: float | None
+    exact: float  # instructions with the same words as the original
+    token_f1: float  # F1 score of the bags of words
+    chrf: float  # corpus chrF2 (Popovic 2015) from sacrebleu
+    directions: float  # instructions with the same directions (left, stop ...) in the same order
+    landmarks: float | None  # original landmarks that are kept
+    faithful: float  # instructions for which ``fidelity.check`` finds no change of meaning
+    removed: float | None  # injected sentences that were removed
+    changed: float | None  # clean instructions whose meaning was changed
 
 
 def score(repairs: Sequence[Repair]) -> Scores:
-    """Return the scores of ``repairs``.
-
-    Raises ValueError if the list is empty.
-    """
+    """Return the scores of ``repairs``; raise ValueError if there are none."""
     if not repairs:
         raise ValueError("There are no repairs to score: give at least one.")
     from sacrebleu.metrics import CHRF
 
     chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
-    landmark_counts = [_landmarks_kept(r) for r in repairs]
+    directions = [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
+    kept, landmarks = map(sum, zip(*map(_landmarks_kept, repairs), strict=True))
     removed = [left(text, r.repaired) < REMAINS for r in repairs for text in r.injected]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
         count=len(repairs),
-        exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]) or 0.0,
-        token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]) or 0.0,
+        exact=_mean([words_of(r.clean) == words_of(r.repaired) for r in repairs]),
+        token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]),
         chrf=chrf.score / 100,
-        directions=_mean(
-            [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
-        )
-        or 0.0,
-        landmarks=_ratio(sum(k for k, _ in landmark_counts), sum(n for _, n in landmark_counts)),
-        faithful=1 - sum(problems) / len(problems),
-        removed=_mean(removed),
-        changed=_mean(clean),
+        directions=_mean(directions),
+        landmarks=kept / landmarks if landmarks else None,
+        faithful=1 - _mean(problems),
+        removed=_mean(removed) if removed else None,
+        changed=_mean(clean) if clean else None,
     )
 
 
 def by_family(repairs: Sequence[Repair]) -> dict[str, Scores]:
-    """Return the scores by family.
-
-    Families are in order of appearance. The key "all" holds the scores of all repairs.
-    """
+    """Return the scores by family, in order of appearance, and of all repairs as "all"."""
     groups: dict[str, list[Repair]] = defaultdict(list)
     for repair in repairs:
         groups[repair.family].append(repair)
@@ -132,10 +107,7 @@ def _landmarks_kept(repair: Repair) -> tuple[int, int]:
 
 
 def pairs(text: str) -> list[tuple[str, str]]:
-    """Return the pairs of adjacent words.
-
-    For a text of one word, return the single pair (word, "").
-    """
+    """Return the pairs of adjacent words; a text of one word has the pair (word, "")."""
     tokens = words_of(text)
     return list(zip(tokens, tokens[1:], strict=False)) or [(word, "") for word in tokens]
 
@@ -146,9 +118,5 @@ def left(words: str, text: str) -> float:
     return sum(pair in here for pair in expected) / max(1, len(expected))
 
 
-def _mean(values: Sequence[float | bool]) -> float | None:
-    return _ratio(float(sum(values)), len(values))
-
-
-def _ratio(part: float, whole: int) -> float | None:
-    return part / whole if whole else None
+def _mean(values: Sequence[float]) -> float:
+    return float(sum(values)) / len(values)

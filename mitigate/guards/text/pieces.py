@@ -29,8 +29,7 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# These words begin a sentence.
-# If one has a capital letter without a full stop before it, an attack may begin or end there.
+# Where one of these words has a capital letter without a full stop before it, an attack may begin.
 # "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
@@ -65,10 +64,7 @@ MIN_WORDS = 2
 
 @dataclass(frozen=True)
 class Piece:
-    """A span of a text, from ``start`` to ``end``.
-
-    ``block`` states whether it is a block between delimiters.
-    """
+    """A span of a text; ``block`` states whether it is between delimiters."""
 
     start: int
     end: int
@@ -90,10 +86,7 @@ def sentence_pieces(text: str) -> list[Piece]:
 
 
 def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
-    """Return the clauses of a sentence.
-
-    If possible, a clause of a single word is joined to a neighbouring clause.
-    """
+    """Return the clauses of a sentence; a single word is joined to a neighbour if possible."""
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
@@ -136,7 +129,7 @@ def _sentence_cuts(part: str) -> list[tuple[int, int]]:
         # only the last characters are searched; a search from the start would take quadratic time
         if not _ABBREVIATION.search(part[: match.start()].rstrip()[-ABBREVIATED:])
     ]
-    return cuts + [m.span() for m in _RUN_ON.finditer(part)]
+    return cuts + [match.span() for match in _RUN_ON.finditer(part)]
 
 
 def _clause_cuts(part: str) -> list[tuple[int, int]]:
@@ -144,11 +137,7 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _seams(part: str) -> list[tuple[int, int]]:
-    """Return the positions inside a sentence where an attack may begin or end without a full stop.
-
-    Such a position is before a capitalised word, before an interjection such as "um", or at the
-    start or end of a sequence of words in capitals.
-    """
+    """Return positions before capitalised words and interjections, and around words in capitals."""
     cuts = []
     words = list(re.finditer(r"\S+", part))
     caps = [len(word.group()) > 1 and word.group().isupper() for word in words]
@@ -179,10 +168,9 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return "latin" if at least half of the letters are Latin, otherwise "other".
+    """Return "latin" if at least half of the letters are Latin, "" without letters, or "other".
 
-    Fullwidth letters and those of mathematical alphabets count as Latin. For a text without
-    letters, return "".
+    Fullwidth letters and those of mathematical alphabets count as Latin.
     """
     letters = LETTERS.findall(unicodedata.normalize("NFKC", text))
     if not letters:

@@ -18,6 +18,7 @@ from mitigate.core.chat import ENVELOPE
 from mitigate.evaluation import evaluate
 from mitigate.guards.text.guard import Safeguard, open_safeguard
 from mitigate.guards.text.language_models.endpoint import ChatEndpoint
+from mitigate.guards.text.language_models.prompts import PROMPTS
 
 
 class Server(ThreadingHTTPServer):
@@ -148,12 +149,13 @@ def test_endpoint_survives_a_missing_server():
     assert ChatEndpoint("http://127.0.0.1:9/v1", "m", retries=0).rewrite(["a"]) == [None]
 
 
-def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path):
+def test_cache_keeps_answers_by_text_model_and_prompt(server, tmp_path, monkeypatch):
     server.replies = [(200, answer("One."), 0), (200, answer("Two."), 0)]
     cache = tmp_path / "answers.sqlite"
     assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."]
     assert endpoint(server, cache=cache).rewrite(["a"]) == ["One."] and len(server.requests) == 1
-    assert endpoint(server, cache=cache, prompt="tuned").rewrite(["a"]) == ["Two."]
+    monkeypatch.setitem(PROMPTS, "prompted", "Rewrite.")
+    assert endpoint(server, cache=cache).rewrite(["a"]) == ["Two."]
     assert "secret" not in cache.read_bytes().decode(errors="replace")
 
 

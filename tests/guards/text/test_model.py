@@ -13,8 +13,12 @@ import pytest
 import torch
 
 from mitigate.core import checkpoint, folders
-from mitigate.guards.text.language_models.model import LanguageModel, open_adapter
-from mitigate.guards.text.language_models.tokens import collate, encode_pair
+from mitigate.guards.text.language_models.model import (
+    LanguageModel,
+    collate,
+    encode_pair,
+    open_adapter,
+)
 from mitigate.guards.text.learning.data import Pair
 from mitigate.recipes.safeguard_lora import SafeguardLora
 from mitigate.training import states
@@ -97,7 +101,7 @@ def test_loss_counts_only_completion_and_end_mark(model):
 def test_adapter_reloads_to_the_same_answers(model, tmp_path):
     recipe = train(model, tmp_path / "run", 3)
     model.save(tmp_path / "adapter")
-    again = open_adapter(tmp_path / "adapter", "fp32")
+    again = open_adapter(tmp_path / "adapter")
     part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
         first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]
@@ -326,7 +330,8 @@ def test_model_trains_and_reloads_in_eight_bits(tiny_base, tmp_path):
     model = LanguageModel(tiny_base, "int8", LORA)
     recipe = train(model, tmp_path / "run", 2)
     model.save(tmp_path / "adapter")
-    again = open_adapter(tmp_path / "adapter", "int8")
+    again = LanguageModel(tiny_base, "int8", LORA)
+    again.load(tmp_path / "adapter")
     part = recipe.micro_batches(recipe.batch(9))[0]
     with torch.no_grad():
         first, second = recipe(part)["loss"], SafeguardLora(again)(part)["loss"]

@@ -13,7 +13,6 @@ from torch import Tensor
 from mitigate.core import folders
 from mitigate.core.checkpoint import load_tensors
 from mitigate.core.files import write_json
-from mitigate.core.json_files import read_json
 from mitigate.guards.text.choices import ADAPTER_CONFIG, ADAPTER_WEIGHTS
 
 CARD, CONFIG, ADAPTER = "card.json", ADAPTER_CONFIG, ADAPTER_WEIGHTS
@@ -35,10 +34,7 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safe
 def write_adapter(
     folder: str | Path, network: Any, tensors: dict[str, Tensor], card: dict[str, Any]
 ) -> None:
-    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``.
-
-    All files are replaced together, and a manifest lists them.
-    """
+    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``."""
     with folders.write_folder(folder, "safeguard") as draft:
         network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
         for file in draft.iterdir():
@@ -48,10 +44,9 @@ def write_adapter(
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card of an adapter folder, and the PEFT config.
+    """Return the card of an adapter folder, and the PEFT config, with checked ``ENTRIES``.
 
-    Only the entries listed in ``ENTRIES`` are checked. Raises FileNotFoundError for a missing file,
-    and ValueError for a damaged one.
+    Raises FileNotFoundError for a missing file, and ValueError for a damaged one.
     """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
@@ -91,16 +86,10 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
 
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
-    """Return the JSON object in ``file``.
-
-    ``kinds`` maps the names of its required entries to their allowed types.
-    """
-    damage = folders.problem(file)
-    if damage:
-        raise ValueError(f"{file} is truncated or damaged: it {damage}. {_AGAIN}")
-    config = read_json(file, _AGAIN)
+    """Return the JSON object in ``file``; ``kinds`` are the allowed types of required entries."""
+    config = folders.read_checked(file, _AGAIN)
     for name, kind in kinds.items():
-        value = config.get(name) if isinstance(config, dict) else None
+        value = config.get(name)
         if type(value) not in kind:
             allowed = " or ".join(k.__name__ for k in kind)
             raise ValueError(f"{file}: {name} must be {allowed}, not {value!r:.80}. {_AGAIN}")

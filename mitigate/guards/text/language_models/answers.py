@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sqlite3
+from contextlib import suppress
 from pathlib import Path
 
 from mitigate.core.files import make_folder
@@ -19,8 +20,8 @@ _OTHER = "Name another file, or delete this one."
 class AnswerCache:
     """Store texts by name.
 
-    The constructor raises an error for a file that is not a cache. If the file is damaged later, or
-    another process writes slowly, no error is raised. The only effect is one more request.
+    If the file is damaged later, or another process writes slowly, the only effect is one more
+    request.
 
     Raises:
         ValueError: If the file is not a cache of this kind.
@@ -60,7 +61,7 @@ class AnswerCache:
         return self._opened[os.getpid()]
 
     def get(self, name: str) -> str | None:
-        """Return the text that is stored under ``name``, or None if it is missing or invalid."""
+        """Return the text under ``name``, or None if it is missing or invalid."""
         try:
             row = self._file.execute(
                 "SELECT answer FROM answers WHERE name = ? AND typeof(answer) = 'text' "
@@ -75,11 +76,8 @@ class AnswerCache:
         """Store ``answer``, unless it is too long for ``get`` or the file cannot be written."""
         if len(answer) > LONGEST:
             return
-        try:
-            with self._file:
-                self._file.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
-        except (sqlite3.Error, UnicodeEncodeError):
-            pass
+        with suppress(sqlite3.Error, UnicodeEncodeError), self._file as file:
+            file.execute("INSERT OR REPLACE INTO answers VALUES (?, ?)", (name, answer))
 
 
 _OURS = (("table", "answers"), ("index", "sqlite_autoindex_answers_1"))

@@ -1,7 +1,4 @@
-"""Find and load the safeguard's language model from a package, a folder or the hub.
-
-The message of each error states the cause and a command that fixes it.
-"""
+"""Find and load the safeguard's language model from a package, a folder or the hub."""
 
 from __future__ import annotations
 
@@ -73,9 +70,6 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
 
 
 def base_sha256(base: str) -> str:
-    """Return the sha256 of the weight files of ``base``, sorted by file name.
-
-    For a hub id, the sha256 of the id is returned.
-    """
+    """Return the hash of the weight files of ``base`` (:func:`files_sha256`)."""
     place, options = _source(base)
     return files_sha256(place, options.get("gguf_file", "*.safetensors"))

@@ -1,7 +1,4 @@
-"""Rewrite texts with a chat model behind an OpenAI-compatible endpoint.
-
-The answers can be cached on disk.
-"""
+"""Rewrite texts with a chat model behind an OpenAI-compatible endpoint."""
 
 from __future__ import annotations
 
@@ -18,20 +15,17 @@ from mitigate.guards.text import gate
 from mitigate.guards.text.language_models.answers import AnswerCache
 from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
 
+PROMPT = "prompted"  # name of the prompt that precedes the text
+
 
 class ChatEndpoint(ChatClient):
     """Rewrites texts by asking a chat model over HTTP.
 
     Args:
-        url: address without ``/chat/completions``, such as ``http://localhost:8000/v1``.
+        url: see :class:`ChatClient`, which also describes errors.
         model: name of the model at the endpoint.
-        prompt: the prompt that precedes the text, by its name in ``PROMPTS``.
-        cache: SQLite file that stores the answer for each text, model and prompt, or None for no
-            cache.
-        request: remaining arguments of :class:`ChatClient`.
-
-    Raises:
-        ValueError: If the URL is invalid, or it contains a password or a key.
+        cache: SQLite file that stores the answer for each text, model and prompt, or None.
+        request: other arguments of :class:`ChatClient`.
     """
 
     def __init__(
@@ -39,38 +33,32 @@ class ChatEndpoint(ChatClient):
         url: str,
         model: str,
         *,
-        prompt: str = "prompted",
         cache: str | Path | None = None,
         **request: Any,
     ) -> None:
         super().__init__(url, model, **request)
-        self.prompt = prompt
         self.failures: list[str] = []
         self._cache = None if cache is None else AnswerCache(Path(cache))
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the model's answer to each text.
+        """Return the answer to each text, or None if no usable answer arrived within ``seconds``.
 
-        An answer is None if no usable answer arrived within ``seconds``. The attribute ``failures``
-        lists the reasons.
+        The attribute ``failures`` lists the reasons.
         """
         ends = None if seconds is None else time.monotonic() + seconds
         progress = tqdm(texts, desc=self.model, disable=None if len(texts) > 8 else True)
         return [self._answer(text, ends) for text in progress]
 
     def _answer(self, text: str, ends: float | None) -> str | None:
-        prompt = PROMPTS[self.prompt]
-        name = f"{digest(self.url, self.model, prompt, repr(self.options), text):032x}"
+        name = f"{digest(self.url, self.model, PROMPTS[PROMPT], repr(self.options), text):032x}"
         answer = None if self._cache is None else self._cache.get(name)
-        if answer is None:
-            answer = self._ask(text, ends)
-            if self._cache is not None and answer is not None:
-                self._cache.put(name, answer)
-        return answer
-
-    def _ask(self, text: str, ends: float | None) -> str | None:
+        if answer is not None:
+            return answer
         try:
-            return self.ask(prompt_messages(text, self.prompt), gate.longest(text), ends)
+            answer = self.ask(prompt_messages(text, PROMPT), gate.longest(text), ends)
         except NoAnswer as error:
             self.failures.append(str(error))
             return None
+        if self._cache is not None:
+            self._cache.put(name, answer)
+        return answer

@@ -12,7 +12,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager, nullcontext
 from itertools import takewhile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import torch
 from torch import Tensor, nn
@@ -25,8 +25,10 @@ from mitigate.guards.text.language_models.adapter_folder import (
     write_adapter,
 )
 from mitigate.guards.text.language_models.base import PRECISIONS, SMOLLM2, base_sha256, load_base
-from mitigate.guards.text.language_models.prompts import PROMPTS
-from mitigate.guards.text.language_models.tokens import collate, encode
+from mitigate.guards.text.language_models.prompts import PROMPTS, prompt_messages
+
+if TYPE_CHECKING:
+    from mitigate.guards.text.learning.data import Pair
 
 # tokens that begin a turn in ChatML (SmolLM2) and in Llama 3
 TURNS = ("<|im_start|>", "<|start_header_id|>")
@@ -99,11 +101,10 @@ class LanguageModel(nn.Module):
         return loss, (chosen.argmax(-1) == labels).sum()
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]:
-        """Return the model's greedy rewrite of each text.
+        """Return the model's greedy rewrite of each text; ``seconds`` is the limit for all texts.
 
-        ``seconds`` is the time limit for all texts together. The result for a text is None if its
-        rewrite is not finished in time, if its prompt has more than ``LONGEST`` tokens, or if the
-        answer is cut off at the maximum number of tokens.
+        The result is None if the rewrite is not finished in time, if the prompt has more than
+        ``LONGEST`` tokens, or if the answer is cut off at the maximum number of tokens.
         """
         began = time.monotonic()
         prompts = [self.encode(text) for text in texts]
@@ -128,14 +129,12 @@ class LanguageModel(nn.Module):
 
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
-        """Yield the model in its state before fine-tuning.
-
-        The adapter is disabled, and the explanatory prompt is used.
-        """
-        tuned, self.prompt = self.prompt, "prompted"
+        """Yield the model without its adapter, and with the explanatory prompt."""
         from peft import PeftModel
 
         network = self.network
+        tuned = self.prompt
+        self.prompt = "prompted"
         try:
             with network.disable_adapter() if isinstance(network, PeftModel) else nullcontext():
                 yield self
@@ -185,10 +184,9 @@ class LanguageModel(nn.Module):
         return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
-        """Write the adapter in PEFT's folder format, with a card that names the base.
+        """Write the adapter in PEFT's folder format; ``half`` rounds to float16.
 
-        ``half`` rounds to float16. Files appear either completely or not at all. Raises ValueError
-        if there is no adapter.
+        Raises ValueError if there is no adapter.
         """
         from peft import PeftModel, get_peft_model_state_dict
 
@@ -228,34 +226,62 @@ class LanguageModel(nn.Module):
             raise ValueError(_misfit(folder, "other modules carry LoRA"))
 
 
-def open_adapter(folder: str | Path, precision: str = "fp32") -> LanguageModel:
-    """Build the language model that an adapter folder describes in its card and config.
+def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
+    """Return the token ids of the chat that asks the model to rewrite ``text``."""
+    ids = tokenizer.apply_chat_template(
+        prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
+    )
+    return list(ids)
 
-    In "fp32", the adapter is merged into the base weights. Merging makes the model faster and
-    changes no answer. In "int8", the adapter is never merged.
+
+def encode_pair(tokenizer: Any, prompt: str, pair: Pair) -> tuple[list[int], list[int]]:
+    """Return the token ids of the prompt and of the completion, which includes an end token."""
+    answer = tokenizer(pair.target, add_special_tokens=False)["input_ids"]
+    return encode(tokenizer, prompt, pair.source), [*answer, tokenizer.eos_token_id]
+
+
+def collate(pairs: Sequence[tuple[list[int], list[int]]], pad: int) -> dict[str, Tensor]:
+    """Combine pairs (prompt, completion) into a batch that is padded on the left.
+
+    Returns ``input_ids``, ``attention_mask`` and ``position_ids``, int64 [B, T], and
+    ``completion``, bool [B, C]. ``completion`` marks which of the last C tokens belong to the
+    completion. The mask is computed from positions, because the pad token may equal the end token.
+    """
+    rows = [[*prompt, *answer] for prompt, answer in pairs]
+    width, longest = max(map(len, rows)), max(len(answer) for _, answer in pairs)
+    lengths = torch.tensor([len(row) for row in rows])
+    mask = (torch.arange(width) >= width - lengths[:, None]).long()
+    answers = torch.tensor([len(answer) for _, answer in pairs])
+    return {
+        "input_ids": torch.tensor([[pad] * (width - len(row)) + row for row in rows]),
+        "attention_mask": mask,
+        "position_ids": (mask.cumsum(-1) - 1).clamp(min=0),
+        "completion": torch.arange(longest) >= longest - answers[:, None],
+    }
+
+
+def open_adapter(folder: str | Path) -> LanguageModel:
+    """Build the fp32 language model that an adapter folder describes in its card and config.
+
+    The adapter is merged into the base weights, which is faster and changes no answer.
     """
     card, config = read_adapter(folder)
     # check the adapter's files first, because loading the base model is slow
     adapter_tensors(folder, config)
-    names = {
-        "r": "r",
-        "alpha": "lora_alpha",
-        "dropout": "lora_dropout",
-        "targets": "target_modules",
+    lora = {
+        "r": config["r"],
+        "alpha": config["lora_alpha"],
+        "dropout": config["lora_dropout"],
+        "targets": config["target_modules"],
     }
-    lora = {name: config[entry] for name, entry in names.items()}
-    model = LanguageModel(card["base"], precision, lora, card["prompt"])
+    model = LanguageModel(card["base"], "fp32", lora, card["prompt"])
     model.load(folder)
-    if precision == "fp32":
-        model.network.merge_adapter()
+    model.network.merge_adapter()
     return model.eval()
 
 
 def _shared(prompts: Sequence[list[int]]) -> int:
-    """Return the length of the common prefix of all prompts.
-
-    The prefix never contains the last token of a prompt.
-    """
+    """Return the length of the common prefix of all prompts without their last tokens."""
     columns = zip(*(ids[:-1] for ids in prompts), strict=False)
     return sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, columns))
 

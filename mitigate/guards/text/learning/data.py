@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from mitigate.core.files import open_text
-from mitigate.core.seeding import digest, generator
+from mitigate.core.seeding import digest, generator, pick
 from mitigate.corruptions.instruction import corrupt_instruction, prefixes
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.clauses import clauses
@@ -48,11 +48,7 @@ _PHRASES = json.loads(Path(__file__).with_name("attack_phrases.json").read_text(
 
 @dataclass(frozen=True)
 class Pair:
-    """A training pair.
-
-    ``source`` is the text that the model reads. ``target`` is the plain text that it must write.
-    ``kind`` is one of ``KINDS``.
-    """
+    """A text that the model reads, the plain text that it must write, and one of ``KINDS``."""
 
     source: str
     target: str
@@ -60,10 +56,7 @@ class Pair:
 
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
-    """Generate the training pair with this seed and index.
-
-    A fraction ``share`` of all pairs is made from ``texts``, and the others from templates.
-    """
+    """Generate a pair; a fraction ``share`` is made from ``texts``, the others from templates."""
     from_templates = not texts or generator(seed, "own", index).random() >= share
     hand_written = from_templates and spoken.available()
     kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
@@ -71,7 +64,7 @@ def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0
     kind = str(generator(seed, "kind", index).choice(list(kinds), p=parts / parts.sum()))
     for attempt in range(100):
         rng = generator(seed, "pair", index, attempt)
-        clean = draw_route(rng) if from_templates else texts[int(rng.integers(len(texts)))]
+        clean = draw_route(rng) if from_templates else pick(texts, rng)
         pair = _MAKE[kind](clean, Key(seed, f"pair {index} {attempt}"), rng)
         if pair is not None:
             return pair
@@ -136,39 +129,26 @@ _MAKE = {
 
 
 def attacks(rng: np.random.Generator) -> list[str]:
-    """Return one to three attack sentences.
-
-    Each sentence is sampled from the train split of the attacks, or composed by :func:`vary`.
-    """
+    """Return one to three attack sentences, from the train split or composed by :func:`vary`."""
     bank = [sentence for group in prefixes("train").values() for sentence in group]
-    return [
-        bank[int(rng.integers(len(bank)))] if rng.random() < 0.4 else vary(rng)
-        for _ in range(int(rng.integers(1, 4)))
-    ]
+    count = int(rng.integers(1, 4))
+    return [pick(bank, rng) if rng.random() < 0.4 else vary(rng) for _ in range(count)]
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Compose an attack sentence from random phrases, similar to the attacks of the train split."""
-    patterns = _PHRASES["patterns"]
-    pattern, *slots = patterns[int(rng.integers(len(patterns)))]
-    lists = [_PHRASES[slot] for slot in slots]
-    text = pattern.format(*(options[int(rng.integers(len(options)))] for options in lists))
+    """Compose an attack sentence from random phrases."""
+    pattern, *slots = pick(_PHRASES["patterns"], rng)
+    text = pattern.format(*(pick(_PHRASES[slot], rng) for slot in slots))
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")
 
 
 def holds_held_out(source: str, manner: str) -> bool:
-    """Return whether ``source`` contains a phrase that is excluded from training.
-
-    ``manner`` is the style of ``source``.
-    """
+    """Return whether a text in the style ``manner`` contains a phrase of :func:`held_out`."""
     return any(pattern.search(source) for pattern in held_out(manner))
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
-    """Return patterns that match those phrases of a style that are excluded from training.
-
-    Phrases are openers, frames, commands and closers.
-    """
+    """Return patterns of those phrases of a style that are excluded from training."""
     voice = VOICES[manner]
     groups = [voice.openers, voice.closers, *voice.frames.values(), *voice.commands.values()]
     phrases = {p for group in groups for p in group if len(re.sub(r"\{\w*\}", "", p).split()) > 1}
@@ -185,10 +165,9 @@ def _told(clause: Any) -> str:
 
 
 def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
-    """Return pairs of each styled sentence and the index of its plain command.
+    """Return each styled sentence with the index of its command, if any.
 
-    The index is None for a sentence without a command. If the commands cannot be assigned to
-    sentences, the result is None.
+    The result is None if the commands cannot be assigned to sentences.
     """
     pairs: list[tuple[str, int | None]] = []
     at = 0
@@ -232,8 +211,8 @@ def read_texts(files: Iterable[str | Path]) -> list[str]:
 def read_chats(path: str | Path) -> Iterator[Pair]:
     """Yield the pairs of a chat file, one per line.
 
-    A line is ``{"messages": [system, user, assistant]}``; the system message is optional. If a line
-    is invalid, raises a ValueError that names the file, the line and the problem.
+    A line is ``{"messages": [system, user, assistant]}``; the system message is optional. An
+    invalid line raises ValueError.
     """
     with open_text(path) as file:
         for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.seeding import generator
+from mitigate.core.seeding import generator, pick
 from mitigate.corruptions.instruction import corrupt_instruction, prefixes
 from mitigate.corruptions.keying import Key
 from mitigate.corruptions.language.style import MANNERS
@@ -25,25 +25,17 @@ ALIKE = {"lookalikes": 2.0, "fresh_lookalikes": 2.0, "near_misses": 2.0, "odd_ro
 
 @dataclass(frozen=True)
 class Line:
-    """A training text that is either entirely an attack or entirely benign.
+    """A training text that is either entirely an attack or entirely benign."""
 
-    ``group`` names the mechanism, the style or the source of the text. Texts of one group resemble
-    each other. ``styled`` states whether a benign text is in an unusual style, or is None if this
-    is unknown. If an attack surrounds the route, its text contains the placeholder "{route}".
-    """
-
-    text: str
+    text: str  # with the placeholder "{route}" if an attack surrounds the route
     attack: bool
-    group: str
+    group: str  # mechanism, style or source; texts of one group resemble each other
     weight: float = 1.0
-    styled: bool | None = None
+    styled: bool | None = None  # whether a benign text is in an unusual style, if this is known
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
-    """Return all training texts.
-
-    Raises FileNotFoundError outside a checkout of the repository.
-    """
+    """Return all training texts; raise FileNotFoundError outside a checkout."""
     banks = folder / "banks"
     if not banks.is_dir():
         raise FileNotFoundError(
@@ -80,8 +72,8 @@ def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
     for i in range(routes):
         group = f"generated {i // BLOCK}"
         text = draw_route(generator(0, "fit", i))
-        lines.append(Line(text, False, group, 0.5))
         styled = draw_styled(generator(0, "styled", i))
+        lines.append(Line(text, False, group, 0.5))
         lines.append(Line(styled, False, group, 0.7, styled=True))
         if i % 3 == 0:
             manner, key = MANNERS[i // 3 % len(MANNERS)], Key(0, f"fit {i}")
@@ -98,11 +90,7 @@ def read_frames(folder: Path) -> tuple[list[str], list[str]]:
 
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
-    """Yield the objects in a JSON-lines file.
-
-    Raises ValueError if a line is not a JSON object, or if the value of one of ``keys`` is not
-    text.
-    """
+    """Yield the objects in a JSON-lines file; the values of ``keys`` must be text."""
     with open(file, encoding="utf-8") as opened:
         for number, line in enumerate(opened, 1):
             if not line.strip():
@@ -126,10 +114,7 @@ def _text(file: Path) -> list[str]:
 
 
 def varied(lines: Sequence[Line]) -> list[Line]:
-    """Return all texts, and additional changed copies of some texts.
-
-    The copies imitate careless writing, such as missing capitals, or hide the words of an attack.
-    """
+    """Return all texts, and copies of some in careless writing or with hidden attack words."""
     results = list(lines)
     for number, line in enumerate(lines):
         rng = generator(0, "varied", number)
@@ -141,7 +126,7 @@ def varied(lines: Sequence[Line]) -> list[Line]:
         elif draw < 0.30:
             text = text.rstrip(".!")
         elif draw < 0.36 and line.attack and "{route}" not in text:
-            text = HIDE[int(rng.integers(len(HIDE)))](text)
+            text = pick(HIDE, rng)(text)
         # benign text may also have digits instead of letters, for example if it was scanned
         elif draw < 0.38 and not line.attack:
             text = _leet(text, "o")

@@ -1,29 +1,33 @@
 """Generate clean training instructions that describe a route through a building in many ways.
 
-All phrases were written for this project. No instruction contains a phrase of the apartments'
-validation templates. So a safeguard that is trained on these instructions has never seen the
-phrases on which it is evaluated.
+``route_words.json`` lists words and phrases, which were written for this project. In a template,
+{a} and {aa} stand for different objects. Other fields are {room}, {door}, {stairs}, {place}, {look}
+(an adjective), {side} (left or right), {n} (a number) and {ordinal}.
+
+No instruction contains a phrase of the apartments' validation templates, on which a safeguard is
+evaluated.
 """
 
 from __future__ import annotations
 
+import json
 import re
 from functools import lru_cache
+from pathlib import Path
 
 import numpy as np
 
-from mitigate.guards.text.learning.route_words import WORDS
+from mitigate.core.seeding import pick
 from mitigate.worlds.apartments.instructions import TEMPLATES
 
+_FILE = Path(__file__).with_name("route_words.json")
+WORDS: dict[str, list[str]] = json.loads(_FILE.read_text(encoding="utf-8"))
 JOINS = (". ", ". ", ". ", ", ", " and ", " then ", ", then ", " and then ", ". Then ", ", and ")
 LONGEST = 7  # maximum number of clauses, without asides (heuristic)
 
 
 def draw_route(rng: np.random.Generator) -> str:
-    """Generate one instruction of at most ``LONGEST`` clauses.
-
-    Some instructions are verbose or carelessly written.
-    """
+    """Generate one instruction; some are verbose or carelessly written."""
     while True:
         text = _careless(_joined(_clauses(rng), rng), rng)
         if not overlaps_validation(text):
@@ -65,9 +69,9 @@ def _fill(template: str, rng: np.random.Generator) -> str:
     text = template.format(
         a=thing.removeprefix("set of ") if "{look} {a}" in template else thing,
         aa=other, room=_word("rooms", rng), aroom=_word("rooms", rng), door=_word("doors", rng),
-        stairs=_word("stairs", rng), side=_pick(("left", "right"), rng), look=_word("looks", rng),
-        n=_pick(("two", "three", "four", "five", "2", "3"), rng),
-        ordinal=_pick(("first", "second", "third", "next", "last"), rng),
+        stairs=_word("stairs", rng), side=pick(("left", "right"), rng), look=_word("looks", rng),
+        n=pick(("two", "three", "four", "five", "2", "3"), rng),
+        ordinal=pick(("first", "second", "third", "next", "last"), rng),
     )  # fmt: skip
     return re.sub(r"\ba (?=[aeiou])", "an ", text)
 
@@ -79,11 +83,11 @@ def _thing(rng: np.random.Generator) -> str:
 
 def _joined(clauses: list[str], rng: np.random.Generator) -> str:
     # a writer uses only one or two ways to join clauses
-    few = [_pick(JOINS, rng) for _ in range(2)]
+    few = [pick(JOINS, rng) for _ in range(2)]
     text = clauses[0]
     for clause in clauses[1:]:
         aside = clause.startswith(("you ", "the ", "there ", "on the ", "it is "))
-        text += ". " + clause if aside else _pick(few, rng) + clause
+        text += ". " + clause if aside else pick(few, rng) + clause
     return ". ".join(part[0].upper() + part[1:] for part in text.split(". ")) + "."
 
 
@@ -100,8 +104,4 @@ def _careless(text: str, rng: np.random.Generator) -> str:
 
 
 def _word(kind: str, rng: np.random.Generator) -> str:
-    return _pick(WORDS[kind], rng)
-
-
-def _pick(options, rng: np.random.Generator) -> str:
-    return options[int(rng.integers(len(options)))]
+    return pick(WORDS[kind], rng)

@@ -1,7 +1,4 @@
-"""Insert attacks into benign texts.
-
-The resulting texts train the network that finds the span of an attack.
-"""
+"""Insert attacks into benign texts, to train the network that finds the span of an attack."""
 
 from __future__ import annotations
 
@@ -12,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from mitigate.core.seeding import generator
+from mitigate.core.seeding import generator, pick
 from mitigate.guards.text.decode import visible
 from mitigate.guards.text.learning.lines import Line
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
@@ -45,9 +42,7 @@ def fold_of(line: Line) -> int:
 def splices(
     lines: Sequence[Line], frames: tuple[list[str], list[str]], count: int = SPLICES
 ) -> Iterator[Splice]:
-    """Yield training texts.
-
-    An attack is inserted only into a benign text of the same fold.
+    """Yield texts in which an attack is inserted only into a benign text of the same fold.
 
     ``frames`` contains sentences to put before an attack, and sentences to put after it.
     """
@@ -68,11 +63,7 @@ def splices(
 
 
 class _Source:
-    """The lines of one fold.
-
-    Usually a group is sampled first and then a line of this group, so that large groups do not
-    dominate.
-    """
+    """The lines of one fold."""
 
     def __init__(self, lines: Sequence[Line]) -> None:
         self.attacks = [line for line in lines if line.attack]
@@ -99,11 +90,7 @@ class _Source:
         return self._line(self.odd if rng.random() < 0.6 else self.hosts, rng).text
 
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
-        """Sample an attack.
-
-        To imitate longer attacks, some attacks are joined with a second attack. Some also get a
-        sentence before or after them.
-        """
+        """Sample an attack; some are joined with a second attack, or get sentences around them."""
         line = self._line(self.attacks, rng)
         attack = line.text
         if "{route}" in attack:
@@ -111,31 +98,28 @@ class _Source:
         draw = rng.random()
         separator = "\n" if rng.random() < 0.25 else " "
         if draw < 0.22:
-            other = _one(self.groups[id(self.attacks)][line.group], rng).text
+            other = pick(self.groups[id(self.attacks)][line.group], rng).text
             if "{route}" not in other:
                 attack = f"{attack}{separator}{other}"
         elif draw < 0.34:
-            attack = f"{attack}{separator}{_one(self.short, rng)}"
+            attack = f"{attack}{separator}{pick(self.short, rng)}"
         elif draw < 0.42:
-            attack = f"{_one(self.short, rng)}{separator}{attack}"
-        before, after = (_one(frame, rng) for frame in frames)
+            attack = f"{pick(self.short, rng)}{separator}{attack}"
+        before, after = (pick(frame, rng) for frame in frames)
         draw = rng.random()
         if draw < 0.2:
             attack = f"{before} {attack}"
         return f"{attack} {after}" if 0.15 < draw < 0.3 else attack
 
     def _line(self, lines: list[Line], rng: np.random.Generator) -> Line:
-        if rng.random() < 0.7:
+        if rng.random() < 0.7:  # sample the group first, so that large groups do not dominate
             groups = list(self.groups[id(lines)].values())
-            return _one(_one(groups, rng), rng)
-        return _one(lines, rng)
+            return pick(pick(groups, rng), rng)
+        return pick(lines, rng)
 
 
 def _by_group(lines: Sequence[Line]) -> dict[str, list[Line]]:
-    """Return the lines by group.
-
-    Groups of benign texts whose names differ only in their number are merged.
-    """
+    """Return the lines by group; benign groups that differ only in their number are merged."""
     groups: dict[str, list[Line]] = defaultdict(list)
     for line in lines:
         groups[line.group if line.attack else line.group.split(" ")[0]].append(line)
@@ -152,12 +136,9 @@ def _careless(text: str, rng: np.random.Generator) -> str:
 
 
 def _joined(attack: str, route: str, rng: np.random.Generator) -> tuple[str, list[tuple[int, int]]]:
-    """Join an attack to a route, and return the text and the spans of the attack.
-
-    The attack can be before, after or inside the route, or surround it.
-    """
+    """Put an attack before, after, into or around a route; return the text and its spans."""
     attack, route = _careless(attack.strip(), rng), _careless(route.strip(), rng)
-    separator = " " if rng.random() < 0.9 else _one(SEPARATORS, rng)
+    separator = " " if rng.random() < 0.9 else pick(SEPARATORS, rng)
     first, around, last = attack.partition("{route}")
     if around:
         text = f"{first.strip()} {route} {last.strip()}".strip()
@@ -170,14 +151,10 @@ def _joined(attack: str, route: str, rng: np.random.Generator) -> tuple[str, lis
         text = f"{route}{separator}{attack}"
         return text, [(len(text) - len(attack), len(text))]
     pieces = [p for s in sentence_pieces(route) for p in clause_pieces(route, s)]
-    at = pieces[int(rng.integers(len(pieces)))].start
+    at = pick(pieces, rng).start
     before, behind = route[:at].rstrip(), " "
     if before and 1 < len(attack.split()) < CLAUSE and rng.random() < 0.6:
-        attack = f"{_one(JOINS, rng)}{attack[0].lower()}{attack[1:].rstrip('.!')},"
-        before, behind = f"{before.rstrip(',;.!')},", _one((" and then ", " then ", " "), rng)
+        attack = f"{pick(JOINS, rng)}{attack[0].lower()}{attack[1:].rstrip('.!')},"
+        before, behind = f"{before.rstrip(',;.!')},", pick((" and then ", " then ", " "), rng)
     start = f"{before} ".lstrip()
     return f"{start}{attack}{behind}{route[at:]}", [(len(start), len(start) + len(attack))]
-
-
-def _one(options, rng: np.random.Generator):
-    return options[int(rng.integers(len(options)))]

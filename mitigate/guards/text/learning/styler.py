@@ -14,12 +14,11 @@ from functools import lru_cache
 import numpy as np
 
 from mitigate.core.files import find
-from mitigate.guards.text.learning.route_words import WORDS
+from mitigate.core.seeding import pick
+from mitigate.guards.text.learning.routes import WORDS
 
 FILE = "tools/safeguard/data/styler.json"
-_THIRD = frozenset(
-    {"he", "she", "it", "the robot", "our hero", "the unit", "one", "the machine", "ROBOT"}
-)
+_THIRD = ("he", "she", "it", "the robot", "our hero", "the unit", "one", "the machine", "ROBOT")
 
 
 @lru_cache(maxsize=1)
@@ -32,7 +31,7 @@ def draw_styled(rng: np.random.Generator) -> str:
     lists = _words()
 
     def one(options: Sequence[str]) -> str:
-        return options[int(rng.integers(len(options)))]
+        return pick(options, rng)
 
     article = one(("the", "the", "the", "that", "a", "this", "yon", "your", "", "them", "the wee"))
     subject, subjects = one(lists["subjects"]), rng.random()
