@@ -148,7 +148,10 @@ def check_for_file(corruption: str) -> None:
 
 
 def _check_target(source: Path, out: Path) -> None:
-    """Raise ValueError if ``out`` exists, unless :func:`run` wrote it and it is unchanged."""
+    """Raise ValueError if :func:`run` must not write to ``out``.
+
+    An existing file may be replaced only if :func:`run` wrote it and it has not changed since.
+    """
     fix = "Give another name, or move the file away first."
     summary = Path(f"{out}{SUMMARY}")
     if source.resolve() in (out.resolve(), summary.resolve()):
@@ -208,7 +211,10 @@ def _changed(
 def _tokens(
     text: str, old: Sequence[int] | None, words: Tokenizer | None, counts: Counter
 ) -> tuple[int, ...] | None:
-    """Return the tokens of ``text``, padded or cut to the old length, or None without ``words``."""
+    """Return the tokens of ``text``, padded or cut to the old length.
+
+    Return None if ``words`` is None.
+    """
     if words is None:
         counts["removed"] += old is not None
         return None

@@ -51,7 +51,10 @@ class Record:
         raise ValueError(f"{self.path}: {self.where} {problem}. {NEEDED}")
 
     def get(self, key: str, kinds: type | tuple[type, ...], default: Any = ...) -> Any:
-        """Return a value of one of the types ``kinds``. It is required if there is no default."""
+        """Return the value of ``key``, which must have one of the types ``kinds``.
+
+        A ``default`` of ``...`` means that the key is required.
+        """
         value = self.raw.get(key)
         if value is None:
             if default is ...:
@@ -62,18 +65,18 @@ class Record:
         return value
 
     def metres(self, key: str) -> float | None:
-        """Return a number >= 0, or None if the key is absent."""
+        """Return the value of ``key``, a number of metres >= 0, or None if it is absent."""
         value = self.get(key, (int, float), None)
         if value is not None and not (_finite(value) and value >= 0):
             self.fail(f"has an invalid {key!r}: it must be metres >= 0, got {short(value)}")
         return value
 
     def vector(self, key: str, size: int) -> Vector:
-        """Return a list of ``size`` finite numbers."""
+        """Return the value of ``key``, which must be a list of ``size`` finite numbers."""
         return self._vector(key, self.get(key, list), size)
 
     def rotation(self, key: str) -> Vector:
-        """Return a unit quaternion (x, y, z, w) about the vertical y axis."""
+        """Return the value of ``key``: a unit quaternion (x, y, z, w) about the vertical y axis."""
         quaternion = self.vector(key, 4)
         x, _, z, _ = quaternion
         length_error = abs(math.hypot(*quaternion) - 1)
@@ -85,16 +88,16 @@ class Record:
         return quaternion
 
     def vectors(self, key: str, size: int) -> tuple[Vector, ...]:
-        """Return a non-empty list of vectors."""
+        """Return the value of ``key``, which must be a non-empty list of vectors."""
         return tuple(self._vector(key, value, size) for value in self._items(key))
 
     def records(self, key: str) -> list[Record]:
-        """Return a non-empty list of objects."""
+        """Return the value of ``key``, which must be a non-empty list of objects."""
         items = enumerate(self._items(key))
         return [Record(item, self.path, f"{self.where}, {key}[{i}],") for i, item in items]
 
     def rest(self, *known: str) -> dict[str, Any]:
-        """Return all entries except those of the keys ``known``."""
+        """Return all entries except those whose keys are in ``known``."""
         return {key: value for key, value in self.raw.items() if key not in known}
 
     def _items(self, key: str) -> list[Any]:
@@ -112,7 +115,8 @@ class Record:
 
 
 def _finite(value: Any) -> bool:
-    """Return whether a value is a number of at most ``MAX_METRES``. NaN is rejected."""
+    """Return whether a value is a number with an absolute value of at most ``MAX_METRES``."""
+    # the comparison is false for NaN
     return isinstance(value, (int, float)) and abs(value) <= MAX_METRES
 
 
@@ -260,12 +264,19 @@ def read_episodes(path: Path | str, *, hidden_goals: bool = False) -> Iterator[E
 
 
 def share_of(items: Any, piece: int, pieces: int) -> Any:
-    """Return the share of worker ``piece`` of ``pieces``: every ``pieces``-th item."""
+    """Return every n-th item of a list or range, starting at the index of a worker.
+
+    This divides items such as scenes among n workers. ``piece`` is the index of the worker, and
+    ``pieces`` is the number of workers, n.
+    """
     return items[piece % len(items) :: pieces]
 
 
 def is_seed(value: Any) -> bool:
-    """Return whether ``value`` is an integer from 0 to 2**31 - 1."""
+    """Return whether ``value`` is a valid seed of an environment.
+
+    Valid seeds are integers from 0 to 2**31 - 1.
+    """
     return type(value) is int and 0 <= value < 1 << 31
 
 
@@ -298,7 +309,10 @@ def read_extras(path: Path | str) -> dict[str, Any]:
 
 
 def _members(path: Path | str) -> Iterator[tuple[str, Any]]:
-    """Yield the keys and values of an episode file. Reject files of the discrete R2R task."""
+    """Yield the keys and values of an episode file.
+
+    Raise ValueError with advice if the file belongs to the discrete R2R task.
+    """
     try:
         yield from json_members(path, "episodes")
     except JsonListError as error:
@@ -425,7 +439,10 @@ def _instruction_json(instruction: Instruction) -> dict[str, Any]:
 
 
 def _identifier(episode: Episode, key: str) -> int | str:
-    """Return an id with the JSON type that it had in the file, or as a string if it is new."""
+    """Return an id with the JSON type that it had in the file.
+
+    If the id of the episode was changed after the file was read, return the new id as a string.
+    """
     text = str(vars(episode)[key])
     original = episode.extra.get(key)
     return original if isinstance(original, int) and str(original) == text else text

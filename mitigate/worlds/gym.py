@@ -43,7 +43,10 @@ class GymWorld(SeededWorld):
 
 
 def _by_name(observation: Any) -> dict[str, Any]:
-    """Return the parts of an observation or space by dotted name, or itself as ``WHOLE``."""
+    """Return a dict from dotted names to the parts of an observation or space.
+
+    If it has no parts, the only name is ``WHOLE``.
+    """
     # spaces of gymnasium, gym and similar libraries share attribute names but no base class
     parts = getattr(observation, "spaces", observation)
     if not isinstance(parts, Mapping):

@@ -100,7 +100,12 @@ def is_camera(entry: str) -> bool:
 
 
 def check_cameras(entries: Iterable[str], names: Iterable[str]) -> None:
-    """Raise ValueError if one of the corruptions ``names`` changes a modality without a camera."""
+    """Raise ValueError if a corruption changes a modality that no camera has.
+
+    Args:
+        entries: Names of the entries of an observation.
+        names: Names of corruptions.
+    """
     entries = list(entries)
     available = {camera[1] for camera in map(_CAMERA.fullmatch, entries) if camera}
     lack = f"the observation has no camera named {{0}}, {{0}}_30, ... (its entries are {entries})"
@@ -132,7 +137,11 @@ def camera_views(obs: Iterable[str], modality: str, turn: str) -> dict[str, int]
 
 
 def _panorama(obs: dict, views: dict[str, int]) -> np.ndarray:
-    """Return the frames as one array [V, ...] in the order of views. Missing views are 0."""
+    """Return the frames as one array [V, ...].
+
+    The index on the first axis is the view number. V is the largest view number plus 1. Views
+    without a camera are 0.
+    """
     frames = {entry: np.asarray(obs[entry]) for entry in views}
     first = next(iter(frames.values()))
     for entry, frame in frames.items():

@@ -38,11 +38,12 @@ def corrupt_habitat_tensors(
             the same size.
         corruptions: Corruption of each row.
         keys: Key of the random numbers of each row, which is Key(seed, episode id, step).
-        sensor: As in ``corrupt_habitat``.
+        sensor: Depth range of the camera: 0 to 10 m for R2R-CE (the default), ``DepthSensor(0.5,
+            5.0)`` for RxR-CE.
         headings: Heading of the agent in each row, in radians, counter-clockwise. Unknown headings
             are None.
-        turn: As in ``corrupt_habitat``.
-        normalised: As in ``corrupt_habitat``.
+        turn: Direction from ``rgb`` to ``rgb_30``: "left" (ETPNav) or "right".
+        normalised: Whether depth is normalised to [0, 1]. If false, depth is in metres.
         backend: As in ``corrupt_tensors``.
 
     Returns:
@@ -50,8 +51,9 @@ def corrupt_habitat_tensors(
         corruption changes are not copied.
 
     Raises:
-        ValueError: If a camera is missing or invalid, as in ``corrupt_habitat``. Errors of
-            ``corrupt_observations`` are passed on.
+        ValueError: If no camera has the modality of a corruption. If the yaw of a camera is
+            not 0, 30, ..., or 330 degrees, or if cameras of one modality have the same yaw or
+            different sizes. Errors of ``corrupt_observations`` are passed on.
     """
     check_turn(turn)
     parts = [part for corruption in corruptions for part in corruption.parts]
@@ -79,7 +81,11 @@ def corrupt_habitat_tensors(
 
 
 def _panoramas(observations: Mapping[str, Tensor], views: Mapping[str, int]) -> Tensor:
-    """Return the frames as one tensor [B, V, H, W, C] in the order of views, missing views as 0."""
+    """Return the frames as one tensor [B, V, H, W, C].
+
+    The index on the second axis is the view number. V is the largest view number plus 1. Views
+    without a camera are filled with zeros.
+    """
     first = observations[next(iter(views))]
     for entry in views:
         frames = observations[entry]

@@ -108,8 +108,9 @@ class HabitatWorld(World):
     def reset(self, episode: Episode) -> Observation:
         """Start an episode.
 
-        Raises FileNotFoundError if the scene does not exist, and ValueError if the start or a goal
-        is not on the navmesh.
+        Raises:
+            FileNotFoundError: If the scene does not exist.
+            ValueError: If the start or a goal is not on the navmesh.
         """
         self._load_scene(episode.scene_id)
         self.episode = episode
@@ -141,6 +142,7 @@ class HabitatWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
         agent = self._sim.get_agent(0)
@@ -158,6 +160,11 @@ class HabitatWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
+        """Return the measures of the episode so far, with lengths and distances in metres.
+
+        ``success`` and ``spl`` are defined as in habitat-lab. ``ndtw`` compares the path with the
+        reference path; its threshold is ``Rule.path_metres``.
+        """
         values = measures.of_episode(
             self._rule,
             np.array(self.path),
@@ -169,7 +176,10 @@ class HabitatWorld(World):
         return values | {"collisions": self.collisions, "steps": self.steps}
 
     def distance_to_goal(self, position: np.ndarray | None = None) -> float:
-        """Return the geodesic metres from a position [3] (default: the agent's) to a goal."""
+        """Return the geodesic distance in metres from a position [3] to the nearest goal.
+
+        The default position is the agent's.
+        """
         import habitat_sim
 
         path = habitat_sim.MultiGoalShortestPath()
@@ -218,7 +228,10 @@ class HabitatWorld(World):
         self._scene = scene
 
     def _settings(self, file: Path) -> Any:
-        """Return a configuration with the cameras and actions of VLN-CE, and sliding."""
+        """Return a habitat-sim configuration with the cameras and actions of VLN-CE.
+
+        Agents slide along walls.
+        """
         habitat_sim = _habitat_sim()
         backend = habitat_sim.SimulatorConfiguration()
         backend.scene_id = str(file)
@@ -241,7 +254,11 @@ class HabitatWorld(World):
         return habitat_sim.Configuration(backend, [agent])
 
     def _camera(self, kind: str, view: int) -> Any:
-        """Return the camera of a view. Habitat's yaw is positive to the left."""
+        """Return the camera of a view.
+
+        Successive views are 30 degrees further to the right, and Habitat's yaw is positive to the
+        left.
+        """
         habitat_sim = _habitat_sim()
         types = habitat_sim.SensorType
         spec = habitat_sim.CameraSensorSpec()
@@ -286,15 +303,27 @@ class HabitatWorld(World):
         rotation = self._sim.get_agent(0).get_state().rotation
         return 2 * math.atan2(float(rotation.imag[1]), float(rotation.real))
 
+    def close(self) -> None:
+        """Free the simulator. The next episode opens a new one."""
+        if self._sim is not None:
+            self._sim.close()
+            self._sim, self._scene = None, ""
+
 
 class NavmeshExpert(Expert):
-    """Oracle that turns to the heading in which the next step reduces the distance most."""
+    """Oracle that uses geodesic distances on the navmesh.
+
+    It turns to the heading in which the next step forward reduces the distance most.
+    """
 
     def __init__(self, world: HabitatWorld) -> None:
         self.world = world
 
     def distance(self, xy: np.ndarray) -> float:
-        """Return the geodesic metres to the goal from a plan position [2] on this floor."""
+        """Return the geodesic distance in metres to the goal from a plan position [2].
+
+        The position is on the agent's floor.
+        """
         height = float(self.world._position()[1])
         return self.world.distance_to_goal(np.array([xy[0], height, -xy[1]], np.float32))
 
@@ -329,7 +358,10 @@ def _habitat_sim() -> Any:
 
 
 def _navmesh_settings(navmesh: str | dict[str, Any] | None, scenes: Path) -> dict[str, Any]:
-    """Return navmesh settings by name, from a mapping or a file of ``mitigate export-scene``."""
+    """Return navmesh settings by name.
+
+    A file with settings must have the format that ``mitigate export-scene`` writes.
+    """
     if navmesh is None:
         navmesh = str(scenes.parent / "navmesh.json")
         if not Path(navmesh).is_file():

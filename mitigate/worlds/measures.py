@@ -55,7 +55,10 @@ class Rule:
     def met(self, distance: float, stopped: bool) -> bool:
         """Return whether an episode that ends ``distance`` metres from the goal succeeds.
 
-        An infinite distance means that the goal is unreachable. Raises ValueError for NaN.
+        An infinite distance means that the goal is unreachable, and counts as a failure.
+
+        Raises:
+            ValueError: If the distance is NaN.
         """
         if math.isnan(distance):
             raise ValueError(

@@ -15,8 +15,10 @@ def check_available(names: Iterable[str], available: Container[str], lack: str, 
     Args:
         names: Names of the corruptions.
         available: Modalities of the observation.
-        lack: What is missing, for the message; ``{0}`` is replaced by the modality.
-        fix: How to add the modality, for the message; ``{0}`` is replaced by the modality.
+        lack: Part of the error message that describes what is missing. ``{0}`` is replaced by the
+            modality.
+        fix: Part of the error message that explains how to add the modality. ``{0}`` is replaced
+            by the modality.
     """
     names = list(names)
     missing = [name for name in names if not any(m in available for m in record(name).modalities)]

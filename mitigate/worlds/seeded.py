@@ -69,8 +69,9 @@ class NativeFormat:
     """Convert frames back to the observation format of the environment.
 
     Attributes:
-        entries: Entry of each sensor. Nested entries are written as "camera.rgb".
-        dtypes: dtype of the entry of each sensor.
+        entries: Name of the observation entry for each sensor. Nested entries are written as
+            "camera.rgb".
+        dtypes: dtype of the entry for each sensor.
         unit: Metres per unit of depth.
     """
 
@@ -79,7 +80,11 @@ class NativeFormat:
     unit: float = 1.0
 
     def __call__(self, frames: Mapping[str, Any]) -> Any:
-        """Return an array or nested dictionaries of arrays. ``frames`` may have a batch axis."""
+        """Return the observation, which is an array or nested dictionaries of arrays.
+
+        Args:
+            frames: Arrays by sensor. They may have a batch axis in front.
+        """
         observation: dict[str, Any] = {}
         for name, entry in self.entries.items():
             array = np.asarray(frames[name])
@@ -228,8 +233,8 @@ class SeededWorld(World):
 
         Raises:
             RuntimeError: If the episode is over.
-            ValueError: If the action does not exist, success is not reported at the end, or the
-                reward is NaN although the score depends on it.
+            ValueError: If the action does not exist, the environment ended the episode without
+                reporting success, or the reward is NaN although the score depends on it.
         """
         if self.done:
             raise RuntimeError("The episode is over. Call reset() before step().")
@@ -257,7 +262,11 @@ class SeededWorld(World):
         return self._observation(parts)
 
     def _spaces(self, env: Any) -> tuple[ActionSpace, Arrays]:
-        """Return the action space, and the shape, dtype and maximum of each observation entry."""
+        """Return the action space, and the shape, dtype and maximum of each observation entry.
+
+        Raises:
+            ValueError: If the actions are not supported (``core/spaces.py``).
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no _spaces(env)")
 
     def _reset_env(self, seed: int) -> Mapping[str, Any]:
@@ -265,7 +274,11 @@ class SeededWorld(World):
         raise NotImplementedError(f"{type(self).__name__} defines no _reset_env()")
 
     def _step_env(self, action: Any) -> tuple[Mapping[str, Any], float, bool]:
-        """Step, set ``terminated``, and return the observation, the reward and the end."""
+        """Step the environment.
+
+        Return its observation, the reward, and whether the episode is over. A subclass also sets
+        ``terminated``.
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no _step_env()")
 
     def measures(self) -> dict[str, float]:
@@ -325,7 +338,7 @@ class SeededWorld(World):
             ) from error
 
     def _observation(self, values: Mapping[str, Any]) -> Observation:
-        """Return an observation with copied arrays, because environments reuse buffers."""
+        """Return an observation with copied arrays, because environments may reuse buffers."""
         absent = [entry for entry in self.entries.values() if entry not in values]
         if absent:
             raise ValueError(
@@ -347,7 +360,7 @@ class SeededWorld(World):
         return Observation(pose, lambda: frames, tuple(frames))
 
     def _metres(self, depth: np.ndarray) -> np.ndarray:
-        """Convert depth to float32 metres. The first frame of an episode checks the unit."""
+        """Convert depth to float32 metres. Check the unit on the first frame of an episode."""
         metres = depth.astype(np.float32) * np.float32(self.unit)
         metres = np.where(np.isfinite(metres) & (metres > 0), metres, np.float32(0))
         if self._steps == 0:
@@ -361,7 +374,11 @@ def _listed(names: Iterable[str]) -> str:
 
 
 def _as_bool(value: Any, source: str, episode: str) -> bool:
-    """Return whether an element of ``value`` is true. Each must be a boolean, 0, 1 or None."""
+    """Return whether a value, or at least one of its elements, is true. None counts as false.
+
+    Raises:
+        ValueError: If an element is something other than a boolean, 0 or 1.
+    """
     try:
         parts = np.asarray(value).ravel().tolist()
         valid = all(part is None or part in (0, 1) for part in parts)
@@ -379,7 +396,7 @@ def _as_bool(value: Any, source: str, episode: str) -> bool:
 
 
 def _check_success(success: Any, rule: str | None) -> None:
-    """Raise ValueError if ``success`` is invalid, or is a function without ``rule``."""
+    """Raise ValueError if ``success`` is invalid, or if it is a function without ``rule``."""
     if callable(success) and not rule:
         raise ValueError(
             'A success function needs rule=, the rule in words, such as rule="return > 0".'

@@ -114,7 +114,10 @@ class WorldEnv(EnvBase):
         self._number = self.worker
 
     def _choose_episode(self, number: int) -> tuple[Episode, str]:
-        """Return the episode of this number, and a name that is unique to this run."""
+        """Return the episode with this number, and its unique name.
+
+        Both depend only on ``number`` and on the list of episodes or the seed.
+        """
         if isinstance(self.episodes, TrainingEpisodes):
             rng = generator(self.seed, self.key, number)
             episode, repetition = self.episodes.draw(rng, (0, 1)), number
@@ -190,7 +193,12 @@ class EnvWorld(SeededWorld):
 
 
 def _space_of(spec: Any) -> ActionSpace:
-    """Return the action space of a torchrl spec. Raise ValueError if it is not supported."""
+    """Return the action space that corresponds to a torchrl spec.
+
+    Raises:
+        ValueError: If the spec is not Categorical, OneHot, MultiCategorical, or a bounded or
+            unbounded array.
+    """
     kind = type(spec).__name__
     if kind == "Categorical" and spec.shape.numel() == 1:
         return Discrete(int(spec.space.n))
@@ -237,5 +245,6 @@ def _describe(spec: Any) -> tuple[tuple[int, ...], str, float]:
     """Return the shape, dtype and maximum of an entry. The maximum of an unbounded entry is inf."""
     dtype = str(spec.dtype).removeprefix("torch.")
     high = float(spec.space.high.max()) if isinstance(spec.space, ContinuousBox) else math.inf
+    # torchrl uses the largest number of the dtype as the maximum of an unbounded entry
     unbounded = dtype.startswith("float") and high >= torch.finfo(spec.dtype).max / 2
     return tuple(spec.shape), dtype, math.inf if unbounded else high

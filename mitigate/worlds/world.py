@@ -72,8 +72,11 @@ class World:
     :func:`as_world` adds the missing defaults.
 
     A class may define ``beside()``, which returns a second world of the same kind. Several episodes
-    can then run at the same time. It may define ``move(metres, degrees)``, which moves forward and
-    then turns to the left, as one step. Motion faults of robots with discrete actions use it.
+    can then run at the same time.
+
+    A class with discrete actions may define ``move(metres, degrees)``. It moves the agent
+    ``metres`` forward and then turns it ``degrees`` to the left, as one step. Motion faults
+    use this method.
 
     Attributes:
         sensors: Descriptions of the entries of an observation. Frames that are to be corrupted must
@@ -128,17 +131,21 @@ class World:
         return {}
 
     def displaced(self, mount: Mount) -> dict[str, np.ndarray] | None:
-        """Render what a displaced camera would see, in the format of an observation.
+        """Render what a displaced camera would see at the current pose.
 
-        If the world returns None, camera faults warp the frames of the observation instead. This
-        requires the ``hfov`` of the sensors.
+        Camera faults use this method.
+
+        Returns:
+            The frames, in the format of an observation. If the world cannot render them, return
+            None. Camera faults then warp the frames of the observation instead. This requires the
+            ``hfov`` of the sensors.
         """
         return None
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context in which frames are cached, so that conditions of an episode share them.
+        """Return a context manager in which frames are cached.
 
-        The cache does not affect results.
+        Several conditions of an episode then share the frames. The cache does not affect results.
         """
         return nullcontext()
 
@@ -196,7 +203,11 @@ class TrainingEpisodes(Protocol):
 
 
 def as_world(world: Any) -> World:
-    """Return ``world``, or a view of it with the missing defaults of :class:`World`."""
+    """Return ``world`` as a :class:`World`.
+
+    An object of another class is wrapped, which adds the missing defaults. The object itself is not
+    changed.
+    """
     return world if isinstance(world, World) else _WorldView(world)
 
 
@@ -380,9 +391,14 @@ def expert_of(world: World) -> Expert:
 
 
 def greedy_action(heading: float, distance_after: Callable[[float], float]) -> int:
-    """Return the action towards the heading in which a step forward ends nearest to the goal.
+    """Find the heading in which a step forward ends nearest to the goal.
 
-    ``distance_after`` maps a heading in radians to the distance to the goal after that step.
+    Return FORWARD if the agent has this heading, and otherwise the turn towards it.
+
+    Args:
+        heading: Heading of the agent in radians.
+        distance_after: Function that takes a heading and returns the distance to the goal after a
+            step in that direction.
     """
     turns = sorted(range(-12, 13), key=abs)
     headings = [heading + math.radians(TURN_DEGREES) * turn for turn in turns]
@@ -400,7 +416,8 @@ class _ExpertView(Expert):
 def check_metres(depth: np.ndarray, name: str, fix: str) -> None:
     """Raise ValueError if the median of ``depth`` is above ``MAX_MEDIAN_DEPTH`` metres.
 
-    Values of 0 are missing. ``name`` and ``fix`` are parts of the message: the data, and advice.
+    Depth values of 0 mean missing depth. The message names the data ``name`` and ends with the
+    advice ``fix``.
     """
     readings = depth[depth > 0]
     median = float(np.median(readings)) if len(readings) else 0.0

@@ -68,7 +68,11 @@ class Apartment:
         return FaceBuilder(self).build()
 
     def _walkable(self) -> bool:
-        """Return whether the connected free area contains all doors and parts of all rooms."""
+        """Return whether an agent can reach all rooms.
+
+        The largest connected free area must contain all doors, parts of all rooms and most
+        free cells.
+        """
         cells = [self.space.index[int(d.y / CELL), int(d.x / CELL)] for d in self.doors]
         reached = {self.room_at(self.space.centre(c)) for c in range(0, len(self.space.cells), 7)}
         return min(cells) >= 0 and self.space.share > 0.8 and len(reached) == len(self.rooms)

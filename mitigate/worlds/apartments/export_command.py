@@ -125,7 +125,10 @@ def _words(text: str) -> list[str]:
 
 
 def write_objectnav(out: Path, split: str, episodes: Sequence[Episode]) -> Path:
-    """Write episodes in the ObjectNav format of HM3D: one file per scene, and an index."""
+    """Write episodes in the ObjectNav format of HM3D.
+
+    There is one file per scene, and an index file without episodes. Return the path of the index.
+    """
     ids = {category: number for number, category in enumerate(CATEGORIES)}
     category_ids = {
         "category_to_task_category_id": ids,
@@ -159,7 +162,10 @@ def _objectnav(episode: Episode) -> dict[str, Any]:
 
 
 def _goals(episode: Episode) -> list[dict[str, Any]]:
-    """Return all objects of a category. Their view points are the free cells next to them."""
+    """Return all objects of the goal category.
+
+    The view points of an object are the free cells next to it.
+    """
     apartment = apartment_of(episode.scene_id)
     goals = []
     for thing in landmarks(episode):
@@ -213,7 +219,7 @@ _TRIANGLES = np.array([0, 1, 2, 0, 2, 3], np.uint32)
 
 
 class _Buffer:
-    """The binary data of a glTF file, aligned to 4 bytes, with its views and accessors."""
+    """The binary data of a glTF file, aligned to 4 bytes, with its buffer views and accessors."""
 
     def __init__(self) -> None:
         self.data = bytearray()

@@ -48,7 +48,7 @@ class Faces:
 
 
 class FaceBuilder:
-    """Collect the faces of an apartment."""
+    """Collect the faces of an apartment, with baked shading."""
 
     # axis: (brightness of faces towards its negative side, towards its positive side)
     _SHADE = {0: (0.84, 0.92), 1: (0.97, 0.79), 2: (0.82, 1.0)}
@@ -87,7 +87,10 @@ class FaceBuilder:
     def _tints(
         self, axis: np.ndarray, sign: np.ndarray, room: np.ndarray, corners: np.ndarray
     ) -> np.ndarray:
-        """Return the colours, shaded by room, direction of the face, and height."""
+        """Return the colours, shaded by the direction of the face and by the room.
+
+        Vertical faces get darker towards the floor.
+        """
         sides = np.array([self._SHADE[k] for k in range(3)])
         shade = sides[axis, (sign > 0).astype(int)] * self.light[room]
         dim = (0.82 + 0.18 * np.clip(corners[..., 2:] / 1.2, 0, 1)).astype(float)
@@ -108,9 +111,10 @@ class FaceBuilder:
         category: int = STRUCTURE,
         instance: int = -1,
     ) -> None:
-        """Add a rectangle perpendicular to ``axis`` at ``at``, with a normal of sign ``sign``.
+        """Add a rectangle that is perpendicular to ``axis`` and lies at the coordinate ``at``.
 
-        ``low`` and ``high`` are its bounds on the other two axes.
+        The sign of its normal is ``sign``. Its bounds on the other two axes are ``low`` and
+        ``high``.
         """
         self.kinds.append((axis, sign, pattern, room, category, instance))
         self.places.append((at, *low, *high))
@@ -181,7 +185,11 @@ def texture_coordinates(faces: Faces, chosen: np.ndarray) -> np.ndarray:
 def _corners(
     axis: np.ndarray, sign: np.ndarray, at: np.ndarray, low: np.ndarray, high: np.ndarray
 ) -> np.ndarray:
-    """Return the corners of n rectangles (see ``FaceBuilder._add``), float32 [n, 4, 3]."""
+    """Return the corners of n rectangles, float32 [n, 4, 3].
+
+    The arguments are those of ``FaceBuilder._add``, as arrays with the first dimension n. The order
+    of the corners depends on ``sign``.
+    """
     n = len(axis)
     others = np.array([[1, 2], [0, 2], [0, 1]])[axis]
     corners, every = np.zeros((n, 4, 3), np.float32), np.arange(n)

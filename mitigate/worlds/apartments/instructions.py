@@ -113,7 +113,11 @@ def _events(
 
 
 def _turn_beside(path: np.ndarray, along: np.ndarray, door: float) -> Event | None:
-    """Return the middle of a left or right turn at a doorway, ``door`` metres along the path."""
+    """Return the left or right turn of a path at a doorway, ``door`` metres from its start.
+
+    The event is located where the path has completed half of the turn. Return None if the path does
+    not turn there, or if the doorway is near the start of the path.
+    """
     if door <= _BESIDE:
         return None
     before, after = (_direction(path, along, at) for at in (door - _BESIDE, door))

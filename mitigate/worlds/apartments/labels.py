@@ -47,7 +47,12 @@ def pose_labels(
 ) -> dict[str, np.ndarray]:
     """Return the labels "concepts", "seen" and "free" of ``ApartmentsWorld.truth`` at a pose.
 
-    ``ids`` (int32) and ``depth`` (metres) are the views of a panorama or of a single camera.
+    Args:
+        apartment: The apartment.
+        xy: Plan position [2] in metres.
+        heading: Heading in radians.
+        ids: Face ids, int32 [V, H, W]. V is 12 for a panorama and 1 for a single camera.
+        depth: Depth in metres, float32 [V, H, W, 1].
     """
     free = free_directions(apartment.space, xy, heading)
     width = ids.shape[2]
@@ -58,18 +63,20 @@ def pose_labels(
     else:
         edges = np.linspace(0, width, COLUMNS + 1).round().astype(int).tolist()
         columns = [_within(apartment, ids, depth, low, high) for low, high in pairwise(edges)]
-        concepts, seen = map(np.concatenate, zip(*columns, strict=True))
+        concepts = np.concatenate([column[0] for column in columns])
+        seen = np.concatenate([column[1] for column in columns])
         half_view = round(ANGLES * HFOV_DEGREES / 720)
         # the heading is this many bins to the right of the left edge of bin 0
-        first = round(ANGLES / VIEWS / 2)
-        free = np.roll(free, half_view - first, 0)[: 2 * half_view]
+        heading_bin = round(ANGLES / VIEWS / 2)
+        # the view covers the angles from left to right
+        free = np.roll(free, half_view - heading_bin, 0)[: 2 * half_view]
     return {"concepts": concepts, "seen": seen, "free": free}
 
 
 def _within(
     apartment: Apartment, ids: np.ndarray, depth: np.ndarray, low: int, high: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the concepts and the furniture in the pixel columns from ``low`` to ``high``."""
+    """Return "concepts" and "seen" of each view in the pixel columns from ``low`` to ``high``."""
     sizes = (len(CATEGORIES), len(COLOUR_NAMES), len(CONCEPTS))
     arguments: Any = (ids, depth[..., 0], low, high, *_tables(apartment), *sizes)
     return _label(*arguments)

@@ -22,7 +22,11 @@ Part = tuple[float, float, float, float, float, float, object]
 
 @dataclass(frozen=True)
 class Category:
-    """A category of furniture, with its size in metres. If ``solid``, it blocks motion."""
+    """A category of furniture.
+
+    ``width`` (along the wall) and ``depth`` (away from the wall) are in metres. If ``solid`` is
+    true, the object blocks motion.
+    """
 
     name: str
     width: float
@@ -73,7 +77,10 @@ class Room:
 
 @dataclass(frozen=True)
 class Door:
-    """A doorway between two rooms. ``axis`` is the axis of the wall's normal: 0 for x, 1 for y."""
+    """A doorway between two rooms, with its centre at (x, y).
+
+    ``axis`` is the axis of the wall's normal: 0 for x, 1 for y.
+    """
 
     x: float
     y: float
@@ -81,16 +88,20 @@ class Door:
     rooms: tuple[int, int]
 
     def area(self, across: float, along: float) -> Rect:
-        """Return a rectangle ``across`` metres to each side of the wall and ``along`` along it."""
+        """Return a rectangle around the centre of the doorway.
+
+        It extends ``across`` metres to each side of the wall, and ``along`` metres in both
+        directions along the wall.
+        """
         dx, dy = (across, along) if self.axis == 0 else (along, across)
         return self.x - dx, self.y - dy, self.x + dx, self.y + dy
 
 
 @dataclass(frozen=True)
 class Furniture:
-    """A piece of furniture.
+    """A piece of furniture in a room.
 
-    ``turn`` is its side of the room (0: low y, 1: high x, 2: high y, 3: low x).
+    ``turn`` is the side of the room at which it stands (0: low y, 1: high x, 2: high y, 3: low x).
     """
 
     category: str
@@ -135,7 +146,10 @@ def _cut(rect: Rect, rng: np.random.Generator) -> list[Rect]:
 
 
 def shared_wall(a: Rect, b: Rect) -> tuple[int, float, float, float] | None:
-    """Return the wall of two rooms as (axis of its normal, coordinate, low, high), or None."""
+    """Return the wall between two rooms, or None if they share no wall.
+
+    The wall is (axis of its normal, coordinate on that axis, lower bound, upper bound).
+    """
     for axis in (0, 1):
         other = 1 - axis
         for near, far in ((a, b), (b, a)):
@@ -165,7 +179,10 @@ def place_doors(rects: list[Rect], rng: np.random.Generator) -> list[Door]:
 
 
 def name_rooms(rects: list[Rect], rng: np.random.Generator) -> list[Room]:
-    """Assign each kind of room once, in random order, then a second bedroom, bathroom or office."""
+    """Assign each kind of room once, in random order.
+
+    Further rooms become a second bedroom, bathroom or office.
+    """
     kinds = list(ROOMS)
     rng.shuffle(kinds)
     kinds += [str(kind) for kind in rng.permutation(["bedroom", "bathroom", "office"])]

@@ -66,11 +66,17 @@ class FreeSpace:
         return (self.cells[cell][::-1] + 0.5) * CELL
 
     def distances(self, targets: list[int]) -> np.ndarray:
-        """Return the metres from every free cell to the nearest target cell, float32 [n]."""
+        """Return the geodesic distance in metres from each free cell to the nearest target cell.
+
+        The result is float32 [n].
+        """
         return dijkstra(_graph_of(self), indices=targets, min_only=True).astype(np.float32)
 
     def shortest_path(self, start: int, field: np.ndarray) -> np.ndarray:
-        """Return the cell centres [n, 2] from ``start`` to the nearest target of ``field``."""
+        """Return the cell centres [n, 2] on the shortest path from the cell ``start``.
+
+        The path leads to the nearest target of ``field`` (see :meth:`distances`).
+        """
         path = [start]
         graph = _graph_of(self)
         while field[path[-1]] > 1e-6:
@@ -80,10 +86,11 @@ class FreeSpace:
         return (self.cells[path][:, ::-1] + 0.5) * CELL
 
     def shortest_length(self, xy: np.ndarray, targets: list[int]) -> float:
-        """Return the metres of the shortest path from a free plan position [2] to a target cell.
+        """Return the length in metres of the shortest path to the nearest centre of a target cell.
 
-        The path may have any direction. It only bends at corners of blocked cells, so Dijkstra's
-        algorithm runs on the visibility graph of these corners (Lozano-Perez and Wesley, 1979).
+        The path starts at the plan position ``xy`` [2], which must be in a free cell. The path may
+        have any direction. It only bends at corners of blocked cells, so Dijkstra's algorithm runs
+        on the visibility graph of these corners (Lozano-Perez and Wesley, 1979).
         """
         corners, between = _corners_of(self)
         start = np.asarray(xy, float)[None] / CELL
@@ -97,9 +104,9 @@ class FreeSpace:
         return float(np.min(to_points[:, None] + last) * CELL)
 
     def move(self, xy: np.ndarray, heading: float, metres: float) -> tuple[np.ndarray, bool]:
-        """Move straight ahead and slide along walls, as in VLN-CE.
+        """Move straight ahead and slide along walls, as agents do in the R2R task of VLN-CE.
 
-        Returns the new position and whether the agent collided.
+        Return the new position and whether the agent collided.
         """
         dx, dy = -np.sin(heading), np.cos(heading)
         distance = _march(self.free, xy[0], xy[1], dx, dy, metres)
@@ -113,18 +120,19 @@ class FreeSpace:
         return new + np.array(slides[best][:2]) * moved[best], True
 
     def rays(self, xy: np.ndarray, count: int, reach: float) -> np.ndarray:
-        """Return the free metres, at most ``reach``, along ``count`` evenly spaced headings.
+        """Return the free distances in metres along ``count`` evenly spaced headings.
 
-        Headings are counter-clockwise from 0.
+        Headings run counter-clockwise from 0. Distances are limited to ``reach``.
         """
         return _rays(self.free, float(xy[0]), float(xy[1]), count, reach)
 
 
 @lru_cache(maxsize=GRAPHS)
 def _graph_of(space: FreeSpace) -> csr_matrix:
-    """Return the graph of the free cells and their 8 neighbours, with edge weights in metres.
+    """Return the graph in which each free cell is connected to its 8 neighbours.
 
-    Its paths are 5 % longer on average than those of :meth:`FreeSpace.shortest_length`.
+    Edge weights are in metres. Paths along this graph have eight directions. On average, they are
+    5 % longer than paths in any direction (:meth:`FreeSpace.shortest_length`).
     """
     rows, cols, data = [], [], []
     height, width = space.index.shape
@@ -141,7 +149,11 @@ def _graph_of(space: FreeSpace) -> csr_matrix:
 
 @lru_cache(maxsize=GRAPHS)
 def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners at which paths bend [n, 2], and their free distances [n, n], in cells."""
+    """Return the corners at which a path can bend, and the free distances between them.
+
+    The corners are float [n, 2] (x, y). The distances are the lengths of straight lines, float
+    [n, n] (inf: the line is not free). The unit is one cell.
+    """
     free, corners = space.free, []
     rows, columns = np.arange(1, free.shape[0] - 1), np.arange(1, free.shape[1] - 1)
     for di in (-1, 1):
@@ -159,7 +171,10 @@ def _corners_of(space: FreeSpace) -> tuple[np.ndarray, np.ndarray]:
 
 @njit(cache=True)
 def _visible_lengths(free, starts, ends):
-    """Return the lengths of the lines from ``starts`` to ``ends`` [n, m] (inf: not free)."""
+    """Return the lengths of the straight lines from ``starts`` [n, 2] to ``ends`` [m, 2].
+
+    The lengths are float [n, m] in cells (inf: the line is not free).
+    """
     lengths = np.full((len(starts), len(ends)), np.inf)
     for a in range(len(starts)):
         for b in range(len(ends)):
@@ -172,7 +187,10 @@ def _visible_lengths(free, starts, ends):
 
 @njit(cache=True)
 def _line_is_free(free, x, y, dx, dy):
-    """Return whether a line crosses free cells only (Amanatides and Woo, 1987)."""
+    """Return whether the line from (x, y) to (x + dx, y + dy) crosses free cells only.
+
+    The algorithm is that of Amanatides and Woo (1987).
+    """
     i, j = int(np.floor(y)), int(np.floor(x))
     last_i, last_j = int(np.floor(y + dy)), int(np.floor(x + dx))
     step_i, step_j = (1 if dy > 0 else -1), (1 if dx > 0 else -1)
@@ -195,7 +213,10 @@ def _line_is_free(free, x, y, dx, dy):
 
 @njit(cache=True)
 def _march(free, x, y, dx, dy, length):
-    """Return the free distance in metres from (x, y) towards (dx, dy), at most ``length``."""
+    """Return the free distance in metres from (x, y) in the direction (dx, dy).
+
+    The distance is at most ``length``.
+    """
     norm = np.hypot(dx, dy)
     if norm < 1e-9 or length <= 0:
         return length

@@ -75,8 +75,9 @@ def _variants(rng: np.random.Generator, spec: tuple, count: int) -> np.ndarray:
 
 
 def texture(pattern: str) -> np.ndarray:
-    """Return a grey texture as uint8 ``[32, 32]``, with values mostly from 200 to 255. Vertex
-    colours tint it.
+    """Return a grey texture as uint8 [32, 32], with values mostly from 200 to 255.
+
+    Vertex colours tint it.
     """
     rng = np.random.default_rng([7, PATTERNS.index(pattern), 0])
     n = TEXTURE_PIXELS

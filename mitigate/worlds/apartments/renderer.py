@@ -236,7 +236,10 @@ class Renderer:
 
 @lru_cache(maxsize=4)
 def shared_renderer(size: int) -> Renderer:
-    """Return the renderer that all users of this process share for views of ``size`` pixels."""
+    """Return this process's renderer for views of ``size`` pixels.
+
+    All users of this renderer share its cache of ``SCENES`` scenes.
+    """
     return Renderer(size)
 
 
@@ -250,14 +253,21 @@ def _make_pipe(core: Any) -> Any:
 
 
 def _id_colours(ids: np.ndarray) -> np.ndarray:
-    """Encode face ids in base 32 as colours, float32 [n, 3], so that rounding keeps the ids."""
+    """Encode face ids as colours, float32 [n, 3].
+
+    Face id + 1 is written in base 32, so that rounding does not change the decoded id.
+    """
     code = ids + 1
     digits = np.stack([code % 32, code // 32 % 32, code // 1024 % 32], 1)
     return (digits * 8 + 4).astype(np.float32) / 255
 
 
 def _turn(mount: Mount, heading: float) -> np.ndarray:
-    """Return the rotation [3, 3] of a mounted rig relative to a level rig, in the plan frame."""
+    """Return the rotation matrix [3, 3] that applies ``mount`` to the directions of a camera rig.
+
+    The matrix maps the directions of a level rig with ``heading`` to those of the mounted rig. All
+    directions are in the plan frame.
+    """
     if (mount.pitch, mount.roll, mount.yaw) == (0.0, 0.0, 0.0):
         return np.eye(3)
     cos, sin = math.cos(heading), math.sin(heading)

@@ -23,7 +23,7 @@ NEAR = 0.5
 # number of cached distance fields; a field takes 20 kB, and half a millisecond to compute
 @lru_cache(maxsize=256)
 def goal_field(scene_id: str, goal_cells: tuple[int, ...]) -> np.ndarray:
-    """Return the metres from every free cell of a scene to the nearest goal cell."""
+    """Return the geodesic distance in metres from each free cell to the nearest goal cell."""
     return apartment_of(scene_id).space.distances(list(goal_cells))
 
 
@@ -84,7 +84,10 @@ class Simulator:
         return renderer.render(*place, views=views, mount=mount)
 
     def step(self, action: int) -> None:
-        """Execute one low-level action. Raise ValueError if it does not exist."""
+        """Execute one low-level action.
+
+        Raises ValueError if the action does not exist, and RuntimeError if the episode is over.
+        """
         if action != STOP and action not in MOVES:
             raise ValueError(
                 f"The action must be 0 STOP, 1 FORWARD, 2 LEFT or 3 RIGHT, got {action}."
@@ -108,7 +111,11 @@ class Simulator:
 
 
 class GeodesicExpert(Expert):
-    """Expert that turns to the heading in which a step reduces the distances of ``field`` most."""
+    """Expert that greedily reduces the geodesic distances in ``field``.
+
+    The expert turns to the heading in which the next step forward reduces the distance most. It
+    stops at the distance that ``rule`` defines.
+    """
 
     def __init__(self, simulator: Simulator, rule: Rule, field: np.ndarray) -> None:
         self.simulator, self.rule, self.field = simulator, rule, field

@@ -131,7 +131,8 @@ class DrawnEpisodes:
     def draw(self, rng: np.random.Generator, share: tuple[int, int] = (0, 1)) -> Episode:
         """Sample an episode with a newly generated instruction.
 
-        ``share`` is the pair (index, number) of the part of the layouts to sample from.
+        The layouts are split into ``count`` parts, and ``share`` = (index, count) selects the part
+        to sample from. Each layout has ``_POOL`` different paths.
         """
         seeds = share_of(range(self.layouts), *share)
         seed = seeds[int(rng.integers(len(seeds)))]
@@ -150,8 +151,9 @@ class DrawnEpisodes:
 def landmarks(episode: Episode) -> list[int]:
     """Return the indices of the furniture that marks the goal.
 
-    It is one piece in VLN, and all pieces of the goal category in OGN. Raises ValueError if the
-    info of the episode does not contain the goal.
+    In VLN, this is one piece. In OGN, it is all pieces of the goal category.
+
+    Raises ValueError if the info of the episode does not contain the goal.
     """
     furniture = apartment_of(episode.scene_id).furniture
     info, here = episode.info, range(len(furniture))
@@ -177,7 +179,10 @@ def _view_points(scene_id: str, things: tuple[int, ...]) -> np.ndarray:
 
 
 def fixed_episodes(split: str, task: str, count: int) -> Iterator[Episode]:
-    """Yield ``count`` episodes in the order of seeds, ``PER_APARTMENT`` per apartment."""
+    """Yield the first ``count`` episodes of a split, in the order of apartment seeds.
+
+    Each apartment has ``PER_APARTMENT`` episodes.
+    """
     low, _ = SEED_RANGES[split]
     for number in range(count):
         yield make_episode(Apartment(low + number // PER_APARTMENT), task, number % PER_APARTMENT)

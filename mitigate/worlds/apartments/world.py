@@ -109,6 +109,7 @@ class ApartmentsWorld(World):
         return self._observation()
 
     def move(self, metres: float, degrees: float) -> Observation:
+        """Move ``metres`` forward, then turn ``degrees`` to the left, as one step."""
         self.simulator.move(metres, degrees)
         return self._observation()
 
@@ -123,12 +124,13 @@ class ApartmentsWorld(World):
         reference path. Its threshold is ``path_metres`` of the success rule.
         """
         simulator = self.simulator
+        left = float(self._field()[simulator.space.cell_of(simulator.xy)])
         values = measures.of_episode(
             RULES[self._rule],
             np.array(simulator.path),
             [from_vlnce(point) for point in simulator.episode.reference_path],
             start=self._shortest,
-            left=float(self._field()[simulator.space.cell_of(simulator.xy)]),
+            left=left,
             stopped=simulator.stopped,
         )
         return values | {"collisions": int(simulator.collisions), "steps": simulator.steps}
@@ -137,14 +139,21 @@ class ApartmentsWorld(World):
         return GeodesicExpert(self.simulator, RULES[self._rule], self._field())
 
     def _field(self) -> np.ndarray:
-        """Return the metres from each free cell to the goal, or to its view points."""
+        """Return the distance in metres from each free cell to the target of the success rule.
+
+        The target is the goal or its view points.
+        """
         episode = self.simulator.episode
         if not RULES[self._rule].view_points:
             return self.simulator.field
         return goal_field(episode.scene_id, tuple(view_points(episode)))
 
     def _shortest_length(self, episode: Episode) -> float:
-        """Return the metres from start to target; the file's value if the file hides the goals."""
+        """Return the length in metres of the shortest path from the start to the target.
+
+        If the file hides the goals, return the length that the file records. If the recorded length
+        differs from the measured length, a warning is issued once per world.
+        """
         recorded, simulator = episode.geodesic_distance, self.simulator
         if recorded is not None and not episode.goals:
             return recorded
@@ -194,7 +203,10 @@ class ApartmentsWorld(World):
         )
 
     def _copied(self, rendered: Sequence[np.ndarray]) -> dict[str, np.ndarray]:
-        """Return copies of the frames, because an agent may write into its observation."""
+        """Return copies of the frames, because an agent may write into its observation.
+
+        Frames of a single camera have no axis for views.
+        """
         views = slice(None) if self.views > 1 else 0
         return {name: rendered[i][views].copy() for i, name in enumerate((RGB, DEPTH))}
 
@@ -225,7 +237,7 @@ class ApartmentsWorld(World):
         return [f"apartments/train/{seed:06d}" for seed in range(self.layouts)]
 
     def enter(self, scene: str) -> None:
-        """Select the scene of ``point`` and ``put``. Raise ValueError if it is unknown."""
+        """Select the scene that ``point`` and ``put`` use. Raise ValueError if it is unknown."""
         self._entered: Apartment = apartment_of(scene)
 
     def point(self, rng: np.random.Generator) -> np.ndarray:

@@ -210,9 +210,17 @@ class Bag(Source):
     def _messages(
         self, reader: Any, names: Sequence[str], decode: Mapping[str, set[int]]
     ) -> Iterator[tuple[str, tuple[float, float], Any]]:
-        """Yield the messages of the topics ``names``: name, (header time, received), message.
+        """Yield the messages of some topics in the order in which the bag stores them.
 
-        ``decode`` holds the indices of the messages to decode; other names are always decoded.
+        Args:
+            reader: The open reader.
+            names: Keys of ``self.topics``.
+            decode: Indices of the messages to decode for each name. For a name that has no entry,
+                all messages are decoded.
+
+        Yields:
+            The name, the two timestamps in seconds (from the header, and on receipt), and the
+            message. The message is None if it was not decoded.
         """
         by_topic: dict[str, list[str]] = {}
         for name in names:
@@ -296,7 +304,8 @@ def _repair_advice(path: Path) -> str:
 def _open_part(part: Any, open_: Callable[[], None]) -> None:
     """Open a reader that parses only the definitions of the supported message types.
 
-    One definition that ``rosbags`` cannot parse would make the whole bag unreadable.
+    Otherwise, one definition that ``rosbags`` cannot parse, such as a service event, would make the
+    whole bag unreadable.
     """
     from rosbags.interfaces import MessageDefinition, MessageDefinitionFormat
 

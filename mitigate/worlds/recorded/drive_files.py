@@ -27,9 +27,10 @@ INSTRUCTION = "instruction.txt"
 
 @dataclass(kw_only=True)
 class Frames(Source):
-    """A recorded drive with one file per camera and time step.
+    """A recorded drive with one frame file per camera and time step.
 
-    ``unit`` is metres per step of 16-bit depth. If ``unit_given`` is false, it is a default.
+    ``unit`` is the number of metres per integer step of 16-bit depth. If ``unit_given`` is false,
+    neither the user nor the recording states a unit, and ``unit`` holds the default value.
     """
 
     files: Mapping[str, Sequence[Path]]

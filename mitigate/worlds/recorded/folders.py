@@ -127,7 +127,11 @@ def _check_calls(steps: Sequence[Any], files: Mapping[str, Sequence[Path]]) -> N
 
 
 def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float | None) -> Lens:
-    """Return the lens of a camera. If it is not described, its kind comes from a frame."""
+    """Return the lens of a camera.
+
+    If ``cameras.json`` does not describe the camera, its kind is inferred from a frame, and its
+    field of view is ``hfov`` or a default.
+    """
     camera = described.get(name)
     file = frame.parent.parent / CAMERAS
     if camera is None:
@@ -148,7 +152,7 @@ def _read_lens(name: str, frame: Path, described: Mapping[str, Any], hfov: float
 
 
 def _number_or_none(values: Mapping[str, Any], key: str, file: Path) -> float | None:
-    """Return the number of ``key``, or None if it is missing or null."""
+    """Return the number for ``key``, or None if the key is missing or null."""
     value = values.get(key)
     if value is None:
         return None

@@ -23,7 +23,11 @@ from mitigate.worlds.recorded.source import MAX_INSTANTS, Source
 
 @dataclass(kw_only=True)
 class LerobotEpisode(Source):
-    """An episode of a dataset, and the cameras to read."""
+    """An episode of a dataset.
+
+    ``read`` holds the cameras to read. ``tolerance`` is the maximum time difference in seconds
+    between a row and its video frame.
+    """
 
     dataset: Dataset
     episode: Episode
@@ -40,8 +44,9 @@ def open_episodes(path: Path, options: Options) -> list[LerobotEpisode]:
 
     Raises:
         FileNotFoundError: If a file is missing.
-        ValueError: If the dataset is damaged or too long, or the options do not select at most one
-            camera of each kind.
+        ValueError: If the dataset is damaged, or if an option names an unknown camera or episode.
+            If no camera can be read, or if several cameras of one kind can be read. If an episode
+            is too long or has an unknown task.
     """
     dataset = open_dataset(path)
     chosen = []

@@ -53,7 +53,7 @@ def kind_of(encoding: str) -> str | None:
 
 
 def depth_unit(encoding: str) -> float:
-    """Return the metres per count of REP 118: 1 for 32FC1, and 0.001 for integers."""
+    """Return the metres per count that REP 118 prescribes: 1 for 32FC1, and 0.001 for integers."""
     return 1.0 if encoding == "32FC1" else 0.001
 
 
@@ -67,7 +67,10 @@ def read_pose(message: Any) -> tuple[float, float, float]:
 
 
 def _field(message: Any, *names: str) -> Any:
-    """Return the first existing field of ``names``, which differ between ROS 1 and 2, or None."""
+    """Return the value of the first of ``names`` that is a field of the message, or None.
+
+    Several names are needed because ROS 1 and ROS 2 name some fields differently.
+    """
     return next((getattr(message, name) for name in names if hasattr(message, name)), None)
 
 
@@ -112,9 +115,15 @@ def read_lens(kind: str, message: Any, path: Path) -> Lens:
 
 
 def read_image(message: Any, kind: str, path: Path, unit: float | None = None) -> np.ndarray:
-    """Return an image: RGB as uint8 [H, W, 3], or depth in metres as float32 [H, W] (0: missing).
+    """Return the image of a message, which is an Image or a CompressedImage.
 
-    ``unit`` is metres per integer step of depth. If None, :func:`depth_unit` determines it.
+    RGB is uint8 [H, W, 3]. Depth is float32 [H, W] in metres, and missing depth is 0.
+
+    Args:
+        message: The message.
+        kind: "rgb" or "depth".
+        path: The bag, for error messages.
+        unit: Metres per integer step of depth. If None, :func:`depth_unit` determines it.
 
     Raises:
         DamagedImage: If the image cannot be decoded.

@@ -73,7 +73,7 @@ class Options:
         return MAX_FRAME_GAP if self.tolerance is None else self.tolerance
 
     def check(self, path: Path, kind: str) -> None:
-        """Raise ValueError if an option is set that does not apply to the recording of ``kind``."""
+        """Raise ValueError if an option is set that does not apply to recordings of ``kind``."""
         for name, kinds in KINDS.items():
             if kind not in kinds and vars(self)[name] != vars(Options())[name]:
                 advice = f"Remove {name}=."

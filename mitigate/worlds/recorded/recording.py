@@ -170,12 +170,13 @@ def _read_views(
     size: int,
     crop: bool,
 ) -> tuple[dict[str, np.ndarray], np.ndarray, dict[str, tuple[int, int]], float]:
-    """Read the square views at the chosen time steps.
+    """Read the square views at the chosen time steps. :func:`load` describes the arguments.
 
     Returns:
-        The frames of the readable steps as in :class:`Recording`, which steps are readable (bool
-        [T]), the height and width of each camera's images, and the tangent of half the field of
-        view of the square views.
+        The tuple (frames, readable, shapes, tangent). ``frames`` contains the frames of the
+        readable steps in the format of :class:`Recording`. ``readable`` (bool [T]) states whether
+        all images of a chosen step could be read. ``shapes`` contains the height and width of each
+        camera's images. ``tangent`` is the tangent of half the field of view of the square views.
     """
     views = 1 + max(view for _, view in view_cameras)
     shape = (len(chosen), *([views] if views > 1 else []), size, size)
@@ -218,7 +219,11 @@ def _read_views(
 
 
 def kinds(source: Source, views: int) -> list[str]:
-    """Return which kinds of frames ("rgb", "depth") :func:`load` would read."""
+    """Return which kinds of frames ("rgb", "depth") :func:`load` would read.
+
+    Raises:
+        ValueError: If the source lacks a camera.
+    """
     return sorted({kind for kind, _ in _assign_cameras(source, views)}, reverse=True)
 
 
@@ -298,6 +303,10 @@ class RecordedWorld(World):
         return self._observation()
 
     def step(self, action: int) -> Observation:
+        """Return the next recorded observation.
+
+        When the episode ends, return the last observation again.
+        """
         if self.done:
             raise RuntimeError("The recording is over. Call reset() before step().")
         self.index += 1
@@ -305,6 +314,7 @@ class RecordedWorld(World):
         return self._observation()
 
     def measures(self) -> dict[str, float]:
+        """Return an empty dict, because the driver and not the agent chose the path."""
         return {}
 
     def _observation(self) -> Observation:
@@ -352,9 +362,15 @@ class Step:
         """Choose the recorded times at which an agent receives an observation.
 
         The earliest time is always chosen. A later time is chosen if it is about one step or more
-        after the previously chosen time. If ``poses`` (float64 [N, 3]) are known, the final time is
-        also chosen. If the final two chosen times then have nearly the same pose, only the final
-        time is kept.
+        after the previously chosen time. If poses are known, the final time is also chosen. If the
+        final two chosen times then have nearly the same pose, only the final time is kept.
+
+        Args:
+            times: float64 [N], seconds.
+            poses: float64 [N, 3], or None if unknown.
+
+        Returns:
+            Indices of the chosen times, int [T].
         """
         chosen = [0]
         for index in range(1, len(times)):
@@ -396,7 +412,8 @@ def turn(before: float, after: float) -> float:
 def driver_actions(poses: np.ndarray) -> Driven:
     """Return the motions between the poses [T, 3]. The last action is STOP.
 
-    The larger part of a motion, in units of 0.25 m and 15 degrees, determines its action.
+    If a step both moves and turns, the larger part determines its action. The parts are compared in
+    units of 0.25 m and 15 degrees.
     """
     count = len(poses)
     actions = np.full(count, STOP)

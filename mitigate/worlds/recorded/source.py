@@ -32,9 +32,11 @@ MAX_CENTRE_OFFSET = 4.0
 # A heading is defined if the horizontal component of a unit direction is at least this.
 # The direction then points at most 73 degrees up or down.
 MIN_LEVEL = 0.3
-SET_UNIT = "Set unit= (metres per count), such as unit=0.0001."
 # maximum relative difference between the aspect ratios of an image and its CameraInfo
 MAX_ASPECT_ERROR = 0.02
+
+# advice for depth that is stored as integers
+SET_UNIT = "Set unit= (metres per count), such as unit=0.0001."
 
 
 @dataclass(frozen=True)
@@ -84,7 +86,7 @@ class Lens:
         """Return (fx, fy, cx, cy) in pixels for an image of this size.
 
         Raises:
-            ValueError: If its aspect ratio differs from that of ``size``.
+            ValueError: If the aspect ratio of the image differs from the aspect ratio of ``size``.
         """
         if self.focal is None or self.centre is None or self.size is None:
             focal = width / 2 / math.tan(math.radians(self.hfov) / 2)
@@ -187,7 +189,11 @@ def clean_depth(depth: np.ndarray) -> np.ndarray:
 
 
 def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Find the element of ``others`` (increasing) that is nearest to each element of ``times``.
+    """Find the element of ``others`` that is nearest to each element of ``times``.
+
+    Args:
+        times: float64 [N], seconds.
+        others: float64 [M], increasing, in seconds.
 
     Returns:
         Indices into ``others`` (int [N]), and the distances in seconds (float64 [N]).
@@ -202,7 +208,13 @@ def find_nearest(times: np.ndarray, others: np.ndarray) -> tuple[np.ndarray, np.
 def interpolate_poses(
     times: np.ndarray, table: np.ndarray, tolerance: float = MAX_FRAME_GAP
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolate the poses of ``table``, float64 [M, 4] (time, x, y, heading), at ``times`` [N].
+    """Interpolate poses at ``times``.
+
+    Args:
+        times: float64 [N], seconds.
+        table: float64 [M, 4], (time, x, y, heading) of the known poses.
+        tolerance: If a recorded pose is at most this many seconds from a time, the pose at that
+            time counts as known.
 
     Returns:
         The poses (float64 [N, 3]), and whether each pose is known (bool [N]). Poses are unknown
@@ -226,7 +238,7 @@ def interpolate_poses(
 class Instants:
     """The time steps at which all cameras have a frame and the pose is known.
 
-    ``frames`` holds, for each camera, the index of its frame at each time step (int [N]), and
+    ``frames`` holds, for each camera, the index of its frame at each time step (int [N]).
     ``dropped`` is the number of skipped time steps.
     """
 

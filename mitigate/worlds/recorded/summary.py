@@ -26,8 +26,9 @@ FAR_MEDIAN = 10.0
 class Camera:
     """The camera of a sensor that faces forward.
 
-    ``shape`` is the height and width of its images, ``format`` describes how they are stored, and
-    ``border`` is the fraction of a view's pixels that lie outside its field of view.
+    ``shape`` is the height and width of the images in pixels. ``format`` describes where and how
+    the images are stored. ``border`` is the fraction of a view's pixels that lie outside the
+    camera's field of view.
     """
 
     lens: Lens
@@ -39,7 +40,11 @@ class Camera:
 def describe(
     source: Source, recording: Recording, cameras: Mapping[str, Camera], step: Step
 ) -> list[str]:
-    """Return one line each for the drive, its cameras, its pose and its instruction."""
+    """Return one line each for the drive, its cameras, its pose and its instruction.
+
+    ``cameras`` maps each sensor to the camera that faces forward. ``step`` is the distance between
+    two time steps.
+    """
     seconds = float(source.times[-1] - source.times[0])
     drive = f"{recording.name}: {counted(len(recording.times), 'step')}"
     if source.stepped:

@@ -37,8 +37,9 @@ COMPRESSED = ("/compressed", "/compressedDepth")
 class Topics:
     """The names of the topics to read from a bag.
 
-    ``info`` and ``depth_info`` hold the CameraInfo of the RGB and the depth camera. If a name is
-    None, the only suitable topic is read. If it is "none", no topic is read.
+    ``rgb`` and ``depth`` contain images, and ``pose`` contains poses of the robot. ``info`` and
+    ``depth_info`` contain the CameraInfo of the RGB and the depth camera. If a name is None, the
+    only suitable topic is read. If it is "none", no topic is read.
     """
 
     rgb: str | None = None
@@ -61,13 +62,13 @@ def choose_topics(
         path: Path of the bag, for error messages.
         available: Message type of each topic in the bag.
         topics: The topics that the user chose.
-        counts: Number of messages of each topic. A pose topic with a single message is no
-            trajectory if an image topic has several messages.
-        encodings: Encoding of the first image of each topic. Without it, the name of the topic
-            decides whether it contains depth.
+        counts: Number of messages of each topic, if known. A pose topic with a single message does
+            not count as a trajectory if an image topic has several messages.
+        encodings: Encoding of the first image of each topic, if known. If it is unknown, the name
+            of the topic decides whether the topic contains depth.
 
     Returns:
-        The chosen topics by name, without those that the bag lacks.
+        The chosen topics by name. Names for which the bag has no topic are absent.
 
     Raises:
         ValueError: If a chosen topic is missing or has the wrong type, if several topics are
@@ -123,8 +124,9 @@ def _sort_images(
 ) -> tuple[list[str], list[str]]:
     """Return the topics that contain RGB images and the topics that contain depth images.
 
-    The encoding decides; if it allows both kinds, the name decides. Topics with a suitable name are
-    preferred: ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
+    The encoding decides the kind of a topic. If the encoding allows both kinds, the name decides.
+    If several topics of one kind have a suitable encoding, topics with a suitable name are
+    preferred. For example, ``/camera/depth/colored`` is RGB only if there is no other RGB topic.
     """
     named_depth = [name for name in images if _DEPTH_TOPIC.search(name)]
     depth = []
@@ -163,9 +165,10 @@ def _candidates(
 
 
 def _infos_of(topic: str, infos: Sequence[str]) -> list[str]:
-    """Return the CameraInfo topics of an image topic: ``<camera>/camera_info``.
+    """Return the CameraInfo topics of an image topic.
 
-    Without it, return those of the same namespace that share the most words with the topic.
+    In ROS, the name is ``<camera>/camera_info``. If that topic is missing, return the topics that
+    start with the same namespace and share the most words with the image topic.
     """
     namespace = topic
     while "/" in namespace.strip("/"):

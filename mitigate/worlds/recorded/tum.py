@@ -42,8 +42,8 @@ def is_tum(folder: Path) -> bool:
 def read_tum(path: Path, options: Options) -> list[Frames]:
     """Read the drive in a folder with the layout of TUM RGB-D.
 
-    A time step is an RGB image with the nearest depth image and pose in time. The heading is the
-    direction of the camera's optical axis.
+    A time step consists of an RGB image, and of the depth image and the pose that are nearest to it
+    in time. The heading is the direction of the camera's optical axis.
     """
     if any((path / name).is_file() for name in LISTS):
         listed = {kind: _read_list(path, f"{kind}.txt") for kind in (RGB, DEPTH)}
@@ -76,7 +76,10 @@ def _read_list(path: Path, name: str) -> list[tuple[float, Path]]:
 
 
 def _read_associations(path: Path) -> dict[str, list[tuple[float, Path]]]:
-    """Read lines "time file time file". The first line decides which column is depth."""
+    """Read lines "time file time file".
+
+    The first line determines which column contains RGB and which column contains depth.
+    """
     rows = list(read_rows(path / ASSOCIATIONS, 4))
     pairs = [
         [_read_entry(path, ASSOCIATIONS, n, row[at : at + 2]) for n, row in rows] for at in (0, 2)
@@ -107,7 +110,9 @@ def _read_trajectory(file: Path) -> np.ndarray:
     rows = []
     for line, row in read_rows(file, 8):
         numbers = [number(word, file, line) for word in row[:8]]
-        rows.append((*numbers[:3], heading_along(numbers[4:], (0.0, 0.0, 1.0))))
+        time, x, y = numbers[:3]
+        heading = heading_along(numbers[4:], (0.0, 0.0, 1.0))
+        rows.append((time, x, y, heading))
     if not rows:
         raise ValueError(
             f"{file} has no pose. Add poses. To read the images without poses, delete this file."

@@ -30,7 +30,7 @@ class Bomb(ValueError):
 
 
 class Budget:
-    """Counter of the bytes to which a bag of ``size`` bytes may expand."""
+    """Counter that limits how many bytes a bag of ``size`` bytes may expand to."""
 
     def __init__(self, size: int) -> None:
         self.limit = self.left = FREE + RATIO * size
@@ -81,7 +81,11 @@ def _check(files: list[Path], size: int) -> None:
 
 
 def check_tables(file: Path) -> None:
-    """Raise ValueError if a query of the database could run code that is stored in it."""
+    """Check that a query of a database cannot run code that is stored in the database.
+
+    Raises:
+        ValueError: If the database has views, triggers, virtual tables or computed columns.
+    """
     try:
         with closing(sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)) as base:
             schema = base.execute("SELECT type, name, sql FROM sqlite_master LIMIT 1000").fetchall()
@@ -100,7 +104,10 @@ def check_tables(file: Path) -> None:
 
 
 def _count(unpacked: bytes) -> bytes:
-    """Subtract decompressed data from the budget of the last opened bag, and return it."""
+    """Subtract the length of decompressed data from the budget, and return the data.
+
+    The budget is that of the bag that was opened last.
+    """
     if _budgets:
         _budgets[-1].spend(len(unpacked))
     return unpacked
@@ -112,7 +119,9 @@ def _max_length() -> int:
 
 
 def decompress_bounded(make: Callable[[], Any], data: bytes) -> bytes:
-    """Decompress concatenated streams within the budget, each with a new decompressor of ``make``.
+    """Decompress one or several concatenated streams within the budget.
+
+    ``make`` returns a new decompressor for each stream.
 
     Raises:
         Bomb: If the budget is exceeded.

@@ -19,7 +19,8 @@ SUPERSAMPLING = 4
 def covered_tangent(cameras: Iterable[tuple[Lens, tuple[int, int]]]) -> float:
     """Return the tangent of half of the largest square field of view that all cameras cover.
 
-    ``cameras`` are lenses with the height and width of their images. The maximum is 1 (90 degrees).
+    The maximum is 1, which means 90 degrees. ``cameras`` holds the lens of each camera, and the
+    height and width of its images.
 
     Raises:
         ValueError: If the field of view would be narrower than ``MIN_HFOV``.
@@ -55,7 +56,9 @@ def _edges(
 def square_view(frame: np.ndarray, lens: Lens, size: int, tangent: float = 1.0) -> np.ndarray:
     """Crop and resize a frame, uint8 [H, W, 3] or float32 [H, W], to a square view.
 
-    ``tangent`` is the tangent of half the angle that the view covers.
+    ``lens`` is the lens of the camera that took the frame, and ``size`` is the height and width of
+    the view in pixels. ``tangent`` is the tangent of half the angle that the view covers, which is
+    1 for 90 degrees.
 
     Returns:
         The view, uint8 [size, size, 3] or float32 [size, size, 1]. If the frame already is such a
