@@ -18,7 +18,10 @@ _I16, _I32 = np.int16, np.int32
 
 @njit(cache=True)
 def _pad(view, y, rx, scale, row):
-    """Write row y of ``view``, times ``scale``, to ``row`` [3 (W + 2 rx)], with repeated edges."""
+    """Write row y of ``view``, multiplied by ``scale``, to ``row``, and repeat the edge pixels.
+
+    ``view`` is uint8 [H, W, 3], and ``row`` has 3 (W + 2 rx) entries.
+    """
     height, width, _ = view.shape
     source = view[min(max(y, 0), height - 1)].reshape(-1)
     middle = row[3 * rx : 3 * (rx + width)]
@@ -32,7 +35,10 @@ def _pad(view, y, rx, scale, row):
 
 @njit(cache=True)
 def _hat(row, out):
-    """Smooth a row per colour: out = (left + 2 centre + right) / 4, rounded."""
+    """Smooth a row per colour: out = (left + 2 centre + right) / 4, rounded.
+
+    ``out`` is 6 entries shorter than ``row``.
+    """
     left, centre, right = row, row[3:], row[6:]
     for i in range(out.size):
         outer = _I16(_I16(left[i]) + _I16(right[i]))
@@ -50,7 +56,10 @@ def _add_taps(total, a, b, c, d, wa, wb, wc, wd):
 
 @njit(cache=True)
 def _mix(total, blurred, source, remainder, target):
-    """Set ``target`` to (total * blurred + source * remainder) / 65536, and ``total`` to zero."""
+    """Compute target = (total * blurred + source * remainder) / 65536, rounded.
+
+    Then set ``total`` to zero.
+    """
     for i in range(target.size):
         mean = _I32(_I32(total[i]) * blurred)
         target[i] = _I32(_I32(mean + _I32(_I32(source[i]) * remainder)) + _I32(32768)) >> 16
@@ -115,7 +124,10 @@ def line(views, dy, dx, weights, step, strength, out):
 
 @njit(cache=True)
 def _smooth(row, near, far):
-    """Compute row = (row + 2 near + far) / 4 in place, for int16 values in [0, 2^14]."""
+    """Compute row = (row + 2 near + far) / 4 in place, for int16 values in [0, 2^14].
+
+    ``row`` must not overlap the other two arrays.
+    """
     for i in range(near.size):
         outer = _I16(_I16(row[i] + far[i]) >> _I16(1))
         row[i] = _I16(_I16(_I16(outer + near[i]) + _I16(1)) >> _I16(1))
@@ -131,7 +143,10 @@ def _add_pairs(total, a, b, wa, c, d, wc):
 
 @njit(cache=True)
 def _weigh(values, centre, step, weights, rounding, total):
-    """Write the weighted sum of ``values`` around ``centre``, at multiples of ``step``."""
+    """Write to ``total`` the weighted sum of ``values`` (int16) around the index ``centre``.
+
+    Neighbouring taps are ``step`` values apart.
+    """
     middle = values[centre:]
     for i in range(total.size):
         twice = _I16(middle[i] + middle[i])

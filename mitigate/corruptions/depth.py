@@ -45,7 +45,9 @@ def echo_shift(gap: np.ndarray, severity: float) -> np.ndarray:
 
 @lru_cache(maxsize=32)
 def echo_polynomial(severity: float) -> np.ndarray:
-    """Return p (float32 [8], lowest power first) with echo_shift(gap) = gap * p(gap) to 0.01 mm.
+    """Return the coefficients of a polynomial p with echo_shift(gap) = gap * p(gap).
+
+    The coefficients are float32 [8], lowest power first. The error is at most 0.01 mm.
 
     The polynomial interpolates the shift at the Chebyshev nodes of [0, 2.5] m, where the shift is
     smooth. The compiler can vectorise a polynomial, but not table look-ups.
@@ -66,7 +68,10 @@ def larger(row, other):
 
 @njit(cache=True)
 def farthest_along(row, spare, reach):
-    """Replace row[i] by the maximum of row[i] to row[i + 2 * reach], doubling the window."""
+    """Replace row[i] by the maximum of row[i] to row[i + 2 * reach].
+
+    The window is doubled repeatedly.
+    """
     have, want, size = 1, 2 * reach + 1, row.size
     while have < want:
         step = min(have, want - have)
@@ -78,7 +83,11 @@ def farthest_along(row, spare, reach):
 
 @njit(cache=True)
 def extremes(view, reach, sign, out):
-    """Write to ``out`` the maximum of sign * z (valid z only) in the square around each pixel."""
+    """Write to ``out`` [H, W] the maximum of sign * z in a square around each pixel.
+
+    The side of the square is 2 * reach + 1. Invalid pixels are ignored. The result is -inf if no
+    pixel in the square is valid.
+    """
     height, width = view.shape
     rows = height + 2 * reach
     wide = np.full((rows, width + 2 * reach), np.float32(-np.inf), np.float32)
@@ -149,7 +158,8 @@ _U = np.uint64
 def _add_noise(views, streams, base, square, z_max, table, out):
     """Add noise in blocks of 256 pixels.
 
-    The look-ups of normal numbers have their own loop, so that the compiler vectorises the other.
+    For each block, a first loop reads normal random numbers from the table. The arithmetic is in a
+    second loop, because the compiler can vectorise it only without table look-ups.
     """
     draws = np.empty(256, np.float32)
     for v in range(views.shape[0]):
@@ -190,6 +200,7 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
 
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
+    # the offset is the same for HOLE_FRAMES frames
     placement = Key(key.seed, key.episode, int(key.frame) // HOLE_FRAMES)
     return view_streams(placement, "missing_offset", views)
 

@@ -42,13 +42,13 @@ _U = np.uint64
 
 @dataclass(frozen=True)
 class Noise:
-    """Exposure ratio, gain K, Tukey lambda, and the sigmas of read and row noise."""
+    """Noise parameters at one severity."""
 
-    ratio: float
-    gain: float
-    shape: float
-    read: float
-    row: float
+    ratio: float  # exposure ratio
+    gain: float  # K
+    shape: float  # Tukey lambda
+    read: float  # sigma of the read noise
+    row: float  # sigma of the row noise
 
 
 def noise_at(severity: float) -> Noise:
@@ -60,7 +60,10 @@ def noise_at(severity: float) -> Noise:
 
 
 def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
-    """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution (l = ``shape``)."""
+    """Return quantiles (u^l - (1 - u)^l) / l of the Tukey lambda distribution (l = ``shape``).
+
+    For l = 0, this is the logistic distribution.
+    """
     if abs(shape) < 1e-9:
         return np.log(u / (1.0 - u))
     return (u**shape - (1.0 - u) ** shape) / shape
@@ -68,7 +71,11 @@ def tukey_lambda(u: np.ndarray, shape: float) -> np.ndarray:
 
 @njit(cache=True)
 def _photon_table(means, points, deviates, out):
-    """Compute Poisson quantiles [means, points], for means above 64 by Cornish-Fisher."""
+    """Compute Poisson quantiles [means, points].
+
+    They are exact for means up to 64. For larger means, the Cornish-Fisher expansion approximates
+    them.
+    """
     for level in range(means.size):
         mean = means[level]
         if mean > 64.0:
@@ -132,7 +139,10 @@ def _levels(source, opacity, part, out):
 
 @njit(cache=True)
 def _sample(views, opacity, streams, row_streams, photons, read, row, decode, offset, out):
-    """Sample noisy frames; unsigned indices avoid numba's check for negative indices."""
+    """Sample noisy frames (uint8 [V, H, W, 3]).
+
+    Unsigned indices avoid numba's check for negative indices.
+    """
     count, height, width, _ = views.shape
     size = 3 * width
     flat, into = views.reshape(count, height, size), out.reshape(count, height, size)

@@ -1,4 +1,7 @@
-"""Corrupt the frames of a folder and write them to a new folder; runs can be resumed."""
+"""Corrupt the frames of a folder and write them to a new folder.
+
+Runs can be resumed, and files are written atomically.
+"""
 
 from __future__ import annotations
 
@@ -113,7 +116,8 @@ def run(source: Path | str, out: Path | str, settings: Settings) -> dict:
     files of the episode.
 
     Returns:
-        The summary with settings, counts and skipped files, as in ``out/corrupt.json``.
+        The summary with settings, counts and skipped files, which is also written to
+        ``out/corrupt.json``.
 
     Raises:
         FileNotFoundError: If the folder does not exist or contains no frame.
@@ -224,7 +228,10 @@ def _output(path: Path, form: str) -> Path:
 
 
 def _begin(out: Path, settings: Settings, plan: Plan) -> dict:
-    """Check that an earlier run in ``out`` had the same settings and episodes; write both."""
+    """Check that an earlier run in ``out`` had the same settings and episodes.
+
+    Then write both to ``out``.
+    """
     versions = {"suite_version": SUITE_VERSION, **version(settings.corruption)}
     settings_now = {**versions, **asdict(settings), "unit": settings.metres_per_count}
     earlier, episodes = earlier_summary(out, settings_now), plan.episodes()

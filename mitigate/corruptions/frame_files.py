@@ -53,7 +53,9 @@ class LeftOutError(ValueError):
 def modality(path: Path) -> str:
     """Return the modality of a file, "rgb" or "depth", from its name and, for PNG, its header.
 
-    Raises LeftOutError for other files, and for pipes and devices, which may never end.
+    Raises:
+        LeftOutError: If the file has neither modality, or is a pipe or a device, which may never
+            end.
     """
     if os.path.exists(path) and not os.path.isfile(path):
         raise LeftOutError("is not a regular file")
@@ -86,12 +88,18 @@ def corrupt_file(
     corrupt_frame: Callable[[np.ndarray], np.ndarray],
     no_reading: int = NO_READING,
 ) -> bytes:
-    """Corrupt the frame in a file, and return the content of an output file of type ``suffix``.
+    """Corrupt the frame in the file ``path``, and return the content of the output file.
 
-    The argument of ``corrupt_frame`` is uint8 [H, W, 3], or float32 metres in the shape of the
-    file. Pixels that it does not change keep their stored values. In a 16-bit PNG, a count is
-    ``unit`` metres; 0 and ``no_reading`` mean "no reading". Raises LeftOutError if the file is
-    damaged or has an unsupported format.
+    Args:
+        path: The file to read.
+        suffix: Suffix of the output file, which determines its format.
+        unit: Metres per count of a 16-bit PNG.
+        corrupt_frame: Function that corrupts one frame: uint8 [H, W, 3], or float32 metres in the
+            shape of the file. Pixels that this function does not change keep their stored values.
+        no_reading: Pixel value of a 16-bit PNG that, like 0, means "no reading".
+
+    Raises:
+        LeftOutError: If the file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         form = "PNG" if suffix.lower() == ".png" else "JPEG"
@@ -129,8 +137,12 @@ def counts(metres: np.ndarray, unit: float) -> np.ndarray:
 def read(path: Path, unit: float) -> np.ndarray:
     """Read a frame as uint8 [H, W, 3], or as float32 metres [H, W, 1].
 
-    A count of a 16-bit PNG is ``unit`` metres. Raises LeftOutError if the file is damaged or has an
-    unsupported format.
+    Args:
+        path: The file.
+        unit: Metres per count of a 16-bit PNG.
+
+    Raises:
+        LeftOutError: If the file is damaged or has an unsupported format.
     """
     if modality(path) == RGB:
         return _decode(path)
@@ -141,11 +153,17 @@ def read(path: Path, unit: float) -> np.ndarray:
 
 
 def check_scale(paths: Sequence[Path], unit: float, z_max: float) -> None:
-    """Check that the assumed unit of depth files is plausible, by a sample of the files.
+    """Check that the assumed unit of depth files is plausible; only a sample of the files is read.
 
-    ``unit`` is the assumed number of metres per count of a 16-bit PNG. Raises ValueError if most
-    PNG depth values are at least ``z_max``, or all are less than ``CLOSEST`` (the unit is probably
-    wrong), or if all NPY depth values are at most 1 (they are probably normalised).
+    Args:
+        paths: Depth files (16-bit PNG and NPY).
+        unit: Assumed metres per count of a 16-bit PNG.
+        z_max: Maximum depth of the camera in metres.
+
+    Raises:
+        ValueError: If most PNG depth values are at least ``z_max``, or all are less than
+            ``CLOSEST`` (the unit is probably wrong), or if all NPY depth values are at most 1 (they
+            are probably normalised).
     """
     samples: dict[str, list[np.ndarray]] = {".png": [], ".npy": []}
     for path in paths[:: -(-len(paths) // SCALE_FILES) or 1]:
@@ -229,9 +247,9 @@ def _load(path: Path) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Frame:
-    """The relative path, the episode and the frame number of an input file."""
+    """An input file; its episode and frame number determine its key."""
 
-    path: Path
+    path: Path  # relative path
     episode: str
     number: int
 
@@ -255,11 +273,16 @@ class Plan:
 
 
 def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str) -> Plan:
-    """Find the frames of the modalities ``kinds`` in ``source`` and its folders.
+    """Find the frames of the modalities ``kinds``.
 
-    The modalities are numbered separately. A damaged file is skipped, but it also gets a frame
-    number. The folder of the results, ``out``, is skipped, even behind a link. ``episode`` is
-    "folder" (each folder is an episode) or "all" (all frames are one episode).
+    A damaged file is skipped, but it also gets a frame number.
+
+    Args:
+        source: The folder, which is searched recursively.
+        out: Folder of the results, or None. It is skipped, even if ``source`` contains a link to
+            it.
+        kinds: "rgb", "depth" or both; their frames are numbered separately.
+        episode: "folder" (each folder is an episode) or "all" (all frames are one episode).
     """
     plan = Plan()
     counts: Counter[tuple[str, str]] = Counter()
@@ -282,7 +305,7 @@ def make_plan(source: Path, out: Path | None, kinds: Sequence[str], episode: str
 
 
 def count_suffixes(suffixes: Mapping[str, int]) -> str:
-    """Return the number of files per suffix, highest first: "3 .tif, 1 .webp"."""
+    """Return the number of files per suffix, most frequent first: "3 .tif, 1 .webp"."""
     ordered = sorted(suffixes, key=lambda suffix: (-suffixes[suffix], suffix))
     return ", ".join(f"{suffixes[suffix]} {suffix or 'without suffix'}" for suffix in ordered)
 

@@ -59,7 +59,11 @@ MAX_LISTED = 5  # number of skipped files that are printed; the summary lists al
 
 
 def parse(arguments: Sequence[str]) -> tuple[str, str, Settings, dict[str, str]]:
-    """Parse the arguments into IN, OUT, the settings, and the given ``DATASET_OPTIONS``."""
+    """Parse the arguments into IN, OUT, the settings, and the given ``DATASET_OPTIONS``.
+
+    Raises:
+        ValueError: If an argument is invalid.
+    """
     known = [option.name for option in fields(Settings)]
     (source, out), options = paths_and_options(arguments, ("IN", "OUT"), [*known, *DATASET_OPTIONS])
     of_dataset = {name: options.pop(name) for name in DATASET_OPTIONS if name in options}

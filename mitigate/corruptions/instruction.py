@@ -20,8 +20,9 @@ from mitigate.corruptions.language.tagger import Token, named
 from mitigate.corruptions.language.text import check_text
 from mitigate.corruptions.suite import INSTRUCTION, check_name, check_severity
 
-# part-of-speech tags of words that "capitalize" may change, and that "mask" may hide
+# part-of-speech tags of words that "capitalize" may change
 SPOKEN = words.bag("NOUN PROPN VERB ADP")
+# part-of-speech tags of words that "mask" may hide
 SLIGHT = words.bag("DET AUX CCONJ SCONJ PRON ADJ ADV PART ADP INTJ")
 # Misleading sentences by split and kind of attack. No kind of attack occurs in two splits, so a
 # safeguard that is trained on "train" is tested on new kinds. All sentences were written for this
@@ -35,7 +36,11 @@ _SLOT = re.compile(
 
 
 def prefixes(split: str) -> dict[str, tuple[str, ...]]:
-    """Return the misleading sentences of a split by kind of attack; raise ValueError for others."""
+    """Return the misleading sentences of ``split`` (one of ``SPLITS``) by kind of attack.
+
+    Raises:
+        ValueError: If ``split`` is unknown.
+    """
     if split not in _BANK:
         raise ValueError(
             f"split must be one of {', '.join(SPLITS)}, got {split!r}. Safeguards are trained on "
@@ -125,12 +130,12 @@ def is_rewritten(manner: str, severity: float, key: Key) -> bool:
 def inject_system_prompt(
     prompt: str | None, severity: float, key: Key | int | str
 ) -> str | NotApplicable:
-    """Insert misleading sentences into a system prompt, before the task's placeholder or at the
-    end.
+    """Insert misleading sentences into a system prompt.
 
-    The placeholder is the first ``{instruction}``, ``{task}`` or similar. The sentences and
-    ``severity`` are those of "black_box". If ``prompt`` is None or empty, the result is
-    NotApplicable.
+    The sentences are put before the placeholder for the task, or at the end of a prompt without a
+    placeholder. The placeholder is the first ``{instruction}``, ``{task}`` or similar. The
+    sentences and ``severity`` are those of "black_box". If ``prompt`` is None or empty, the result
+    is NotApplicable.
 
     Raises:
         ValueError: If the severity or key is invalid.

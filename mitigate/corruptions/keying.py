@@ -113,7 +113,10 @@ def as_key(key: Key | int | str) -> Key:
 
 @lru_cache(maxsize=256)
 def _episode_hash(seed: int, episode: str, name: str) -> tuple:
-    """Return the hash state, which callers must copy, and its 64-bit digest."""
+    """Hash seed, episode and name; return the state of the hash function and the 64-bit digest.
+
+    The state is cached, so callers must copy it before they add the frame.
+    """
     text = "".join(f"{len(part)}:{part}" for part in (str(seed), episode, name))
     state = blake2b(text.encode("utf-8", "surrogatepass"), digest_size=8, person=b"mitigate")
     return state, int.from_bytes(state.digest(), "little")
@@ -150,7 +153,7 @@ def uniform(value: int, counter: int = 0) -> float:
 
 
 def sign(key: Key, name: str) -> float:
-    """Return a random sign, 1 or -1, that is constant in an episode."""
+    """Return a random sign, 1 or -1, of the stream ``name``; it is constant in an episode."""
     return 1.0 if uniform(digest(key, name)) < 0.5 else -1.0
 
 
@@ -170,7 +173,10 @@ def view_streams(key: Key, name: str, views: int) -> np.ndarray:
 
 
 def unit_normals(bits: int) -> np.ndarray:
-    """Return normal quantiles of 2^bits equally likely bins, with unit variance, float64."""
+    """Return the standard normal quantiles at the centres of 2^bits equally likely bins, float64.
+
+    The quantiles are scaled to unit variance.
+    """
     count = 1 << bits
     half = np.array([NormalDist().inv_cdf((i + 0.5) / count) for i in range(count // 2)])
     table = np.concatenate([half, -half[::-1]])
@@ -265,8 +271,14 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
     """Sample a Gaussian random field on a torus.
 
     The field is sampled on a grid whose shorter side has ``FIELD_SIDE`` cells, and then resampled.
-    Therefore a frame and a copy of half its size get the same pattern. ``correlation`` is the
-    standard deviation of the smoothing kernel as a fraction of the shorter side.
+    Therefore a frame and a copy of half its size get the same pattern. If the aspect ratio of a
+    frame exceeds 32:1, the cells are not square.
+
+    Args:
+        value: Seed of the random numbers.
+        height: Height of the frame in pixels.
+        width: Width of the frame in pixels.
+        correlation: Standard deviation of the smoothing kernel as a fraction of the shorter side.
 
     Returns:
         The field (float32 [height, width]), which has unit standard deviation, and the cells before
@@ -281,11 +293,17 @@ def field(value: int, height: int, width: int, correlation: float) -> tuple:
 
 
 def top_place(cells: int, share: float) -> int:
-    """Return the index at which the highest ``share`` of ascending cells begins."""
+    """Return the index at which the highest fraction ``share`` of sorted cells begins.
+
+    The cells are sorted in ascending order; ``cells`` is their number.
+    """
     return cells - round(share * cells)
 
 
 def top_share(cells: np.ndarray, share: float) -> float:
-    """Return the threshold that a fraction ``share`` of the cells reaches, or infinity for 0."""
+    """Return the threshold that a fraction ``share`` of the cells reaches.
+
+    The threshold is infinity if ``share`` is 0.
+    """
     place = top_place(cells.size, share)
     return float("inf") if place == cells.size else float(np.partition(cells, place)[place])

@@ -34,7 +34,10 @@ NEUTRAL = (1.0, 1.0, 1.0)
 
 @njit(cache=True)
 def _expand(share, weight, out):
-    """Write min(share * weight per channel, 1) to ``out`` (int16 [H, 3 W]), unit 1/32768."""
+    """Write min(share * weight of the channel, 1) to ``out`` in units of 1/32768.
+
+    ``share`` is [H, W], and ``out`` is int16 [H, 3 W].
+    """
     for y in range(share.shape[0]):
         row, target = share[y], out[y]
         for c in range(3):
@@ -47,7 +50,10 @@ def _expand(share, weight, out):
 def opacity_mask(
     share: np.ndarray, strength: float, tint: tuple[float, float, float]
 ) -> np.ndarray:
-    """Return share [H, W] (>= 0) * strength * tint as opacity, int16 [H, 3 W], unit 1/32768."""
+    """Return the opacity mask: the product of ``share``, ``strength`` and ``tint``.
+
+    ``share`` is [H, W], with values of at least 0. The mask is int16 [H, 3 W] in units of 1/32768.
+    """
     out = np.empty((share.shape[0], 3 * share.shape[1]), np.int16)
     _expand(share, strength * np.array(tint), out)
     return out
@@ -87,9 +93,11 @@ def covered(views: np.ndarray, alpha: np.ndarray, colour: np.ndarray) -> np.ndar
 
 
 def ramp_terms(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray, bool]:
-    """Return the row (float32 [H]) and column terms (float32 [W]) of ``light_ramp``, and a flag.
+    """Return one term per image row and one per column, from which ``light_ramp`` is computed.
 
-    The ramp is the sum of both terms, or the square root of the sum if the flag is True.
+    Returns:
+        One term per row (float32 [H]), one term per column (float32 [W]), and a flag. If the flag
+        is True, the ramp is the square root of the sum of both terms; otherwise, it is the sum.
     """
     y, x = (np.arange(height) + 0.5) / height, (np.arange(width) + 0.5) / width
     if uniform(value, 0) < 0.5:
@@ -145,8 +153,8 @@ def flare_centres(
 
     The direction of the light is fixed in the world. It is sampled as a position in the image of a
     camera with a random yaw: column U(0.1, 0.9) * W and row U(0, 0.5) * H. View number k has the
-    yaw ``heading`` - 30 * k degrees and no pitch (``heading`` in radians, counter-clockwise). If
-    the heading is unknown, the position is sampled in view 0.
+    yaw ``heading`` - 30 * k degrees and no pitch (``heading`` in radians, counter-clockwise), for
+    any number of views. If the heading is unknown, the position is sampled in view 0.
     """
     column, row = 0.1 + 0.8 * uniform(value, 0), 0.5 * uniform(value, 1)
     # focal length in image widths
@@ -170,7 +178,10 @@ def flare_centres(
 
 @lru_cache(maxsize=1)
 def glow_table() -> np.ndarray:
-    """Return the glow at severity 1 for 0 to 1.5 image diagonals, float32 [GLOW_CELLS + 1]."""
+    """Return the glow at severity 1 for distances from 0 to 1.5 image diagonals.
+
+    The table is float32 [GLOW_CELLS + 1].
+    """
     r = np.arange(GLOW_CELLS + 1) * (GLOW_REACH / GLOW_CELLS)
     glow = FLARE_CORE * np.exp(-0.5 * (r / FLARE_CORE_WIDTH) ** 2)
     return (glow + FLARE_HALO * np.exp(-r / FLARE_HALO_WIDTH)).astype(np.float32)
@@ -178,16 +189,23 @@ def glow_table() -> np.ndarray:
 
 @njit(cache=True)
 def _look_up(down, right, table, out):
-    """Set out[y, x] to the entry of ``table`` that is nearest to sqrt(down[y] + right[x])."""
+    """Set out[y, x] to the table entry whose index is nearest to sqrt(down[y] + right[x]).
+
+    All arrays are float32.
+    """
     for y in range(down.size):
         for x in range(right.size):
             out[y, x] = table[np.int32(np.sqrt(down[y] + right[x]) + np.float32(0.5))]
 
 
 def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return squared distances to the pixel (x, y), per row (float32 [H]) and column (float32 [W]).
+    """Return squared distances to the pixel (x, y) along each axis.
 
-    Their unit is the cell size of ``glow_table``.
+    The unit of distance is the cell size of ``glow_table``.
+
+    Returns:
+        The squared vertical distance of each row (float32 [H]), and the squared horizontal distance
+        of each column (float32 [W]).
     """
     cells = GLOW_CELLS / GLOW_REACH / math.hypot(height, width)
     down = ((np.arange(height) + 0.5 - y) * cells) ** 2
@@ -197,7 +215,10 @@ def glow_terms(x: float, y: float, height: int, width: int) -> tuple[np.ndarray,
 
 @cached
 def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> np.ndarray:
-    """Return the opacity of the glow around the pixel (x, y), int16 [H, 3 W], unit 1/32768."""
+    """Return the opacity of the glow around the pixel (x, y).
+
+    The mask is int16 [H, 3 W] in units of 1/32768.
+    """
     glow = np.empty((height, width), np.float32)
     _look_up(*glow_terms(x, y, height, width), glow_table(), glow)
     return opacity_mask(glow, severity, FLARE_TINT)
@@ -205,7 +226,10 @@ def flare_mask(x: float, y: float, severity: float, height: int, width: int) -> 
 
 @lru_cache(maxsize=32)
 def disk_spans(severity: float, height: int, width: int) -> np.ndarray:
-    """Return the first column of the disk, and the one after its last, per row, int64 [H, 2]."""
+    """Return the span of columns that the disk covers in each row, int64 [H, 2].
+
+    A span is the first column of the disk and the column after its last one.
+    """
     radius = DISK_RADIUS * severity * min(height, width)
     reach = radius**2 - (np.arange(height) + 0.5 - 0.5 * height) ** 2
     half = np.sqrt(np.maximum(reach, 0.0))

@@ -79,7 +79,10 @@ def check_sensor(sensor: DepthSensor) -> None:
 
 @njit(cache=True)
 def _to_metres(clean, z_min, span, out):
-    """Convert valid depth to metres, other pixels to 0; return the largest valid value."""
+    """Convert valid depth to metres, and set all other pixels to 0.
+
+    Return the largest valid value of ``clean``.
+    """
     maximum = np.float32(0)
     for i in range(clean.size):
         value = clean[i]

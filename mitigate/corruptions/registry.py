@@ -52,7 +52,11 @@ AND = "+"  # separator between the names of a pair
 
 @lru_cache(maxsize=1)
 def plugin_records() -> dict[str, Record]:
-    """Return the records of installed packages; an invalid record only causes a warning."""
+    """Return the records of installed packages.
+
+    An invalid record is skipped with a warning, so that a broken package causes no error if it is
+    not used.
+    """
     records: dict[str, Record] = {}
     for point in entry_points(group=GROUP):
         try:
@@ -90,9 +94,12 @@ def names(*modalities: str) -> tuple[str, ...]:
 
 
 def unseen_names(*modalities: str, half: str = "") -> tuple[str, ...]:
-    """Return the unseen corruptions that change one of ``modalities``, of one half or both.
+    """Return the names of the unseen corruptions that change one of ``modalities``.
 
-    Raises ValueError for an unknown ``half``.
+    ``half`` restricts them to the validation or the test set.
+
+    Raises:
+        ValueError: If ``half`` is unknown.
     """
     if half not in ("", *HALVES):
         raise ValueError(unknown("half of the unseen corruptions", half, HALVES))
@@ -146,7 +153,7 @@ def version(name: str) -> dict[str, str]:
 
 
 def modality(name: str) -> str:
-    """Return the modality that a corruption changes, such as "rgb+depth" for some faults."""
+    """Return the modality that a corruption changes, or "rgb+depth" for faults of both sensors."""
     return record(name).modality
 
 

@@ -75,7 +75,10 @@ def tap_step(length: float) -> int:
 
 
 def motion_blur(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a nearly horizontal line blur of length 0.10 * severity * W, if over 1 px."""
+    """Blend with a nearly horizontal line blur of length 0.10 * severity * W.
+
+    Lengths below 1 px have no effect.
+    """
     length, angle = blur_line(severity, key, views.shape[2])
     if length < 1.0:
         return views.copy()
@@ -94,7 +97,10 @@ def low_light(views: np.ndarray, severity: float, key: Key, heading=None) -> np.
 
 
 def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Cover 0.45 * severity of the image with mud or water, where a random field is highest."""
+    """Cover a fraction 0.45 * severity of the image with mud or water.
+
+    A random field, which is fixed per episode, is highest at the covered pixels.
+    """
     height, width = views.shape[1:3]
     mask = masks.spatter_mask(digest(key, "spatter"), severity, height, width)
     colour = masks.spatter_colour(digest(key, "spatter_colour"))
@@ -102,7 +108,10 @@ def spatter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.nd
 
 
 def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Add, by screen blending, the glow of a light whose direction is fixed in the world."""
+    """Add the glow of a light, by screen blending, to the views that show the light.
+
+    The direction of the light is fixed in the world if the heading is known.
+    """
     count, height, width, _ = views.shape
     out, white = np.empty_like(views), masks.colour_row(WHITE, width)
     centres = masks.flare_centres(digest(key, "flare"), count, height, width, heading)
@@ -117,11 +126,11 @@ def flare(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndar
 
 @lru_cache(maxsize=64)
 def gaussian_weights(sigma: float) -> tuple[np.ndarray, int]:
-    """Return ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px, cut at 3 sigma.
+    """Return the arguments ``weights`` and ``levels`` of ``blur.gaussian`` for ``sigma`` px.
 
-    Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2 / 2. The weighted taps add
-    the remaining variance. Smoothing is repeated as long as the remaining sigma is at least
-    LEAST_TAP_SIGMA times the distance between taps.
+    The kernel ends at 3 sigma. Smoothing by (1 2 1)/4 with a step of h pixels adds the variance h^2
+    / 2. The weighted taps add the remaining variance. Smoothing is repeated as long as the
+    remaining sigma is at least LEAST_TAP_SIGMA times the distance between taps.
     """
     levels, variance = 0, sigma**2
     while variance - 0.5 * 4**levels >= (LEAST_TAP_SIGMA * 2 ** (levels + 1)) ** 2:

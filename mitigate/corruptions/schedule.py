@@ -129,10 +129,11 @@ class Schedule:
         return replace(self, names=names)
 
     def refresh(self, success: dict[str, float]) -> None:
-        """Recompute the weights from success rates by name; names of other corruptions are ignored.
+        """Recompute the weights from success rates by name.
 
-        A corruption without a new rate keeps its last rate. Only ``success_distributed`` uses the
-        rates; the other modes keep uniform weights.
+        Names that are not in the schedule are ignored. A corruption without a new rate keeps its
+        last rate. Only ``success_distributed`` uses the rates; the other modes keep uniform
+        weights.
 
         Raises:
             ValueError: If a corruption of the schedule has no rate, or a rate is outside [0, 1].
@@ -155,7 +156,10 @@ class Schedule:
             self._weights = [w / total if total > 0 else 1.0 / len(raw) for w in raw]
 
     def draw(self, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-        """Sample the corruption and the key of a frame from the arguments and the weights."""
+        """Sample the corruption and the key of a frame.
+
+        Both depend only on the arguments and the weights.
+        """
         episode = str(episode)
         if self.mode == "clean":
             return CLEAN, Key(seed, episode, frame)
@@ -184,11 +188,18 @@ class Schedule:
         return Corruption(name, low + place * (high - low))
 
     def state_dict(self) -> dict:
-        """Return the state as JSON data for a checkpoint."""
+        """Return the state as JSON data for a checkpoint.
+
+        A resumed run that loads it has the same weights.
+        """
         return {"success": None if self.success is None else dict(self.success)}
 
     def load_state_dict(self, state: dict) -> None:
-        """Restore the result of ``state_dict()``; raise ValueError for an invalid state."""
+        """Restore the result of ``state_dict()``.
+
+        Raises:
+            ValueError: If the state has no entry "success" or lacks a corruption of this schedule.
+        """
         if "success" not in state:
             raise ValueError(
                 f"The state of a Schedule must have the entry 'success', got only the entries "
@@ -201,9 +212,12 @@ class Schedule:
 
 
 def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tuple[Corruption, Key]:
-    """Return the corruption and the key of a frame; a Corruption applies to every frame.
+    """Return the corruption and the key of a frame.
 
-    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
+    If ``by`` is a Corruption, it applies to every frame.
+
+    Raises:
+        ValueError: If ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return by.draw(seed, episode, frame)
@@ -213,7 +227,8 @@ def drawn(by: Corruption | Schedule, seed: int, episode: str, frame: int) -> tup
 def names_of(by: Corruption | Schedule) -> tuple[str, ...]:
     """Return the names of the corruptions that ``by`` may apply; () if all frames stay clean.
 
-    Raises ValueError if ``by`` is neither a Corruption nor a Schedule.
+    Raises:
+        ValueError: If ``by`` is neither a Corruption nor a Schedule.
     """
     if isinstance(by, Schedule):
         return () if by.mode == "clean" else by.names

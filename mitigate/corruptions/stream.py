@@ -42,7 +42,7 @@ def shows_past(corruption: Corruption) -> bool:
 
 
 def mount_of(corruption: Corruption, key: Key) -> Mount | None:
-    """Return the displacement of the camera in a time step, or None without a camera fault."""
+    """Return the camera's displacement in a time step, or None if no camera fault is active."""
     parts = corruption.parts
     if parts and parts[0].name == GATE and not _draw(parts[0], key):
         return None
@@ -174,6 +174,9 @@ class FrameStream:
         return arriving[entry]
 
     def _recall(self, entry: str, number: int) -> tuple[int, np.ndarray]:
-        """Return the newest stored (step, frame) up to step ``number``, or else the oldest."""
+        """Return the newest stored pair (step number, frame) whose step is at most ``number``.
+
+        If no such pair is stored, return the oldest pair.
+        """
         past = self._past[entry]
         return next((instant for instant in reversed(past) if instant[0] <= number), past[0])

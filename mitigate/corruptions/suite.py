@@ -135,7 +135,11 @@ def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:
 
 
 def check_severity(severity: float) -> float:
-    """Return ``severity`` as a float; raise ValueError unless it is a number in [0, 1]."""
+    """Return ``severity`` as a float.
+
+    Raises:
+        ValueError: If it is a bool, or not a number in [0, 1].
+    """
     try:
         value = math.nan if isinstance(severity, (str, bool, np.bool_)) else float(severity)
     except (TypeError, ValueError):
@@ -194,7 +198,11 @@ class Corruption:
 
     @property
     def modalities(self) -> tuple[str, ...]:
-        """The corrupted modalities. A fault of both sensors also works with one of them."""
+        """The corrupted modalities: "rgb", "depth", "instruction".
+
+        A fault that affects both sensors has both modalities. It also works if only one of them is
+        available.
+        """
         records = [registry.record(part.name) for part in self.parts if part.name != GATE]
         return tuple(dict.fromkeys(m for record in records for m in record.modalities))
 
@@ -459,7 +467,8 @@ def corrupt_observation(
 def changed_entries(obs: Mapping[str, Any], part: Corruption) -> tuple[str, ...]:
     """Return the names of the entries of an observation that a single corruption changes.
 
-    Raises ValueError if there is no such entry.
+    Raises:
+        ValueError: If the observation has no entry that the corruption could change.
     """
     modalities = registry.record(part.name).modalities
     # each entry is named after its modality

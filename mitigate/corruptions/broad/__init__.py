@@ -21,14 +21,14 @@ STATE = "primitives, maps"  # what stays constant during an episode
 
 
 def broad_rgb(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Apply one to three primitives of ``rgb.py``, each up to strength ``severity``."""
+    """Apply one to three primitives of ``rgb.py`` with random strengths up to ``severity``."""
     from mitigate.corruptions.broad import rgb
 
     return rgb.compose(views, severity, key)
 
 
 def broad_depth(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Apply one to three primitives of ``depth.py``, each up to strength ``severity``."""
+    """Apply one to three primitives of ``depth.py`` with random strengths up to ``severity``."""
     from mitigate.corruptions.broad import depth
 
     return depth.compose(views, severity, key, sensor)

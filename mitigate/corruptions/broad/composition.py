@@ -54,7 +54,8 @@ def stream(value: int) -> np.random.Generator:
 def field(rng: np.random.Generator, shape: tuple[int, int], cell: float) -> np.ndarray:
     """Return a smooth random map, float32 [H, W], with mean 0 and standard deviation about 1.
 
-    Its grid of random values has a spacing of ``cell`` times the shorter side.
+    The map is interpolated from a grid of random values with a spacing of ``cell`` times the
+    shorter side.
     """
     height, width = shape
     size = max(1.0, cell * min(height, width))
@@ -70,7 +71,10 @@ def log_uniform(rng: np.random.Generator, low: float, high: float) -> float:
 
 
 def shapes(rng: np.random.Generator, shape: tuple[int, int], area: float) -> np.ndarray:
-    """Return a mask [H, W] of one to eight random shapes that cover a fraction ``area``."""
+    """Return a mask [H, W] of one to eight random shapes.
+
+    Together, the shapes cover about a fraction ``area`` of the image.
+    """
     height, width = shape
     mask = np.zeros((height, width), np.uint8)
     count = int(rng.integers(1, 9))

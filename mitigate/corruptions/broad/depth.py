@@ -86,7 +86,11 @@ def swapped(views, strength, rng, now):
 
 
 def holes(views, strength, rng, now):
-    """Remove or replace up to 0.7 * strength of the pixels, by a mixture of four criteria."""
+    """Remove or replace at most a fraction 0.7 * strength of the pixels.
+
+    A random mixture of four criteria selects the pixels: a smooth random map, independent noise,
+    distance and edges.
+    """
     weights = rng.dirichlet(np.full(4, 0.5)) * (1, 1, rng.choice((-1, 1)), 1)
     place = field(rng, views.shape[1:], log_uniform(rng, 0.02, 0.5))
     share, fill, out = 0.7 * strength * rng.random(), _fill(rng), views.copy()
@@ -110,7 +114,11 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Set some or all views to no reading, or to the maximum range."""
+    """Set all pixels of some views, or of all views, to no reading or to the maximum range.
+
+    All views are lost with probability 0.6 * strength; otherwise, each view is lost with
+    probability 0.5 * strength.
+    """
     share = 1.0 if rng.random() < 0.6 * strength else 0.5 * strength
     out = views.copy()
     out[now.random(len(views)) < share] = rng.choice((np.nan, np.nan, 1.0))
@@ -165,7 +173,10 @@ def spread(views, strength, rng, now):
 
 
 def torn(views, strength, rng, now):
-    """Shift bands of rows or columns, or exchange blocks of pixels, per episode or per frame."""
+    """Shift bands of rows or columns by random distances, or exchange blocks of pixels.
+
+    The changes are the same in all frames of an episode, or new for each frame.
+    """
     source = now if rng.random() < 0.5 else rng
     if rng.random() < 0.3:
         return _exchanged(views, strength, source, int(rng.integers(3, 9)))
@@ -195,9 +206,9 @@ def ghost(views, strength, rng, now):
 
 
 def _pattern(rng: np.random.Generator, shape: tuple[int, int]) -> np.ndarray:
-    """Return stripes, rings or checks with soft or sharp edges, float32 [H, W] from -1 to 1.
+    """Return a periodic map of stripes, rings or checks, float32 [H, W] from -1 to 1.
 
-    The period is 0.03 to 0.8 times the shorter side.
+    Edges are soft or sharp. The period is 0.03 to 0.8 times the shorter side.
     """
     (height, width), side = shape, min(shape)
     y, x = np.mgrid[:height, :width].astype(np.float32) / side
@@ -247,25 +258,49 @@ def _limit(views, strength, rng) -> np.float32:
 
 
 def _fill(rng: np.random.Generator) -> float:
-    """Sample the value that replaces depth: in most cases no reading (NaN)."""
+    """Sample the value that replaces depth.
+
+    It is NaN (no reading) with probability 0.6, and otherwise a fraction of the sensor's range.
+    """
     return float("nan") if rng.random() < 0.6 else float(rng.choice((1.0, rng.random())))
 
 
 def _each(views, change) -> np.ndarray:
-    """Apply ``change`` to each view; holes have the maximum range meanwhile."""
+    """Apply ``change`` to each view.
+
+    Before the change, holes are filled with the maximum range. After it, they are holes again.
+    """
     holes = np.isnan(views)
     out = np.stack([change(view) for view in np.where(holes, np.float32(1.0), views)])
     return np.where(holes, np.float32(np.nan), out)
 
 
 PRIMITIVES = (
-    *(curve, uneven, noisy, smooth, steps, warped, swapped, holes, hidden),
-    *(lost, patterned, tilted, wrapped, ranged, spread, torn, ghost),
+    curve,
+    uneven,
+    noisy,
+    smooth,
+    steps,
+    warped,
+    swapped,
+    holes,
+    hidden,
+    lost,
+    patterned,
+    tilted,
+    wrapped,
+    ranged,
+    spread,
+    torn,
+    ghost,
 )
 
 
 def compose(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Apply one to three primitives of the episode with random strengths up to ``severity``."""
+    """Apply one to three primitives with random strengths up to ``severity``.
+
+    The choice of primitives is fixed per episode.
+    """
     valid = (views > 0) & np.isfinite(views)
     z_max = np.float32(sensor.z_max)
     shares = np.where(valid, np.minimum(views, z_max) / z_max, np.float32(np.nan))

@@ -17,7 +17,10 @@ GAMMA = 2.2  # display gamma: light is proportional to (stored level)^GAMMA
 
 
 def exposure(views, strength, rng, now):
-    """Change the brightness, uniformly or by a random map, per episode or per frame."""
+    """Change the brightness uniformly or by a smooth random map.
+
+    The change is the same in all frames of an episode, or differs between frames.
+    """
     stops = strength * rng.uniform(*STOPS)
     if rng.random() < 0.3:
         stops = stops * now.uniform(0.0, 1.0)
@@ -28,7 +31,10 @@ def exposure(views, strength, rng, now):
 
 
 def tone(views, strength, rng, now):
-    """Add waves b_n sin(pi n x) with random b_n to each level x, per colour or in all (PRIME)."""
+    """Add the sum of the waves b_n sin(pi n x) to each level x, with random b_n (PRIME).
+
+    The three colours share one curve, or each colour gets its own curve.
+    """
     levels = np.linspace(0.0, 1.0, 256, dtype=np.float32)
     most = int(rng.integers(1, 6))
     colours = 3 if rng.random() < 0.5 else 1
@@ -109,7 +115,10 @@ def warped(views, strength, rng, now):
 
 
 def noisy(views, strength, rng, now):
-    """Add or multiply by noise of random grain size, distribution and colour, or by bands."""
+    """Add noise, or multiply by noise, of random grain size, distribution and colour.
+
+    The noise may form bands.
+    """
     height, width = views.shape[1:3]
     colours, amount = 3 if rng.random() < 0.5 else 1, 0.35 * strength * rng.uniform(0.3, 1.0)
     grain = rng.choice((1, 1, 2, 4)) * max(1, min(height, width) // 128)
@@ -125,7 +134,10 @@ def noisy(views, strength, rng, now):
 
 
 def covered(views, strength, rng, now):
-    """Blend with a random colour; the opacity is a random map, whose grain is fine or coarse."""
+    """Blend views with a random colour.
+
+    The opacity is a random map, whose structures are fine in some episodes and coarse in others.
+    """
     height, width = views.shape[1:3]
     soft, colour = log_uniform(rng, 0.1, 3.0), _colour(rng)
     level = rng.uniform(-0.3, 1.5) + (1.0 - strength)
@@ -140,7 +152,10 @@ def covered(views, strength, rng, now):
 
 
 def hidden(views, strength, rng, now):
-    """Fill random shapes with a colour, noise or other parts of the image."""
+    """Fill random shapes with a colour, noise or other parts of the image.
+
+    The shapes are the same in all views, or differ between views.
+    """
     height, width = views.shape[1:3]
     area, kind, alike = 0.6 * strength * rng.uniform(0.1, 1.0), rng.random(), rng.random() < 0.7
     mask, colour, out = shapes(rng, (height, width), area), _colour(rng), views.copy()
@@ -157,7 +172,10 @@ def hidden(views, strength, rng, now):
 
 
 def lost(views, strength, rng, now):
-    """Fill views, or a part of them, with grey, noise or another view, with 0.8 * strength."""
+    """Remove each view, or a part of it, with probability 0.8 * strength.
+
+    The removed pixels are filled with a constant grey level, noise or pixels of another view.
+    """
     height, width = views.shape[1:3]
     out, kind, level = views.copy(), rng.random(), rng.choice((0.0, 0.0, 0.5, 1.0))
     part = rng.random() < 0.3
@@ -186,12 +204,24 @@ def _each(views, change) -> np.ndarray:
 
 
 PRIMITIVES = (
-    *(exposure, tone, colour_mix, contrast, filtered, coarse),
-    *(warped, noisy, covered, hidden, lost),
+    exposure,
+    tone,
+    colour_mix,
+    contrast,
+    filtered,
+    coarse,
+    warped,
+    noisy,
+    covered,
+    hidden,
+    lost,
 )
 
 
 def compose(views: np.ndarray, severity: float, key: Key) -> np.ndarray:
-    """Apply one to three primitives of the episode with random strengths up to ``severity``."""
+    """Apply one to three primitives with random strengths up to ``severity``.
+
+    The choice of primitives is fixed per episode.
+    """
     changed = composed(views.astype(np.float32) / 255.0, severity, key, NAME, PRIMITIVES)
     return np.rint(np.clip(changed, 0.0, 1.0) * 255.0).astype(np.uint8)

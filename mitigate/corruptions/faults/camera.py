@@ -38,23 +38,23 @@ _DECIMALS = 12  # rotations are rounded, so that pixels do not depend on the las
 
 @dataclass(frozen=True)
 class Mount:
-    """A displacement of the camera (or of the rig of a panorama), or a change of its field of view.
-
-    All values except ``height`` are in degrees.
-    """
+    """A displacement of the camera or the rig of a panorama, or a change of its field of view."""
 
     height: float = 0.0  # metres up
-    pitch: float = 0.0  # up
-    roll: float = 0.0  # clockwise, seen from behind the camera
-    yaw: float = 0.0  # to the left
-    fov: float = 0.0  # by which the horizontal field of view is widened
+    pitch: float = 0.0  # degrees up
+    roll: float = 0.0  # degrees clockwise, seen from behind the camera
+    yaw: float = 0.0  # degrees to the left
+    fov: float = 0.0  # degrees by which the horizontal field of view is widened
 
     def hfov(self, degrees: float) -> float:
         """Return the new horizontal field of view of a camera that originally had ``degrees``."""
         return min(max(degrees + self.fov, NARROWEST), WIDEST)
 
     def rotation(self) -> np.ndarray:
-        """Return the matrix [3, 3] (right, forward, up) that applies roll, pitch, then yaw."""
+        """Return the rotation matrix [3, 3] for the axes (right, forward, up).
+
+        The matrix applies roll, then pitch, then yaw.
+        """
         return np.round(
             _turn(UP, self.yaw) @ _turn(RIGHT, self.pitch) @ _turn(FORWARD, self.roll), _DECIMALS
         )
@@ -106,7 +106,10 @@ def warp(
 
 @njit(inline="always")
 def _source(rotation, row, column, height, width, before, after):
-    """Return a pixel's source row and column, and its depth factor (0: behind the camera)."""
+    """Return the source row and column of a pixel, and its depth factor.
+
+    The factor is 0 if the pixel is behind the original camera.
+    """
     x = (2 * column + 1 - width) / width * after
     z = (height - 1 - 2 * row) / width * after
     right = rotation[0, 0] * x + rotation[0, 1] + rotation[0, 2] * z

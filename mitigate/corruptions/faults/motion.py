@@ -48,7 +48,10 @@ def motion_drift(severity: float, key: Key) -> Movement:
 
 
 def motion_gain(severity: float, key: Key) -> Movement:
-    """Return a ``Movement`` with wrong gains for steps and turns, constant in an episode."""
+    """Return a ``Movement`` with wrong gains for forward steps and for turns.
+
+    The two errors are sampled separately, and are constant in an episode.
+    """
     value = digest(key, "motion_gain")
     gain, turn = (1.0 + severity * GAIN * (2.0 * uniform(value, i) - 1.0) for i in range(2))
     return Movement(gain=gain, turn=turn)

@@ -38,8 +38,10 @@ GATE = "intermittent"
 def _frames_inside(name: str, period: int, longest: int, length: int, key: Key) -> int:
     """Return the number of frames of the current interval so far, or 0 outside of intervals.
 
-    Time is divided into periods of ``period`` frames, and each contains one interval of ``length``
-    <= ``longest`` frames. The first frame of an interval does not depend on its length.
+    The number includes this frame. Time is divided into periods of ``period`` frames. Each period
+    contains one interval of ``length`` frames, and ``longest`` is the maximum length. The first
+    frame of an interval does not depend on ``length``. ``name`` is hashed with the key to get the
+    random numbers of this fault.
     """
     phase = int(period * uniform(digest(key, name)))
     number, place = divmod(key.frame + phase, period)
@@ -92,7 +94,10 @@ def exposure_flicker(
 
 
 def intermittent(severity: float, key: Key) -> bool:
-    """Return whether the other corruption of the pair is active, at any severity."""
+    """Return whether the corruption that is paired with ``intermittent`` is active in this frame.
+
+    The result does not depend on the severity.
+    """
     return _frames_inside(GATE, ACTIVE_PERIOD, ACTIVE, ACTIVE, key) > 0
 
 

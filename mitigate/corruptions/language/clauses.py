@@ -43,14 +43,20 @@ _NO_COMMAND_AFTER = listed("no_command_after")
 
 @dataclass(frozen=True)
 class Clause:
-    """One command (``main``) and its condition (``when``), such as "once you reach the bed"."""
+    """One command (``main``) and its condition (``when``), such as "once you reach the bed".
+
+    The condition may be "".
+    """
 
     when: str
     main: str
 
 
 def clauses(text: str) -> list[Clause]:
-    """Return the clauses in order, without words that join them and final punctuation."""
+    """Return the clauses of ``text`` in order.
+
+    Words that join clauses and final punctuation are removed.
+    """
     parsed = []
     for sentence in _SENTENCE.split(text.strip()):
         pending = ""
@@ -82,7 +88,10 @@ def _led(text: str) -> str:
 
 
 def _divided(body: str) -> tuple[str, str] | None:
-    """Split "at the bench, turn left" into (condition, command); return None for other text."""
+    """Split text such as "at the bench, turn left" into (condition, command).
+
+    Return None for other text.
+    """
     if not _BEGINS_CONDITION.match(body):
         return None
     for match in _COMMAND.finditer(body):

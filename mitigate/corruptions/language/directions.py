@@ -39,7 +39,10 @@ _AROUND = re.compile(
 
 
 def about_turns(tokens: list[Token]) -> dict[int, int]:
-    """Map the first to the last token of every phrase that means turning around."""
+    """Find the phrases that mean turning around.
+
+    For each phrase, the result maps the index of its first token to the index of its last token.
+    """
     text, starts = "", {}
     for index, token in enumerate(tokens):
         starts[len(text)] = index
@@ -52,9 +55,10 @@ def about_turns(tokens: list[Token]) -> dict[int, int]:
 
 
 def directions(tokens: list[Token], turned: dict[int, int]) -> list[str]:
-    """Return the directions in order; one that is repeated without a movement counts once.
+    """Return the directions in order.
 
-    ``turned`` is the result of :func:`about_turns`.
+    A direction that is repeated without a movement in between counts once. ``turned`` is the result
+    of :func:`about_turns`.
     """
     names: list[str] = []
     last = skip = -1
@@ -144,7 +148,8 @@ _LONE_UNITS = _UNITS - bag("step steps m cm ft foot feet yard yards")
 def quantities(tokens: list[Token], turned: dict[int, int]) -> list[str]:
     """Return numbers, ordinals and distances in order: "two", "first", "two step", "meter".
 
-    Numbers inside phrases of ``turned`` (:func:`about_turns`), such as 180 degrees, are skipped.
+    ``turned`` is the result of :func:`about_turns`. Numbers in these phrases, such as 180 degrees,
+    are skipped.
     """
     inside = {place for first, last in turned.items() for place in range(first, last + 1)}
     names = []

@@ -41,11 +41,11 @@ class Facts:
 
 @dataclass(frozen=True)
 class _Reading:
-    """The facts of a text, its canonical words, and the first clause of each landmark."""
+    """The facts of a text, and the data from which two texts are compared."""
 
     facts: Facts
-    words: frozenset[str]
-    clause: dict[str, int]
+    words: frozenset[str]  # all words in canonical form
+    clause: dict[str, int]  # number of the clause in which each landmark first occurs
 
 
 def facts(text: str) -> Facts:
@@ -56,10 +56,10 @@ def facts(text: str) -> Facts:
 def check(original: str, rewritten: str) -> list[str]:
     """List the changes of meaning from ``original`` to ``rewritten``.
 
-    Every entry begins with its kind and a colon: "directions", "landmark order", "denial", or
-    "landmark", "number", "compass", "attribute" or "relation", followed by "lost" or "invented".
-    Synonyms in ``words.json`` are treated as equal. The order of landmarks may change within a
-    clause.
+    Every entry begins with its kind and a colon. The kinds are "directions", "landmark order",
+    "denial", "<fact> lost" and "<fact> invented". Here, <fact> is landmark, number, compass,
+    attribute or relation. Synonyms in ``words.json`` are treated as equal. The order of landmarks
+    may change within a clause.
     """
     before, after = _read(original), _read(rewritten)
     old, old_words = before.facts, before.words
@@ -89,7 +89,7 @@ def _absent(change: str, names: Iterable[str], others: Collection[str]) -> list[
 
 
 def _counted(kind: str, old: Sequence[str], new: Sequence[str]) -> list[str]:
-    """List names that occur less often in ``new``, and names that occur only there."""
+    """List names that occur less often in ``new`` than in ``old``, or only in ``new``."""
     lost = [f"{kind} lost: {name}" for name in Counter(old) - Counter(new)]
     return lost + _absent(f"{kind} invented", new, old)
 
@@ -151,7 +151,7 @@ def _same(token: Token) -> str:
 
 
 def _names(tokens: list[Token]) -> list[tuple[int, str, bool]]:
-    """Return the index, the canonical name and whether it is a landmark, for every name."""
+    """Return each word or known phrase as (index, canonical name, whether it is a landmark)."""
     names: list[tuple[int, str, bool]] = []
     place = 0
     while place < len(tokens):

@@ -80,11 +80,11 @@ PATTERNS = {
 class Voice:
     """The phrases of one style."""
 
-    openers: list[str]  # can begin the instruction
-    frames: dict[str, list[str]]  # around a clause, such as "Then {}", by position of the clause
-    commands: dict[str, list[str]]  # templates for a clause, by kind of clause (PATTERNS)
-    closers: list[str]  # can end the instruction
-    nouns: dict[str, str]  # synonyms
+    openers: list[str]  # phrases that can begin the instruction
+    frames: dict[str, list[str]]  # phrases such as "Then {}", by position of the clause
+    commands: dict[str, list[str]]  # templates that replace a clause, by its kind (PATTERNS)
+    closers: list[str]  # phrases that can end the instruction
+    nouns: dict[str, str]  # synonyms of nouns
 
 
 def swap_nouns(text: str, nouns: dict[str, str]) -> str:

@@ -47,7 +47,7 @@ NOTHING = Token("", 0, "")  # placeholder for the token before the first and aft
 
 
 def tokens(text: str) -> list[Token]:
-    """Split ``text`` into untagged words, punctuation and tokens such as ``[MASK]``."""
+    """Split ``text`` into untagged words, punctuation and special tokens such as ``[MASK]``."""
     return [
         Token(m.group(), m.start(), m.group().lower().replace("’", "'"))
         for m in TOKEN.finditer(text)
@@ -96,7 +96,10 @@ def _spacy() -> Any:
 
 
 def _spacy_tags(pipeline: Any, text: str) -> list[Token]:
-    """Return tokens with the tags of ``pipeline``, except for ``OVERRIDES``."""
+    """Return the tokens of the built-in tagger with the tags of ``pipeline``.
+
+    Words in ``OVERRIDES``, which the pipeline often tags wrongly, keep the built-in tag.
+    """
     places = {token.idx: token.pos_ for token in pipeline(text)}
     return [
         token
@@ -134,7 +137,10 @@ def _tag(token: Token, before: Token, after: Token) -> str:
 
 
 def _by_context(word: str, before: Token, after: Token) -> str:
-    """Choose a word's class by its neighbours: after a determiner, it is a noun."""
+    """Choose between the two classes of a word by its neighbours.
+
+    After a determiner, for example, the word is a noun.
+    """
     first, second = words.AMBIGUOUS[word]
     if word in ("left", "right"):
         return _side(before, after)

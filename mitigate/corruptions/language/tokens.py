@@ -11,9 +11,10 @@ _WORD = re.compile(r"\[\w+\]|\w+(?:-\w+)*|[^\w\s]", re.UNICODE)
 
 
 class FileVocabulary:
-    """Tokenizer with the ``instruction_vocab`` of an R2R-CE file: words and punctuation.
+    """Tokenizer that uses the ``instruction_vocab`` of an R2R-CE file.
 
-    The vocabulary has no mask token, so "[MASK]" gets the id of unknown words.
+    Tokens are lower-case words and punctuation. The vocabulary has no mask token, so "[MASK]" gets
+    the id of unknown words.
     """
 
     mask_token: str | None = None
@@ -23,9 +24,10 @@ class FileVocabulary:
         self._unknown, self._pad = vocabulary["UNK_INDEX"], vocabulary["PAD_INDEX"]
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Return the token ids, padded or cut to ``length``, and whether they were cut.
+        """Return the token ids and whether they were truncated.
 
-        Unknown words get the id of unknown words; unknown punctuation is removed.
+        If ``length`` is set, the ids are padded or truncated to this length. Unknown words get the
+        id of unknown words, and unknown punctuation is removed.
         """
         ids = [
             self._numbers.get(word, self._unknown)
@@ -57,7 +59,10 @@ class NamedTokenizer:
         self.mask_token: str | None = self._tokenizer.mask_token
 
     def encode(self, text: str, length: int | None) -> tuple[tuple[int, ...], bool]:
-        """Encode ``text`` with begin and end tokens, which are kept if the text is truncated."""
+        """Return the token ids and whether they were truncated, as ``FileVocabulary.encode``.
+
+        The begin and end tokens are kept if the text is truncated.
+        """
         ids = list(self._tokenizer(text)["input_ids"])
         cut = length is not None and len(ids) > length
         if cut:

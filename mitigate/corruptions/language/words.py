@@ -53,8 +53,8 @@ def is_kept(word: str) -> bool:
     return word in SPATIAL or word.endswith("n't")
 
 
-# Landmarks are nouns for visible things.
-# maps a canonical name to its synonyms; phrases are matched before single nouns
+# Landmarks are nouns for visible things. This dict maps the canonical name of a landmark to its
+# synonyms. Phrases are matched before single nouns.
 SYNONYMS: dict[str, list[str]] = WORDS["landmarks"]
 # nouns that are not landmarks, such as parts of a route and words in polite phrases
 PLAIN = listed("no_landmarks")
@@ -71,7 +71,10 @@ _KEEP_S = ("ss", "us", "is", "as", "os")
 
 
 def normal(noun: str) -> str:
-    """Return the canonical name of a noun: the main word of its group, singular, lower case."""
+    """Return the canonical name of a noun, in lower case and singular.
+
+    The canonical name is the main word of the noun's synonym group.
+    """
     word = noun.lower().removesuffix("'s").removesuffix("s'")
     if word in CANONICAL or word in SYNONYMS:
         return CANONICAL.get(word, word)

@@ -61,11 +61,11 @@ class Copy:
     """A copy in progress."""
 
     dataset: Dataset  # the original
-    out: Path
+    out: Path  # folder of the copy
     settings: Settings
     cameras: Sequence[Camera]  # the cameras to corrupt
     tolerance: float  # maximum seconds between a row and its video frame
-    encodings: Mapping[str, Encoding]  # by camera, for cameras with videos
+    encodings: Mapping[str, Encoding]  # encoding of the videos, by camera
     frames: Counter[str]  # number of frames to corrupt, by file name
     progress: Progress  # counts corrupted frames
     summary: dict[str, Any] = field(default_factory=dict)  # content of corrupt.json
@@ -276,7 +276,8 @@ def _corrupt_video(
 ) -> None:
     """Write a corrupted video.
 
-    Frames outside all episodes are corrupted too, so that no other frame gets a new number.
+    Frames that belong to no episode are also corrupted and kept, so that no other frame gets a new
+    number.
     """
     source = work.dataset.path / name
     used: set[int] = set()

@@ -53,10 +53,10 @@ class Dataset:
 
     path: Path
     info: Mapping[str, Any]  # content of meta/info.json
-    cameras: Mapping[str, Camera]
+    cameras: Mapping[str, Camera]  # cameras by name
     other_cameras: Mapping[str, str]  # the reason why a camera cannot be used, by name
-    episodes: Mapping[int, Episode]  # by their number
-    tasks: Mapping[int, str]  # text of each task, by its number
+    episodes: Mapping[int, Episode]  # episodes by number
+    tasks: Mapping[int, str]  # text of each task, by number
 
     @property
     def features(self) -> Mapping[str, Any]:
@@ -74,9 +74,12 @@ class Dataset:
         return {name: size for name, size in sizes.items() if size <= MAX_SIGNAL}
 
     def choose_cameras(self, kind: str, names: Sequence[str] | None = None) -> list[Camera]:
-        """Return the cameras of a kind ("rgb" or "depth"), or those of them in ``names``.
+        """Return the cameras of a kind ("rgb" or "depth").
 
-        Raises ValueError if a name is unknown, or its camera cannot be used.
+        If ``names`` is given, only the cameras in ``names`` are returned.
+
+        Raises:
+            ValueError: If a name is unknown, or its camera cannot be used.
         """
         for name in names or ():
             if name in self.other_cameras:
@@ -92,7 +95,8 @@ class Dataset:
     def choose_camera(self, kind: str, name: str | None, option: str) -> Camera:
         """Return the camera called ``name``, or the only camera of a kind if ``name`` is None.
 
-        Raises ValueError, which names ``option``, if not exactly one camera matches.
+        Raises:
+            ValueError: If not exactly one camera matches; the message names ``option``.
         """
         cameras = self.choose_cameras(kind, name and [name])
         if len(cameras) != 1:
@@ -103,7 +107,11 @@ class Dataset:
         return cameras[0]
 
     def choose_episodes(self, numbers: Sequence[int] | None) -> list[Episode]:
-        """Return the episodes with these numbers (None: all); raise ValueError for others."""
+        """Return the episodes with these numbers, or all episodes if ``numbers`` is None.
+
+        Raises:
+            ValueError: If a number is unknown.
+        """
         for number in numbers or ():
             if number not in self.episodes:
                 raise ValueError(
@@ -116,8 +124,10 @@ class Dataset:
     def read_rows(self, data: str) -> Rows:
         """Read the rows of a file in data/.
 
-        Raises FileNotFoundError, or ValueError if the file is damaged or the rows of an episode are
-        incomplete or not in order.
+        Raises:
+            FileNotFoundError: If the file is missing.
+            ValueError: If the file is damaged, or the rows of an episode are incomplete or not in
+                order.
         """
         path = self.path / data
         table = read_columns(path, COLUMNS)
@@ -142,7 +152,12 @@ class Dataset:
     def instruction(self, rows: Rows, name: str) -> str:
         """Return the task of the first row of an episode, and warn if other rows have other tasks.
 
-        ``name`` is the name of the episode in messages. Raises ValueError for an unknown task.
+        Args:
+            rows: The rows of the episode.
+            name: Name of the episode in messages.
+
+        Raises:
+            ValueError: If the task is unknown.
         """
         first = int(rows.tasks[0])
         if first not in self.tasks:
@@ -161,8 +176,12 @@ class Dataset:
     def read_signals(self, data: str) -> dict[str, np.ndarray]:
         """Read the numeric features, such as state and action, from a file in data/.
 
-        Each feature of ``signals`` is float64 [N, size]. Raises FileNotFoundError, or ValueError if
-        the file is damaged or a feature has a different shape.
+        Returns:
+            For each feature of ``signals``, an array float64 [N, size].
+
+        Raises:
+            FileNotFoundError: If the file is missing.
+            ValueError: If the file is damaged, or a feature has a different shape.
         """
         path = self.path / data
         table = read_columns(path, (), list(self.signals))
@@ -236,7 +255,10 @@ def _is_list(kind: Any) -> bool:
 def rows_of(
     dataset: Dataset, episodes: Sequence[Episode]
 ) -> Iterator[tuple[Episode, Rows, np.ndarray]]:
-    """Yield each episode, its rows, and a mask of its rows in their file (bool [N])."""
+    """Yield each episode, its rows, and a mask that marks these rows in their file.
+
+    The mask is bool [rows of the file].
+    """
     read: dict[str, Rows] = {}
     for episode in episodes:
         if episode.data not in read:

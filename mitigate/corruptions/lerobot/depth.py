@@ -36,7 +36,8 @@ class DepthCode:
     def of(cls, info: Mapping[str, Any], place: str) -> DepthCode:
         """Return the depth encoding that the ``info`` of a feature describes.
 
-        Raises ValueError, which begins with ``place``, for an invalid parameter.
+        Raises:
+            ValueError: If a parameter is invalid; the message begins with ``place``.
         """
         names = ("depth_min", "depth_max", "shift")
         defaults = (cls.near, cls.far, cls.shift)

@@ -35,12 +35,23 @@ def read_frames(
     times: Sequence[float],
     tolerance: float,
 ) -> Iterator[dict[str, np.ndarray]]:
-    """Yield the frames of an episode, in order, by camera.
+    """Yield the frames of an episode, in order.
 
-    ``chosen`` are frame numbers, in increasing order, and ``times`` their seconds since the start
-    of the episode. Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
-    Raises FileNotFoundError, or ValueError if a file is damaged or a video has no frame within
-    ``tolerance`` seconds of one of the times.
+    Args:
+        dataset: The dataset.
+        episode: The episode.
+        cameras: Cameras to read.
+        chosen: Frame numbers, in increasing order.
+        times: For each chosen frame, the seconds since the start of the episode.
+        tolerance: Maximum time in seconds between a row and its video frame.
+
+    Yields:
+        A dict with the frame of each camera: uint8 [H, W, 3], or float32 metres [H, W] with 0 for
+        no reading.
+
+    Raises:
+        FileNotFoundError: If a file is missing.
+        ValueError: If a file is damaged, or a video has no frame near one of the times.
     """
     streams = [
         _video_frames(dataset, episode, camera, times, tolerance)
@@ -100,21 +111,29 @@ def check_images(path: Path, schema: Any, cameras: Sequence[Camera]) -> None:
     check_columns(path, schema.names, [camera.name for camera in cameras])
     for camera in cameras:
         kind = schema.field(camera.name).type
-        has_bytes = types.is_struct(kind) and kind.get_field_index("bytes") >= 0
-        stored = kind.field("bytes").type if has_bytes else kind
-        if not has_bytes or not (types.is_binary(stored) or types.is_large_binary(stored)):
+        is_image = types.is_struct(kind) and kind.get_field_index("bytes") >= 0
+        if not (is_image and _is_binary(kind.field("bytes").type)):
             raise ValueError(
                 f"{path}: the column {camera.name} must hold images (a struct with bytes), got "
                 f"{str(kind)[:80]}. {FIX}"
             )
 
 
+def _is_binary(kind: Any) -> bool:
+    from pyarrow import types
+
+    return types.is_binary(kind) or types.is_large_binary(kind)
+
+
 def stored_image(
     path: Path, table: Any, row: int, camera: Camera, number: int
 ) -> tuple[np.ndarray, str]:
-    """Return an image (uint8 [H, W, 3], uint16 [H, W] or float32 [H, W]) and its file format.
+    """Return an image from a table, as it is stored, and its file format.
 
-    Raises ValueError if the image is damaged, or its type or size differs from the camera's.
+    The image is uint8 [H, W, 3], uint16 [H, W] or float32 [H, W].
+
+    Raises:
+        ValueError: If the image is damaged, or its type or size differs from the camera's.
     """
     place = f"{path}: {camera.name} of frame {number}"
     value = table.column(camera.name)[row].as_py()
@@ -143,7 +162,10 @@ def stored_image(
 
 
 def as_frame(stored: np.ndarray, camera: Camera) -> np.ndarray:
-    """Convert a stored image to a frame: uint8 [H, W, 3], or float32 metres (0: no reading)."""
+    """Convert a stored image to a frame.
+
+    The frame is uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
+    """
     if camera.kind == RGB:
         return stored
     depth = stored.astype(np.float32) * np.float32(_unit(stored, camera))

@@ -50,12 +50,12 @@ CONVERTER = "python -m lerobot.scripts.convert_dataset_v21_to_v30 --repo-id=USER
 class Camera:
     """A camera of a dataset."""
 
-    name: str  # of the feature, such as "observation.images.front"
+    name: str  # name of the feature, such as "observation.images.front"
     kind: str  # "rgb" or "depth"
     stored: str  # "video", or "image" for encoded images in the rows of data/
-    height: int  # in pixels
-    width: int
-    code: DepthCode | None = None  # how a depth video encodes metres
+    height: int  # pixels
+    width: int  # pixels
+    code: DepthCode | None = None  # how a depth video encodes metres; None for other cameras
     # metres per unit of depth images; None means 0.001 for integer images and 1 for others
     unit: float | None = None
 
@@ -64,10 +64,10 @@ class Camera:
 class Episode:
     """The files that contain an episode; their paths are relative to the dataset."""
 
-    index: int
+    index: int  # number of the episode
     length: int  # number of frames
     data: str  # the file with the episode's rows
-    # by camera: the file, and the time in seconds at which the episode starts in it
+    # by camera: the video file, and the time in seconds at which the episode starts in the file
     videos: Mapping[str, tuple[str, float]]
 
 
@@ -121,7 +121,11 @@ def check_features(file: Path, info: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def read_camera(file: Path, name: str, feature: Mapping[str, Any]) -> Camera | str:
-    """Return the camera, or the reason why it cannot be used, which begins with a verb."""
+    """Return the camera of a feature, or the reason why it cannot be used.
+
+    The reason begins with a verb ("has 2 dimensions instead of 3"), so that it can follow the name
+    of the camera.
+    """
     shape, names = feature["shape"], feature.get("names")
     info = {
         key: value
@@ -223,10 +227,11 @@ def read_episodes(path: Path, info: Mapping[str, Any], videos: list[str]) -> dic
 
 
 def _template(file: Path, key: str, template: object) -> str:
-    """Return a path template of meta/info.json.
+    """Check a path template that meta/info.json contains, and return it.
 
-    Raises ValueError unless it is a relative path inside the dataset with no other field than
-    chunk_index, file_index and (for videos) video_key.
+    Raises:
+        ValueError: If the template is not a relative path, leads outside of the dataset, or has a
+            field other than chunk_index, file_index and (for videos) video_key.
     """
     is_video = key == "video_path"
     fields = "{chunk_index:03d}, {file_index:03d}" + ", {video_key}" * is_video
@@ -245,9 +250,17 @@ def _template(file: Path, key: str, template: object) -> str:
 def _fill(
     template: str, columns: Mapping[str, list[int]], row: int, prefix: str, path: Path
 ) -> str:
-    """Return the path of a data file (``prefix`` "data") or a video ("videos/" and its camera).
+    """Return the path of the file that contains an episode's rows, or its frames of one camera.
 
-    ``template`` is a checked template; ``columns`` are those of the file ``path``.
+    Args:
+        template: A checked template.
+        columns: Columns of a file in meta/episodes.
+        row: Row of the episode.
+        prefix: "data", or "videos/" and the name of the camera.
+        path: The file that contains the columns.
+
+    Raises:
+        ValueError: If the index of a chunk or file is out of range.
     """
     chunk = columns[f"{prefix}/chunk_index"][row]
     file = columns[f"{prefix}/file_index"][row]

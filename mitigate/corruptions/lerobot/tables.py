@@ -29,7 +29,12 @@ def parquet() -> Any:
 
 
 def check_file(path: Path) -> None:
-    """Raise an error if a file is missing, a Git LFS pointer, a FIFO or a device."""
+    """Check that a file of a dataset exists.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the path is a Git LFS pointer, a FIFO or a device.
+    """
     if not is_regular(path):
         raise FileNotFoundError(f"The dataset lacks the file {path}. {FIX}")
     if pointer := lfs_problem(path):
@@ -38,9 +43,14 @@ def check_file(path: Path) -> None:
 
 @contextmanager
 def open_table(path: Path) -> Iterator[Any]:
-    """Open a ``pyarrow.parquet.ParquetFile``; errors during reading get an explanation.
+    """Open a parquet file; errors during reading get a message that explains them.
 
-    Raises FileNotFoundError, or ValueError if the file is damaged or expands to too many bytes.
+    Yields:
+        A ``pyarrow.parquet.ParquetFile``.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or expands to too many rows or bytes.
     """
     pq = parquet()
     import pyarrow
@@ -51,7 +61,8 @@ def open_table(path: Path) -> Iterator[Any]:
             _check_size(path, file.metadata)
             yield file
     except (pyarrow.ArrowException, OSError, UnicodeDecodeError) as error:
-        if isinstance(error, OSError) and error.strerror is not None:  # of the operating system
+        # errors of the operating system are not changed
+        if isinstance(error, OSError) and error.strerror is not None:
             raise
         cause = escaped(" ".join(str(error).split()))
         raise ValueError(
@@ -61,7 +72,7 @@ def open_table(path: Path) -> Iterator[Any]:
 
 
 def _check_size(path: Path, metadata: Any) -> None:
-    """Raise ValueError if a file has too many rows, or expands to far more bytes."""
+    """Raise ValueError if a file has too many rows, or would expand to far too many bytes."""
     if metadata.num_rows > MAX_ROWS:
         raise ValueError(f"{path} must have at most {MAX_ROWS} rows, got {metadata.num_rows}.")
     groups = (metadata.row_group(index) for index in range(metadata.num_row_groups))
@@ -78,9 +89,19 @@ def _check_size(path: Path, metadata: Any) -> None:
 
 
 def read_columns(path: Path, columns: Sequence[str], optional: Sequence[str] = ()) -> Any:
-    """Read columns of a parquet file, and those of ``optional`` that exist, as ``pyarrow.Table``.
+    """Read columns of a parquet file.
 
-    Raises FileNotFoundError, or ValueError if the file is damaged or lacks a column.
+    Args:
+        path: The file.
+        columns: Names of columns that must exist.
+        optional: Names of columns that are read if they exist.
+
+    Returns:
+        A ``pyarrow.Table``.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged or lacks a column.
     """
     with open_table(path) as file:
         names = file.schema_arrow.names
@@ -101,7 +122,7 @@ def check_columns(path: Path, names: Sequence[str], columns: Sequence[str]) -> N
 
 
 def integers(table: Any, column: str, path: Path) -> list[int]:
-    """Return an integer column as a list; raise ValueError for any other value."""
+    """Return an integer column as a list; raise ValueError for other types or missing values."""
     import pyarrow
 
     values = table.column(column)

@@ -31,7 +31,7 @@ class Encoding(NamedTuple):
     name: str  # name of the codec in meta/info.json
     pixels: str  # pixel format of the frames that the encoder receives
     stored: str  # pixel format of the video, for meta/info.json
-    options: dict[str, str]  # of the encoder
+    options: dict[str, str]  # options of the encoder
 
 
 # H.264 in RGB with quantiser 0 keeps every pixel, and the fastest preset is used.
@@ -71,10 +71,14 @@ def video_library() -> Any:
 
 @contextmanager
 def open_video(path: Path, camera: Camera) -> Iterator[tuple[Any, Any]]:
-    """Open a video and yield its container and stream; decoding errors get an explanation.
+    """Open a video; errors during decoding get a message that explains them.
 
-    Raises FileNotFoundError, or ValueError if the file is damaged or its frames do not have the
-    size of ``camera``.
+    Yields:
+        The container and its video stream.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or its frames have a different size than ``camera``.
     """
     av = video_library()
     check_file(path)
@@ -118,11 +122,20 @@ def read_codec(path: Path, camera: Camera) -> str:
 def decode(
     path: Path, camera: Camera, times: Sequence[float], tolerance: float
 ) -> Iterator[np.ndarray]:
-    """Yield the nearest frame for each time (seconds, in increasing order).
+    """Yield the nearest frame for each time, in the order of ``times``.
 
-    Frames are uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading. Raises
-    FileNotFoundError, or ValueError if the file is damaged or has no frame within ``tolerance``
-    seconds of a time.
+    Args:
+        path: The video.
+        camera: Its camera.
+        times: Times in seconds, in increasing order.
+        tolerance: Maximum seconds between a time and its frame.
+
+    Yields:
+        uint8 [H, W, 3], or float32 metres [H, W] with 0 for no reading.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged, or has no frame near one of the times.
     """
     if not times:
         return
@@ -166,7 +179,11 @@ def _as_frame(path: Path, camera: Camera, frame: Any) -> np.ndarray:
 
 
 def read_codes(path: Path, frame: Any) -> np.ndarray:
-    """Return the codes of a depth frame, uint16 [H, W]; raise ValueError for others."""
+    """Return the codes of a depth frame, uint16 [H, W].
+
+    Raises:
+        ValueError: If the frame does not have 12 bits per pixel.
+    """
     name = frame.format.name
     if not frame.format.components[0].bits == 12:
         raise ValueError(
@@ -180,7 +197,10 @@ def read_codes(path: Path, frame: Any) -> np.ndarray:
 def encode(
     target: Path, frames: Iterable[np.ndarray], camera: Camera, encoding: Encoding, fps: int
 ) -> None:
-    """Write a video of frames, which are uint8 [H, W, 3] or float32 metres [H, W]."""
+    """Write a video with ``fps`` frames per second.
+
+    The frames are uint8 [H, W, 3], or float32 metres [H, W].
+    """
     av = video_library()
     with open_output(target, "wb") as file, av.open(file, "w", format=CONTAINER) as output:
         output_stream = _add_stream(output, camera, encoding, fps)
@@ -206,8 +226,16 @@ def corrupt_video(
 ) -> None:
     """Write a video with corrupted frames and the times of the original frames.
 
-    The arguments of ``corrupt`` are a frame (uint8 [H, W, 3] or float32 metres [H, W]), its time in
-    seconds, and its number in the video. Raises ValueError if the original is damaged.
+    Args:
+        source: The original.
+        target: The file to write.
+        camera: Its camera.
+        encoding: How the frames are encoded.
+        corrupt: Function that corrupts a frame. Its arguments are the frame (uint8 [H, W, 3] or
+            float32 metres [H, W]), the time in seconds, and the frame number in the video.
+
+    Raises:
+        ValueError: If the original is damaged.
     """
     av = video_library()
     with (

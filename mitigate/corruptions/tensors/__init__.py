@@ -2,8 +2,10 @@
 
 ``corrupt_tensors`` applies one corruption to a batch of frames. ``corrupt_observations`` applies a
 different corruption to each row of a batch of RGB and depth frames. No other package in
-``mitigate.corruptions`` imports torch. Functions of ``rgb`` and ``depth`` are named after the
-corruptions that they compute. All other corruptions are computed on the host.
+``mitigate.corruptions`` imports torch.
+
+The functions in ``rgb`` and ``depth`` compute corruptions on the device. Each is named after its
+corruption. All other corruptions are computed on the host.
 """
 
 from mitigate.corruptions.tensors.observations import corrupt_observations

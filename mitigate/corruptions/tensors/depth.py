@@ -1,8 +1,9 @@
-"""The depth corruptions of the standard suite and the unseen ones, for metres [B, V, H, W].
+"""The depth corruptions of the standard suite and the unseen ones, for batches of views.
 
-Each function that is named after a corruption maps the views (float32) and the parameters of each
-row (``Rows``) to a new batch. ``mitigate/corruptions/depth.py`` and the files of ``unseen`` have
-the formulas and sample the random numbers per row.
+Each function that is named after a corruption takes the views (float32 metres [B, V, H, W]) and the
+parameters of each row (``Rows``), and returns a new batch. The formulas are in
+``mitigate/corruptions/depth.py`` and in the files of ``unseen``, which also sample the random
+numbers per row.
 """
 
 from __future__ import annotations
@@ -52,7 +53,11 @@ def gaussian_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def missing_data(views: Tensor, rows: Rows) -> Tensor:
-    """Remove depth, or set it to z_max, in the pixels where a random field is highest."""
+    """Replace the depth of the pixels where a random field is highest.
+
+    These pixels are a fraction 0.5 * severity of each view. A quarter of them become z_max, and the
+    others become missing.
+    """
     count, height, width = views.shape[1:]
     digests = rows.digests("missing_data")
     smooth, cells = fields(digests, height, width, depth.HOLE_CORRELATION, views)

@@ -86,10 +86,13 @@ def mix(streams: Tensor, counters: Tensor) -> Tensor:
 
 
 def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) -> Tensor:
-    """Copy numbers, or arrays of equal shape, to the device of ``like``.
+    """Copy numbers to the device of ``like``.
 
-    float64 becomes float32, and uint64 becomes int64 with the same bits. ``trailing`` axes of
-    length 1 are appended, for broadcasting.
+    Args:
+        values: One number per row, or one array per row; all arrays have the same shape. float64
+            becomes float32, and uint64 becomes int64 with the same bits.
+        like: A tensor on the device.
+        trailing: Number of axes of length 1 that are appended, for broadcasting.
     """
     array = np.asarray(values)
     if array.dtype == np.uint64:
@@ -101,13 +104,16 @@ def on_device(values: Sequence | np.ndarray, like: Tensor, trailing: int = 0) ->
 
 
 def view_words(rows: Rows, name: str, views: Tensor, counters: Tensor) -> Tensor:
-    """Return one word per counter for each view, int64 [B, V, *counters.shape]."""
+    """Return the 64-bit words of the random stream ``name`` for each view.
+
+    There is one word per counter; the result is int64 [B, V, *counters.shape].
+    """
     streams = np.stack([view_streams(key, name, views.shape[1]) for key in rows.keys])
     return mix(on_device(streams, views, counters.dim()), counters)
 
 
 def pixel_words(rows: Rows, name: str, views: Tensor) -> Tensor:
-    """Return one random word per pixel, int64 [B, V, H, W]."""
+    """Return one random word per pixel, int64 [B, V, H, W]; the pixel index is the counter."""
     size = views.shape[2:4]
     counters = torch.arange(size.numel(), device=views.device).reshape(size)
     return view_words(rows, name, views, counters)
@@ -119,7 +125,10 @@ def _normal_table(device: torch.device) -> Tensor:
 
 
 def normals(words: Tensor, count: int) -> Tensor:
-    """Convert int64 words to ``count`` normal numbers, four per word, float32 [..., count]."""
+    """Convert random words to ``count`` standard normal numbers, float32 [..., count].
+
+    Each word (int64) gives four numbers.
+    """
     quarters = words.view(torch.int16)[..., :count].int()  # the lowest 16 bits of a word come first
     places = (quarters >> 4) & 0xFFF
     return _normal_table(words.device).index_select(0, places.flatten()).reshape(places.shape)

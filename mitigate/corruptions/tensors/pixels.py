@@ -1,7 +1,7 @@
 """Pixel operations on batches of views, which several corruptions use.
 
-RGB is uint8 [B, V, H, W, 3], depth is float32 metres [B, V, H, W]. Several functions work on image
-rows of 3 * W colour values, because broadcasting over a last axis of size 3 is slow.
+RGB is uint8 [B, V, H, W, 3], and depth is float32 metres [B, V, H, W]. Several functions work on
+image rows of 3 * W colour values, because broadcasting over a last axis of size 3 is slow.
 """
 
 from __future__ import annotations
@@ -29,9 +29,12 @@ def grey_levels(values: Tensor) -> Tensor:
 
 
 def cover(views: Tensor, opacity: Tensor, colours: Tensor) -> Tensor:
-    """Blend RGB with one of the ``colours`` (float32 [B or 1, 3]), as in ``masks.cover``.
+    """Blend RGB with a colour, as in ``masks.cover``.
 
-    ``opacity`` is float32 [B, V or 1, H, 3 W] in [0, 1].
+    Args:
+        views: uint8 [B, V, H, W, 3].
+        opacity: Opacity in [0, 1], float32 [B, V or 1, H, 3 W].
+        colours: float32 [B or 1, 3].
     """
     source = views.flatten(3).float()
     blend = torch.lerp(source, colour_rows(colours, views.shape[3]), opacity)
@@ -44,7 +47,10 @@ def look_up(table: Tensor, places: Tensor) -> Tensor:
 
 
 def at(views: Tensor, rows: Tensor, columns: Tensor) -> Tensor:
-    """Return ``views`` [B, V, H, W, ...] at rows and columns that are broadcast to [B, V, h, w]."""
+    """Return the pixels of ``views`` [B, V, H, W, ...] at ``rows`` and ``columns``.
+
+    ``rows`` and ``columns`` are broadcast to [B, V, h, w].
+    """
     batch, count = views.shape[:2]
     row = torch.arange(batch, device=views.device).reshape(-1, 1, 1, 1)
     view = torch.arange(count, device=views.device).reshape(1, -1, 1, 1)
@@ -63,8 +69,9 @@ def moved(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return [B, V, H, W] with ``maps`` [B, H, W] at (y + down, x + right) on a torus.
+    """Return ``maps``, shifted on a torus separately for each view, as [B, V, H, W].
 
+    The value at (y, x) of a view is the value of ``maps`` [B, H, W] at (y + down, x + right).
     ``down`` and ``right`` are int64 [B, V, 1, 1].
     """
     batch, height, width = maps.shape
@@ -75,9 +82,10 @@ def rolled(maps: Tensor, down: Tensor, right: Tensor) -> Tensor:
 
 
 def displaced(views: Tensor, down: Tensor, right: Tensor) -> Tensor:
-    """Return RGB at (y + down, x + right), interpolated as in ``unseen.optics.displaced``.
+    """Return, for each pixel (y, x), the RGB value at (y + down, x + right).
 
-    ``down`` and ``right`` are float32, in pixels, and are broadcast to [B, V, H, W].
+    Values are interpolated bilinearly, as in ``unseen.optics.displaced``. ``down`` and ``right``
+    are float32, in pixels, and are broadcast to [B, V, H, W].
     """
     height, width = views.shape[2:4]
     y = 256 * torch.arange(height, device=views.device).reshape(-1, 1)
@@ -98,17 +106,23 @@ def is_valid(depth: Tensor) -> Tensor:
 
 
 def clip_valid(views: Tensor, changed: Tensor, sensor: DepthSensor) -> Tensor:
-    """Return ``changed``, clipped to the range, where ``views`` is valid, else ``views``."""
+    """Clip ``changed`` to the sensor's range, and keep the invalid pixels of ``views``."""
     return torch.where(is_valid(views), changed.clamp(float(NEAREST), sensor.z_max), views)
 
 
 def farthest(views: Tensor, reach: int) -> Tensor:
-    """Return the maximum of valid depth in the square around each pixel, or -inf."""
+    """Return the maximum of valid depth in the square of side 2 * reach + 1 around each pixel.
+
+    The result is -inf if no depth in the square is valid.
+    """
     return _largest(views.masked_fill(~is_valid(views), -torch.inf), reach)
 
 
 def nearest(views: Tensor, reach: int) -> Tensor:
-    """Return the minimum of valid depth in the square around each pixel, or inf."""
+    """Return the minimum of valid depth in the square of side 2 * reach + 1 around each pixel.
+
+    The result is inf if no depth in the square is valid.
+    """
     return -_largest((-views).masked_fill(~is_valid(views), -torch.inf), reach)
 
 

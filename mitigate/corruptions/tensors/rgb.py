@@ -1,8 +1,9 @@
-"""The RGB corruptions of the standard suite and the unseen ones, for uint8 [B, V, H, W, 3].
+"""The RGB corruptions of the standard suite and the unseen ones, for batches of views.
 
-Each function that is named after a corruption maps the views and the parameters of each row
-(``Rows``) to a new batch. ``mitigate/corruptions/rgb.py`` and the files of ``unseen`` have the
-formulas and sample the random numbers per row.
+Each function that is named after a corruption takes the views (uint8 [B, V, H, W, 3]) and the
+parameters of each row (``Rows``), and returns a new batch. The formulas are in
+``mitigate/corruptions/rgb.py`` and in the files of ``unseen``, which also sample the random numbers
+per row.
 """
 
 from __future__ import annotations
@@ -44,7 +45,10 @@ ONE_TAP = np.array([0]), np.array([0]), np.array([1])
 
 
 def motion_blur(views: Tensor, rows: Rows) -> Tensor:
-    """Blend with a line blur. float32 is exact: all sums are integers below 2^24."""
+    """Blend views with a line blur.
+
+    float32 is exact here, because all sums are integers below 2^24.
+    """
     lines = rows.draw(rgb.blur_line, views.shape[3])
     steps = np.array([rgb.tap_step(length) for length, _ in lines])
     taps = [
@@ -77,7 +81,10 @@ def _planes(views: Tensor) -> Tensor:
 
 
 def _per_plane(values: np.ndarray, views: Tensor) -> Tensor:
-    """Copy a value per row [B, ...] to the device for each plane, [B * V * 3, ...]."""
+    """Copy one value per row [B, ...] to the device, and repeat it for each plane.
+
+    The result is [B * V * 3, ...].
+    """
     return on_device(values, views).repeat_interleave(3 * views.shape[1], 0)
 
 
@@ -140,7 +147,10 @@ def low_light_noise(views: Tensor, rows: Rows) -> Tensor:
 
 
 def spatter(views: Tensor, rows: Rows) -> Tensor:
-    """Cover the image with mud or water where a random field is highest."""
+    """Cover a fraction 0.45 * severity of the image with mud or water.
+
+    A random field is highest at the covered pixels.
+    """
     height, width = views.shape[2:4]
     digests = rows.digests("spatter")
     smooth, cells = fields(digests, height, width, masks.SPATTER_CORRELATION, views)
@@ -176,7 +186,8 @@ def flare(views: Tensor, rows: Rows) -> Tensor:
 def blur_kernel(sigma: float, first: int) -> np.ndarray:
     """Return the kernel of ``blur.gaussian`` along one axis, without its first smoothing levels.
 
-    Its taps (float64 [n], sum 1) are 2^first pixels apart.
+    If an image was smoothed at the levels below ``first``, this kernel (float64 [n]) adds the
+    remaining blur. Its taps are 2^first pixels apart, and their sum is 1.
     """
     if sigma < rgb.DEFOCUS_LEAST:
         return np.ones(1)

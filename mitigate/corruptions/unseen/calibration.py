@@ -33,7 +33,7 @@ def valid(views: np.ndarray) -> np.ndarray:
 
 
 def clip_valid(views: np.ndarray, moved: np.ndarray, sensor: DepthSensor) -> np.ndarray:
-    """Return ``moved``, clipped to the range, where ``views`` is valid, else ``views``."""
+    """Clip ``moved`` to the sensor's range, and keep the invalid pixels of ``views``."""
     inside = np.clip(moved, NEAREST, np.float32(sensor.z_max))
     return np.where(valid(views), inside, views)
 
@@ -59,21 +59,27 @@ def depth_offset(severity: float, key: Key, width: int) -> tuple[int, int]:
 
 
 def misalignment(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Shift depth by 0.12 * severity * W; pixels whose source is invalid keep their depth."""
+    """Shift depth by 0.12 * severity * W.
+
+    Edges are repeated. Pixels whose source is invalid keep their depth.
+    """
     moved = shifted(views, *depth_offset(severity, key, views.shape[2]))
     return clip_valid(views, np.where(valid(moved), moved, views), sensor)
 
 
 @lru_cache(maxsize=32)
 def wiggle_table(phase: float, amplitude: float, z_max: float) -> np.ndarray:
-    """Return errors in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS + 1]."""
+    """Return depth errors in metres for depths from 0 to z_max, float32 [WIGGLE_CELLS + 1]."""
     z = np.linspace(0.0, z_max, WIGGLE_CELLS + 1)
     turns = z / WIGGLE_PERIOD + phase
     return (amplitude * np.sin(2.0 * math.pi * turns)).astype(np.float32)
 
 
 def wiggling(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add 0.3 * severity * sin(2 pi (z / P + p)), as harmonics of the light do."""
+    """Add the error 0.3 * severity * sin(2 pi (z / P + p)) to depth z.
+
+    In time-of-flight cameras, harmonics of the light cause this error.
+    """
     phase = uniform(digest(key, "wiggling"))
     table = wiggle_table(phase, WIGGLE * severity, sensor.z_max)
     clean = np.clip(np.where(valid(views), views, 0), 0, np.float32(sensor.z_max))

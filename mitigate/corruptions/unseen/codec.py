@@ -42,7 +42,10 @@ def block_side(height: int, width: int) -> int:
 
 @lru_cache(maxsize=1)
 def opponents() -> np.ndarray:
-    """Return orthonormal rows: grey, red - blue, and green - (red, blue); float32 [3, 3]."""
+    """Return an orthonormal colour matrix, float32 [3, 3].
+
+    Its rows are grey, red minus blue, and green minus red and blue.
+    """
     rows = np.array([[1.0, 1.0, 1.0], [1.0, 0.0, -1.0], [-1.0, 2.0, -1.0]])
     return (rows / np.linalg.norm(rows, axis=1, keepdims=True)).astype(np.float32)
 
@@ -83,7 +86,10 @@ def _lose(cells, least):
 
 @njit(cache=True)
 def _gather(view, weights, cells):
-    """Fill ``cells`` [b, b, n] with blocks of one opponent colour; repeat edge pixels."""
+    """Fill ``cells`` [b, b, n] with the blocks of one opponent colour of ``view``.
+
+    ``view`` is uint8 [H, W, 3]. Blocks that extend beyond the view repeat its edge pixels.
+    """
     height, width, _ = view.shape
     side, across = cells.shape[0], -(-width // cells.shape[0])
     for y in range(-(-height // side) * side):
@@ -118,13 +124,17 @@ def _code(views, colours, matrix, back, least, out):
 
 
 def dead_zones(severity: float, side: int) -> np.ndarray:
-    """Return the smallest magnitude of kept DCT coefficients per colour, float32 [3]."""
+    """Return the smallest magnitude of kept DCT coefficients per opponent colour, float32 [3]."""
     zones = np.array([1.0, CHROMA, CHROMA]) * (DEAD_ZONE * severity * 255.0 * side / 2.0)
     return zones.astype(np.float32)
 
 
 def compression(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Remove patterns of amplitude below 0.4 * severity (colour: 0.8) from image blocks."""
+    """Remove patterns with an amplitude below 0.4 * severity (1 is white) from image blocks.
+
+    The DCT coefficients of these patterns are set to 0. In the two colour channels, the threshold
+    is twice as high.
+    """
     side = block_side(*views.shape[1:3])
     least = dead_zones(severity, side)
     matrix, out = cosines(side), np.empty_like(views)
@@ -145,7 +155,10 @@ def lost_parts(
 
 
 def lost_slices(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Fill each of 14 slices, from a random column, with grey with probability 0.8 * severity."""
+    """Fill each of the 14 slices of a view with grey, with a probability of 0.8 * severity.
+
+    A slice is filled from a random column to its end.
+    """
     out = views.copy()
     for view, rows, start in lost_parts(severity, key, *views.shape[:3]):
         out[view, rows, start:] = NOTHING

@@ -42,9 +42,10 @@ def _fatten(views, reach, share, z_max, out):
 
 
 def fattening(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set each pixel to the smallest depth in a square, as window-based stereo matching does.
+    """Set each pixel to the smallest depth in a square around it.
 
-    Half the side length of the square is 0.08 * severity times the shorter side of the frame.
+    Window-based stereo matching makes this error. Half the side length of the square is 0.08 *
+    severity times the shorter side of the frame.
     """
     reach = FATTENING * severity * min(views.shape[1:])
     out, whole = np.empty_like(views), math.floor(reach)
@@ -74,7 +75,10 @@ def footprint(height: int, width: int) -> int:
 
 
 def flying_pixels(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set a fraction ``severity`` to a depth between the extremes around each pixel."""
+    """Set a fraction ``severity`` of the pixels to a random depth.
+
+    The depth is between the nearest and the farthest depth around the pixel.
+    """
     reach = footprint(*views.shape[1:])
     streams, out = view_streams(key, "flying_pixels", len(views)), np.empty_like(views)
     _fly(views, streams, reach, _U(round(severity * 2**32)), np.float32(sensor.z_max), out)
@@ -106,13 +110,19 @@ def _shade(views, offset, side, missing, z_max, out):
 
 
 def projector(severity: float, key: Key, width: int) -> tuple[float, int]:
-    """Return the projector's offset, in pixels at one metre, and its side (1 or -1)."""
+    """Return the offset of the projector for ``edge_shadow``, and its side (1 or -1).
+
+    The offset is in pixels at a depth of one metre.
+    """
     focal = 0.5 * width / math.tan(math.radians(HFOV_DEGREES) / 2.0)
     return BASELINE * severity * focal, 1 if uniform(digest(key, "edge_shadow")) < 0.5 else -1
 
 
 def edge_shadow(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Remove pixels that a projector, 0.5 * severity metres to the side, does not reach."""
+    """Remove pixels in the shadow of nearer surfaces.
+
+    The projector is 0.5 * severity metres to the side of the camera.
+    """
     offset, side = projector(severity, key, views.shape[2])
     missing, z_max, out = np.float32(sensor.missing), np.float32(sensor.z_max), np.empty_like(views)
     _shade(views, np.float32(offset), side, missing, z_max, out)

@@ -36,7 +36,7 @@ def _by_table(views: np.ndarray, tables: list[np.ndarray]) -> np.ndarray:
 
 
 def _amplified(stops: float) -> np.ndarray:
-    """Return a table (uint8 [256]) of levels with ``stops`` more light, clipped at white."""
+    """Return a table (uint8 [256]) that adds ``stops`` of light to grey levels, up to white."""
     return np.rint(np.minimum(np.arange(256) * 2.0 ** (stops / GAMMA), 255.0)).astype(np.uint8)
 
 
@@ -60,7 +60,7 @@ def exposure_tables(severity: float, key: Key) -> list[np.ndarray]:
 
 
 def overexposure(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply light by 2^(2 * severity * u), with u ~ U(0.8, 1.2) per episode; clip it."""
+    """Multiply light by 2^(2 * severity * u), and clip it at white; u ~ U(0.8, 1.2) per episode."""
     return _by_table(views, exposure_tables(severity, key))
 
 
@@ -89,7 +89,10 @@ def haze_offset(key: Key, view: int, width: int) -> int:
 
 
 def haze(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with haze: x * t + A * (1 - t); views show different parts of the random field."""
+    """Blend each view x with haze, as from smoke: out = x * t + A * (1 - t).
+
+    The views show different parts of the random field.
+    """
     count, height, width, _ = views.shape
     out = np.empty_like(views)
     mask = haze_mask(digest(key, "haze"), severity, height, width)
@@ -107,7 +110,10 @@ def hue_degrees(severity: float, key: Key) -> float:
 
 @lru_cache(maxsize=32)
 def hue_matrix(degrees: float) -> np.ndarray:
-    """Return Rodrigues' rotation about the grey axis, int32 [3, 3] in units of 1/4096."""
+    """Return the matrix that rotates colours about the grey axis (Rodrigues' formula).
+
+    The matrix is int32 [3, 3] in units of 1/4096.
+    """
     angle = math.radians(degrees)
     third, cross = np.full((3, 3), 1.0 / 3.0), np.zeros((3, 3))
     cross[[0, 1, 2], [2, 0, 1]], cross[[0, 1, 2], [1, 2, 0]] = 1.0, -1.0
@@ -116,7 +122,10 @@ def hue_matrix(degrees: float) -> np.ndarray:
 
 
 def hue_shift(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Rotate all hues by +-180 * severity degrees, with a sign that is fixed per episode."""
+    """Rotate all hues by +-180 * severity degrees, with a sign that is fixed per episode.
+
+    Grey does not change.
+    """
     matrix = hue_matrix(hue_degrees(severity, key))
     colours = [views[..., c].astype(np.int32) for c in range(3)]
     out = np.empty_like(views)

@@ -51,7 +51,10 @@ def shifted(views: np.ndarray, down: int, right: int) -> np.ndarray:
 
 
 def ghosting(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Blend with a shifted copy x': (1 - a) * x + a * x', where a = 0.5 * severity."""
+    """Blend each view x with a shifted copy x' of itself: out = (1 - a) * x + a * x'.
+
+    Here, a = 0.5 * severity. The copy has repeated edges.
+    """
     gap = shifted(views, *ghost_offset(key, *views.shape[1:3])).astype(np.int32) - views
     return (views + ((gap * ghost_weight(severity) + 32768) >> 16)).astype(np.uint8)
 
@@ -85,7 +88,10 @@ def displaced(views: np.ndarray, down: np.ndarray, right: np.ndarray) -> np.ndar
 
 @cached
 def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return vertical and horizontal slopes of a random surface, float32 [H, W], joint rms 1."""
+    """Return the vertical and horizontal slopes of a random surface, both float32 [H, W].
+
+    Their joint rms is 1.
+    """
     surface = field(value, height, width, DROPS)[0].astype(np.float64)
     down, right = (np.roll(surface, -1, axis) - np.roll(surface, 1, axis) for axis in (0, 1))
     scale = 1.0 / max(math.sqrt(np.mean(down**2 + right**2)), 1e-9)
@@ -93,7 +99,10 @@ def slopes(value: int, height: int, width: int) -> tuple[np.ndarray, np.ndarray]
 
 
 def refraction(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Displace pixels by the slope of a wet pane; the rms is 0.045 * severity * min(H, W)."""
+    """Displace pixels by the slope of a wet pane's surface.
+
+    The rms displacement is 0.045 * severity times the shorter side.
+    """
     _, height, width, _ = views.shape
     reach = np.float32(BEND * severity * min(height, width))
     down, right = slopes(digest(key, "refraction"), height, width)

@@ -50,7 +50,10 @@ def ripple_offsets(key: Key, views: int, height: int, width: int) -> list[tuple[
 
 
 def ripple(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Add 0.06 * severity * z^2 * F, for a random field F that is shifted per view and frame."""
+    """Add waves to walls: the error is 0.06 * severity * z^2 * F for a random field F.
+
+    The field is shifted for every view and frame.
+    """
     count, height, width = views.shape
     waves = field(digest(key, "ripple"), height, width, RIPPLE_CORRELATION)[0]
     moved = np.where(valid(views), np.minimum(views, np.float32(sensor.z_max)), 0)
@@ -86,7 +89,10 @@ def speckle_side(height: int, width: int) -> int:
 
 
 def mismatches(views: np.ndarray, severity: float, key: Key, sensor: DepthSensor) -> np.ndarray:
-    """Set square patches, 0.3 * severity of the pixels, to random depths."""
+    """Set a fraction 0.3 * severity of the pixels to random depths.
+
+    These pixels form square patches with a side length of 0.02 times the shorter side of the image.
+    """
     cell = speckle_side(*views.shape[1:])
     streams, out = view_streams(key, "mismatches", len(views)), np.empty_like(views)
     least = _U(round(WRONG * severity * 2**32))

@@ -40,7 +40,10 @@ def wobble(severity: float, key: Key, height: int, width: int) -> np.ndarray:
 
 
 def rolling_shutter(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Shift each image row sideways by 0.05 * severity * W * sin(...), as from vibration."""
+    """Shift each image row sideways by 0.05 * severity * W * sin(...).
+
+    A camera that vibrates during read-out makes such images.
+    """
     _, height, width, _ = views.shape
     right = np.repeat(wobble(severity, key, height, width)[:, None], width, axis=1)
     return displaced(views, np.zeros_like(right), right)
@@ -57,7 +60,10 @@ def band_gains(severity: float, key: Key, views: int, height: int) -> np.ndarray
 
 
 def flicker_bands(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Multiply image rows by 1 + 0.8 * severity * cos(...), as under lamps on mains power."""
+    """Multiply the brightness of image rows by 1 + 0.8 * severity * cos(...).
+
+    Lamps on mains power cause such bands.
+    """
     gain = band_gains(severity, key, *views.shape[:2])[:, :, None, None]
     return np.minimum((views * gain + 2048) >> 12, 255).astype(np.uint8)
 
@@ -80,7 +86,10 @@ def impulse_limit(severity: float) -> int:
 
 
 def impulse_noise(views: np.ndarray, severity: float, key: Key, heading=None) -> np.ndarray:
-    """Set 0.3 * severity of the pixels to 0 or 255, separately per channel."""
+    """Set random pixels to 0 or 255, separately per channel.
+
+    The fraction of changed pixels is 0.3 * severity in every frame.
+    """
     out, count = np.empty_like(views), len(views)
     least = _U(impulse_limit(severity))
     streams = view_streams(key, "impulse_noise", count)
