@@ -118,15 +118,25 @@ class FrameGate(Adapter):
         self.judged.logits = self.judge(F.gelu(self.hidden(statistics)))[:, 0] - self.threshold
 
     def calibrate(self, logits: Tensor, touched: float) -> None:
-        """Open the gate for a fraction ``touched`` of the clean frames with ``logits`` [n]."""
+        """Set the threshold so that the gate is open for a given fraction of clean frames.
+
+        Args:
+            logits: the gate's logits [n] of clean frames.
+            touched: fraction of clean frames for which the gate is open, in [0, 1].
+        """
         self.threshold += logits.float().quantile(1 - touched).to(self.threshold.dtype)
 
 
 def textures(x: Tensor) -> Tensor:
-    """Return statistics [n, C * TEXTURES] of frames [n, C, h, w] with a value range of about 1.
+    """Return statistics that distinguish clean frames from corrupted frames.
 
-    They distinguish noise, blur, quantisation, darkness and holes from clean frames. Magnitudes are
-    logarithms.
+    The corruptions are noise, blur, quantisation, darkness and holes.
+
+    Args:
+        x: frames ``[n, C, h, w]`` whose values have a range of about 1.
+
+    Returns:
+        float32 [n, C * TEXTURES]. Magnitudes are returned as logarithms.
     """
     features = [x.mean((2, 3)), x.std((2, 3)), x.flatten(2).amin(2), x.flatten(2).amax(2)]
     for level in (x, F.avg_pool2d(x, 2)):
@@ -140,9 +150,14 @@ def textures(x: Tensor) -> Tensor:
 
 
 def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
-    """Return ``corrected`` for frames whose gate is open, and the input ``x`` for all others.
+    """Return ``corrected`` for frames whose gate is open, and ``x`` for all other frames.
 
-    Without a gate (an empty list), or during training, all frames are corrected.
+    If there is no gate, or during training, all frames are corrected.
+
+    Args:
+        gates: the gate of the adapter; an empty list means no gate.
+        x: the input of the adapter.
+        corrected: output of the layer, of the same shape.
     """
     if not gates or gates[0].training:
         return corrected
@@ -154,9 +169,10 @@ def through(gates: list[Adapter], x: Tensor, corrected: Tensor) -> Tensor:
 class Gate(nn.Module):
     """Compute one logit per frame; its sigmoid scales the adapter's correction.
 
-    The logit is computed from the mean and the root mean square of each of the ``middle`` channels
-    of the adapter's bottleneck. ``recipes/encoder.py`` adds a loss that closes the gate for clean
-    frames. The gate is always trained together with the adapter.
+    The logit is computed from the adapter's bottleneck: the mean and the root mean square of each
+    of its ``middle`` channels over the frame. The gate should be closed for clean frames, so that
+    their features do not change. A recipe may add a loss for this purpose (``recipes/encoder.py``).
+    The gate is always trained together with the adapter.
     """
 
     def __init__(self, middle: int) -> None:
@@ -344,10 +360,16 @@ class RingAdapter(Adapter):
         return through(self.gates, x, x + self.share(z).tanh() * (around - x) + self.up(z))
 
     def aligned(self, maps: Tensor, grid: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return ``maps`` [P * views, C, h, w] and their left and right neighbours, warped to them.
+        """Return the maps, and the neighbours of each map warped into its view.
 
-        ``grid`` is the result of :func:`neighbour_grid`. A neighbour is zero in cells that it does
-        not see, and fades to zero within half a cell of its border.
+        Args:
+            maps: ``[P * views, C, h, w]``.
+            grid: result of :func:`neighbour_grid`.
+
+        Returns:
+            Maps, left neighbours and right neighbours, each with the shape of ``maps``.
+            A warped neighbour is zero in cells that the neighbouring view does not see. It fades to
+            zero within half a cell of its border.
         """
         ring = maps.unflatten(0, (-1, self.views))
         left, right = (
@@ -367,12 +389,14 @@ def neighbour_grid(height: int, width: int, step: float, hfov: float) -> Tensor:
     Args:
         height: rows of the map.
         width: columns of the map.
-        step: angle in degrees from a view to the next view on its right.
+        step: angle in degrees from a view to the next view on its right
+            (``mitigate/core/observation.py``).
         hfov: horizontal field of view in degrees; views are square.
 
     Returns:
         float32 ``[2, h, w, 2]``: (x, y) in the coordinates of ``grid_sample`` with
-        ``align_corners=False``; inside [-1, 1] for cells that the neighbouring view sees.
+        ``align_corners=False``;
+        values are inside [-1, 1] for cells that the neighbouring view sees.
     """
     half = math.tan(math.radians(hfov) / 2)
     x = ((torch.arange(width) + 0.5) / width * 2 - 1) * half

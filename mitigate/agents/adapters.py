@@ -2,11 +2,11 @@
 
 ``insert_adapters(model, target_modules=...)`` adds a residual layer ``x + up(act(down(x)))`` after
 named modules, as PEFT does for attention layers. Inserting adapters changes neither the names and
-values of the backbone's weights nor its ``forward``, nor its output until ``up`` is trained. Each
-adapter is a child of its module and is called by a forward hook. Modules that return maps get
-convolutional adapters, and modules that return tokens get linear adapters. *Ring* adapters also
-read the neighbours of each view of a panorama. *Gates* restrict the correction to frames that they
-classify as corrupted.
+values of the backbone's weights nor its ``forward``. The output of the backbone stays the same
+until ``up`` is trained. Each adapter is a child of its module and is called by a forward hook.
+``adapter_layers.py`` defines the layers. Modules that return maps get convolutional adapters, and
+modules that return tokens get linear adapters. *Ring* adapters also read the neighbours of each
+view of a panorama. *Gates* restrict the correction to frames that they classify as corrupted.
 """
 
 from __future__ import annotations
@@ -265,7 +265,10 @@ def load_adapters(model: nn.Module, folder: str | Path) -> list[str]:
 
 
 def _build_adapter(settings: dict[str, Any], tensors: dict[str, Tensor]) -> Adapter:
-    """Return an adapter with these settings and weights; raise TypeError if they do not match."""
+    """Return an adapter that has the given ``settings`` and the weights ``tensors``.
+
+    Raises TypeError or RuntimeError if the settings and the tensors do not match.
+    """
     arguments = {name: value for name, value in settings.items() if name != "kind"}
     shape = RingAdapter if "views" in settings else ConvAdapter
     kind = {"tokens": TokenAdapter, "gate": FrameGate}.get(str(settings.get("kind")), shape)

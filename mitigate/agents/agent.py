@@ -78,11 +78,18 @@ class Agent:
     brings_weights: bool = False
 
     def reset(self, instruction: str) -> None:
-        """Start an episode."""
+        """Start an episode.
+
+        Shipped agents raise TypeError if ``instruction`` is not a string.
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no reset(instruction)")
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return the next low-level action."""
+        """Return the next low-level action.
+
+        Shipped agents raise RuntimeError if ``reset`` was not called first. They raise KeyError,
+        TypeError or ValueError if the observation is invalid (``agents/observation.py``).
+        """
         raise NotImplementedError(f"{type(self).__name__} defines no act(observation)")
 
     def begin(self, instruction: str) -> Any:
@@ -92,15 +99,21 @@ class Agent:
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Any]
     ) -> list[int]:
-        """Return one action for each of n episodes, given their observations, and update their
-        memories.
+        """Return one action per episode, and update the memories of the episodes.
 
         The action for one episode must not depend on the other episodes or on their number.
+
+        Args:
+            observations: the current observation of each of n episodes, where n is at most
+                ``together``.
+            memories: the memory of each episode, from :meth:`begin`.
         """
         raise NotImplementedError(f"{type(self).__name__} defines no act_all(...)")
 
     def taken(self, action: int, metres: float, radians: float) -> None:
-        """Update the agent's state, such as its plan, after a motion that it did not choose.
+        """Update the agent's state after a motion that the agent did not choose itself.
+
+        The agent drops its plan.
 
         Args:
             action: the action that is most similar to the motion, or -1 if no action is similar.
@@ -118,7 +131,10 @@ class Agent:
         return {}
 
     def remembering(self) -> AbstractContextManager:
-        """Return a context in which identical frames are encoded only once; actions stay equal."""
+        """Return a context in which identical frames are encoded only once.
+
+        The context does not change any action.
+        """
         return nullcontext()
 
     def precompute(self, piece: Any, *, clean: bool) -> Any:
@@ -208,7 +224,10 @@ class _AgentView(Agent):
 
 
 def stated_settings(agent: Any) -> dict[str, Any] | None:
-    """Return ``agent.settings``, which is a method or a mapping, as a dict; None if missing."""
+    """Return the settings of ``agent`` as a dict, or None if the agent has no settings.
+
+    The member ``settings`` of an agent may be a method or a mapping.
+    """
     settings = read(agent, "settings")
     return None if settings is None else dict(settings() if callable(settings) else settings)
 
@@ -291,10 +310,16 @@ class Decisions(Protocol):
 
 @dataclass
 class Batch:
-    """Base class of batches of decisions."""
+    """Base class of batches of decisions.
+
+    A subclass is a dataclass whose fields are tensors, dicts of tensors, or plain data.
+    """
 
     def to(self, device: Any) -> Any:
-        """Return a copy of the batch on ``device``; dicts of tensors are copied, too."""
+        """Return a copy of the batch with all tensors on ``device``.
+
+        This includes tensors in dicts.
+        """
 
         def moved(value: Any) -> Any:
             if isinstance(value, dict):
@@ -306,10 +331,16 @@ class Batch:
 
 @runtime_checkable
 class Trainable(Protocol):
-    """An agent that objectives can train: an :class:`Agent` that is also an ``nn.Module``."""
+    """The interface of an agent that objectives can train.
+
+    Such an agent is an :class:`Agent` and an ``nn.Module``.
+    """
 
     def parts(self) -> dict[str, nn.Module]:
-        """Return the modules that can be frozen, trained and adapted, with all parameters."""
+        """Return the modules that can be frozen, trained and adapted, by name.
+
+        Together, the modules hold all parameters of the agent.
+        """
 
     def collect(
         self,
@@ -362,7 +393,12 @@ class KnowsEntropy(Protocol):
 
 @runtime_checkable
 class Seeing(Protocol):
-    """A trainable agent whose encoders can be trained on single observations, without episodes."""
+    """A trainable agent whose encoders can be trained on single observations, without episodes.
+
+    Attributes:
+        encoders: maps a sensor to the names of the parts that read it.
+        labels: maps a sensor to the entry of a world's ``truth()`` that holds the training labels.
+    """
 
     encoders: Mapping[str, tuple[str, ...]]
     labels: Mapping[str, str]

@@ -24,7 +24,10 @@ class Attention(nn.Module):
     def forward(
         self, x: Tensor, memory: Tensor, mask: Tensor | None, rows: Tensor | None = None
     ) -> Tensor:
-        """Let x [B, n, width] attend to ``memory`` [B, m, width], or to ``memory[rows]``."""
+        """Apply attention with queries from x [B, n, width] and keys and values from memory.
+
+        ``memory`` has the shape [B, m, width]. If ``rows`` is set, it uses ``memory[rows]``.
+        """
 
         def split(t: Tensor) -> Tensor:
             return t.unflatten(-1, (self.heads, -1)).transpose(-2, -3)
@@ -52,10 +55,13 @@ class Layer(nn.Module):
     def forward(
         self, x: Tensor, mask: Tensor | None, text: tuple[Tensor, Tensor, Tensor] | None = None
     ) -> Tensor:
-        """Apply the layer to x [B, n, width]; ``mask`` [B, n] is True where attention is allowed.
+        """Apply the layer.
 
-        ``text`` holds text features [E, L, width], their mask [B, L], and for each row of x the
-        index of its text (int [B]).
+        Args:
+            x: [B, n, width].
+            mask: bool [B, n], True where attention is allowed; None allows it everywhere.
+            text: text features [E, L, width], their mask [B, L], and for each row of x the index of
+                its text (int [B]).
         """
         if self.cross is not None and self.cross_norm is not None and text is not None:
             x = x + self.cross(self.cross_norm(x), *text)
@@ -65,7 +71,15 @@ class Layer(nn.Module):
 
 
 class TextReader(nn.Module):
-    """Base class of networks that read an instruction with a small transformer."""
+    """Base class of networks that read an instruction with a small transformer.
+
+    Args:
+        vocabulary: words of the instructions.
+        width: width of all layers.
+        heads: attention heads.
+        layers: transformer layers over the text.
+        dropout: dropout rate.
+    """
 
     concept_words: Tensor
     seen: nn.Linear  # layers of :meth:`concept_features`, which a subclass creates
@@ -87,7 +101,10 @@ class TextReader(nn.Module):
         self.text_norm = nn.LayerNorm(width)
 
     def concept_features(self, concepts: Tensor) -> list[Tensor]:
-        """Return features [..., width] of objects, near objects and others in ``concepts``."""
+        """Return three features [..., width]: for objects, near objects and other concepts.
+
+        ``concepts`` [..., C] holds the probability of each concept.
+        """
         meaning = self.concept_words @ self.words.weight  # [concepts, width]
         parts = ((self.seen, THINGS), (self.close, NEAR), (self.kinds, slice(NEAR.stop, None)))
         return [layer(concepts[..., part] @ meaning[part]) for layer, part in parts]

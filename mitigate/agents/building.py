@@ -32,12 +32,14 @@ def build_agent(
 
     Args:
         node: the config of the agent, with ``_target_``.
-        weights: file or folder of the initial weights; None initialises them with ``seed``.
+        weights: file or folder of the initial weights; None initialises them randomly with
+            ``seed``.
         seed: seed of random initial weights.
         parts: names of the agent's ``parts()`` to load; None loads all.
     """
     weights = None if weights is None else str(find(weights))
-    # checked first: a huge width would exhaust the memory, and some patterns match too slowly
+    # Invalid settings are rejected before the agent is built.
+    # A huge width would exhaust the memory, and some patterns take too long to match.
     if node["_target_"] in schema.KINDS:
         config = plain(node)
         known = schema.schema_of(config["_target_"])
@@ -78,7 +80,11 @@ def settings_of(
 ) -> dict[str, Any]:
     """Return ``node`` with the settings stored with ``weights`` (:func:`stored_settings`).
 
-    Options in ``overrides`` (``agent.blind=[rgb]``) take precedence.
+    Args:
+        node: the config of the agent.
+        weights: file or folder of the weights.
+        overrides: options of the command line (``agent.blind=[rgb]``); these options take
+            precedence.
     """
     keys = [override.lstrip("+").partition("=")[0].split(".") for override in overrides]
     overridden = {key[1] for key in keys if key[0] == "agent" and len(key) > 1}
@@ -90,9 +96,10 @@ def settings_of(
 
 
 def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[str, Any]:
-    """Take settings that are null or missing, such as the vocabulary, from ``weights``.
+    """Return ``node``; settings that are null or missing are taken from ``weights``.
 
-    Raises the same errors as :func:`stored_settings`.
+    Examples of such settings are the adapters and the vocabulary. If ``weights`` is None, ``node``
+    is returned unchanged. Raises the same errors as :func:`stored_settings`.
     """
     if weights is None:
         return node
@@ -101,10 +108,13 @@ def inherit_settings(node: Mapping[str, Any], weights: str | None) -> Mapping[st
 
 
 def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
-    """Return the agent settings in ``config.yaml`` next to ``weights``, if there is such a file.
+    """Return the agent settings stored in ``config.yaml`` next to ``weights``, read as plain data.
+
+    If the file does not exist, the result is empty.
 
     Raises:
-        ValueError: If the file was changed, or does not fit the kind of agent in ``node``.
+        ValueError: If the file was changed, if the weights belong to a different kind of agent than
+            ``node``, or if the file holds a value that the agent does not accept.
     """
     place = find(weights)
     if (place / PEFT_WEIGHTS).is_file() and not hasattr(locate(node["_target_"]), "act"):
@@ -123,9 +133,11 @@ def stored_settings(node: Mapping[str, Any], weights: str) -> dict[str, Any]:
 
 
 def agent_option(options: Sequence[str], weights: str) -> list[str]:
-    """Return ``["agent=NAME"]`` for the shipped kind of agent to which ``weights`` belong.
+    """Return ``["agent=NAME"]`` for the kind of agent to which ``weights`` belong.
 
-    The result is empty for the default kind, or if ``options`` already choose an agent.
+    This agent config also sets the world options that the agent needs. The result is empty if
+    ``options`` already choose an agent, or if the kind of agent is the default kind, not shipped,
+    or unknown.
     """
     if any(option.lstrip("+~").partition("=")[0] == "agent" for option in options):
         return []
@@ -138,7 +150,7 @@ def agent_option(options: Sequence[str], weights: str) -> list[str]:
 
 
 def with_kind(options: Sequence[str]) -> list[str]:
-    """Add the ``agent=`` option that fits the weights in ``checkpoint=``."""
+    """Return ``options`` with the ``agent=`` option that fits the weights in ``checkpoint=``."""
     weights = values(options, "checkpoint")
     added = agent_option(options, weights[0]) if len(weights) == 1 else []
     return [*options, *added]

@@ -21,12 +21,14 @@ from mitigate.agents.text import CONCEPTS, THINGS
 from mitigate.core.observation import DEPTH, RGB
 
 SIZE = 64  # side in pixels of the views that the shipped agents were trained on
-DEPTH_RANGE = 5.0  # depth is clipped at this many metres; free space is predicted up to 3 m
+# depth is clipped at this many metres, because free space is predicted only up to 3 m
+DEPTH_RANGE = 5.0
 GRID = 4  # number of rows and columns of the last feature map for views of 64 pixels
 # free space: number of direction bins over 90 degrees, number of distance bins, metres per bin
 DIRECTIONS, DISTANCES, STEP = 30, 12, 0.25
 LABELS = {RGB: "concepts", DEPTH: "free"}
-POSITIVE = 2.0  # weight of positive labels, because most concepts do not appear in a view
+# weight of positive labels, which are rare because most concepts do not appear in a view
+POSITIVE = 2.0
 
 
 class Block(nn.Module):
@@ -46,9 +48,10 @@ class Block(nn.Module):
 
 
 def halved(x: Tensor) -> Tensor:
-    """Return ``F.avg_pool2d(x, 2)``, bit for bit.
+    """Return the same result as ``F.avg_pool2d(x, 2)``, bit for bit.
 
-    On a CPU, a sum of four slices is three times as fast (torch 2.13).
+    Without gradients, the result is computed as a sum of four slices. On a CPU, this is three times
+    as fast as ``F.avg_pool2d``, which computes one value at a time (torch 2.13).
     """
     if torch.is_grad_enabled() or x.shape[-1] % 2 or x.shape[-2] % 2:
         return F.avg_pool2d(x, 2)
@@ -62,7 +65,7 @@ class Encoder(nn.Module):
     Views are first resized to ``size`` x ``size`` pixels.
     """
 
-    channels: int  # of the input
+    channels: int  # channels of the input
     widths: tuple[int, ...]  # channels of the stem and of each stage
     resize: str  # mode of ``F.interpolate`` with which views are resized
     stride = 16  # ``size`` must be a multiple of this number of pixels
@@ -183,7 +186,10 @@ def agreement(logits: Tensor, target: Tensor) -> Tensor:
 
 
 def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | None) -> Output:
-    """Return the output of ``see``, with the loss "labels" and metrics if ``truth`` is given."""
+    """Return the output of ``see``, which contains the features "views".
+
+    If ``truth`` is given, the output also contains the loss "labels" and metrics (``figures``).
+    """
     out = Output(features={"views": views})
     if truth is None:
         return out
@@ -197,7 +203,10 @@ def label_output(views: Tensor, logits: Tensor, sensor: str, truth: Tensor | Non
 
 
 class CameraRGB(RGBEncoder):
-    """Encode 4 columns of uint8 ``[n, H, W, 3]`` as features [n, 4, width] and logits [n, 4, C]."""
+    """Encode four columns of RGB frames (uint8 ``[n, H, W, 3]``) as features and concept logits.
+
+    Features have the shape ``[n, 4, width]``, and logits have the shape ``[n, 4, C]``.
+    """
 
     kernel = (GRID, 1)
 
@@ -229,7 +238,8 @@ class CameraDepth(DepthEncoder):
 def encode_camera(encoder: nn.Module, sensor: str, frames: Tensor) -> tuple[Tensor, Tensor]:
     """Return features [n, F] and logits for frames [n, H, W, c] of one camera.
 
-    The features end with predictions: probabilities of concepts (RGB), or free metres (depth).
+    The features consist of the features of all columns and the encoder's predictions. For RGB,
+    these are probabilities of concepts; for depth, these are free distances in metres.
     """
     features, logits = encoder(frames)
     chances = logits.sigmoid()

@@ -35,7 +35,8 @@ KIND = "fingerprint_kind"
 DEEPEST = 50  # maximum nesting depth of attributes (heuristic); deeper nesting is probably a cycle
 # record hooks of this module by name only: state_dict() already contains the adapters they call
 _OWN_HOOKS = "mitigate.agents.adapters"
-# attributes of torch itself, the hook handle of an adapter and the last logits of a gate
+# The fingerprint skips the attributes that torch itself adds to modules.
+# It also skips the hook handle of an adapter and the last logits of a gate (``judged``).
 _LEFT_OUT = {*vars(nn.Module()), "_flat_weights", "_flat_weight_refs", "hook", "judged"}
 _LEFT_OUT |= {"_statistics_before_adapters", "settings"}
 _PLAIN = (str, int, float, bool, type(None))
@@ -69,8 +70,11 @@ def fingerprint(
 ) -> str:
     """Return the fingerprint of ``agent`` with the ``sensors`` of a world.
 
-    ``front`` are the fingerprints of the guards between them. ``version`` is a string of the user
-    that identifies state that cannot be read.
+    Args:
+        agent: any object.
+        sensors: the sensors of the world.
+        front: fingerprints of the guards between the world and the agent.
+        version: a string, set by the user, that identifies state that cannot be read.
     """
     return hash_of(contents(agent, version).parts, sensors, front)
 
@@ -78,8 +82,9 @@ def fingerprint(
 def contents(agent: Any, version: str | None = None) -> Contents:
     """Return everything that determines the behaviour of ``agent``.
 
-    This includes the attributes of a shipped agent that differ from those of a new agent with the
-    same settings, and all attributes of an agent whose ``settings()`` is missing or inherited.
+    For a shipped agent, this includes the attributes whose values differ from those of a new agent
+    with the same settings. For an agent whose ``settings()`` is missing or inherited, this
+    includes all its attributes.
     """
     shipped = KIND in vars(type(agent))
     settings = agent.settings if _definer(agent) is not None else {}
@@ -110,20 +115,29 @@ def contents(agent: Any, version: str | None = None) -> Contents:
 
 
 def says_all(agent: Any) -> bool:
-    """Return whether ``settings`` describes all attributes: a subclass may have added some."""
+    """Return whether ``settings`` describes all attributes.
+
+    An inherited ``settings`` does not describe all attributes, because a subclass may add
+    attributes.
+    """
     return _definer(agent) in (agent, type(agent))
 
 
 def _definer(agent: Any) -> Any:
-    """Return the object or class that defines ``settings``, or None."""
-    # settings from ``__getattr__`` do not count, because they belong to a wrapped object
+    """Return the object or class that defines ``settings``, or None.
+
+    Settings that come from ``__getattr__`` are ignored, because they belong to a wrapped object.
+    """
     candidates = (agent, *type(agent).__mro__)
     definers = (one for one in candidates if "settings" in read(one, "__dict__", default=()))
     return next(definers, None)
 
 
 def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
-    """Return the attributes and layers, except ``run_state``, that differ from a new agent's."""
+    """Return the differences in attributes and layers between a shipped agent and a new agent.
+
+    Weights, and the attributes that ``run_state`` names, are excluded.
+    """
     with torch.random.fork_rng(devices=[]):
         new = type(agent)(**agent.settings())
     usual, _ = _entries(new, {"": new}, True)
@@ -141,10 +155,17 @@ def _changes(agent: Any, nets: Mapping[str, nn.Module]) -> dict[str, Any]:
 def _entries(
     agent: Any, nets: Mapping[str, nn.Module], attributes: bool
 ) -> tuple[dict[str, Any], dict[str, str]]:
-    """Return descriptions of attributes, layers and hooks, and why others are unreadable, by path.
+    """Return two dicts: descriptions of the agent's contents, and reasons for unreadable contents.
 
-    Without ``attributes``, those of the agent and of the user's modules are left out. Those of
-    other modules are always included, because ``settings()`` might not list them.
+    The contents are attributes, layers and hooks. The keys of both dicts are dotted paths in the
+    agent.
+
+    Args:
+        agent: the agent.
+        nets: its networks.
+        attributes: whether the attributes of the agent and of the user's modules are included.
+            Attributes of other modules are always included, because ``settings()`` might not list
+            them.
     """
     entries: dict[str, Any] = {}
     unreadable: dict[str, str] = {}
@@ -175,7 +196,11 @@ def _entries(
 def _add_hooks(
     module: nn.Module, place: str, entries: dict[str, Any], unreadable: dict[str, str]
 ) -> None:
-    """Describe each forward hook by its method ``fingerprint()``, or by its name for our hooks."""
+    """Add a description of each forward hook of ``module`` to ``entries``.
+
+    A hook is described by its method ``fingerprint()``, or by its name if ``adapters.py`` defines
+    it. Any other hook is added to ``unreadable``.
+    """
     if type(module).__module__.startswith("torch.jit"):
         unreadable[place] = "a TorchScript module"
         return
@@ -280,7 +305,10 @@ def _described(value: Any, place: str, unreadable: dict[str, str]) -> Any:
 
 
 def _attributes_of_data(value: Any) -> dict[str, Any] | None:
-    """Return the attributes of a gymnasium space or of a frozen dataclass of this project."""
+    """Return the attributes of a gymnasium space or of a frozen dataclass of this project.
+
+    The random generator of a space is left out. Return None for any other value.
+    """
     kind = type(value)
     if any(f"{each.__module__}.{each.__qualname__}" in _SPACES for each in kind.__mro__):
         return {name: part for name, part in vars(value).items() if name != "_np_random"}
@@ -296,7 +324,10 @@ def _is_users_function(value: Any) -> bool:
 
 
 def _function(function: types.FunctionType, place: str, unreadable: dict[str, str]) -> Any:
-    """Return bytecode, defaults, attributes and used values of a user's function and callees."""
+    """Return the bytecode of a user's function and of the user's functions that it calls.
+
+    The result also contains their default values and attributes, and other values that they use.
+    """
     if place.count("().") > 1:  # functions that name each other in dicts would never end
         unreadable[place] = "nested too deeply"
         return None
@@ -315,7 +346,11 @@ def _function(function: types.FunctionType, place: str, unreadable: dict[str, st
 
 
 def array_sha(array: Any) -> str:
-    """Return the hash of the type, shape and bytes of an array or tensor, or "" if unreadable."""
+    """Return the hash of an array's or tensor's type, shape and bytes.
+
+    Return "" if the value is not an array or has no readable bytes, because it is sparse, on the
+    meta device, or holds objects.
+    """
     if type(array) not in (np.ndarray, torch.Tensor, nn.Parameter):
         return ""
     text = f"{array.dtype} {tuple(array.shape)}"
@@ -348,7 +383,10 @@ def hash_of(parts: Mapping[str, Any], sensors: Mapping[str, Sensor], front: str 
 
 
 def code_sha(objective: nn.Module, *others: type) -> str:
-    """Return the hash of the user's code in an objective, its agent and ``others``, or ""."""
+    """Return the hash of the user's code in an objective, its agent and ``others``.
+
+    The result is "" if there is no user code.
+    """
     kinds = [type(module) for net in networks(objective).values() for module in net.modules()]
     code = "\n".join(code_of(type(objective), *kinds, *others).parts.get("code", ()))
     return code and hashlib.sha256(code.encode()).hexdigest()[:DIGITS]

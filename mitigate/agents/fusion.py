@@ -11,8 +11,10 @@ from functools import partial
 import torch
 from torch import Tensor, nn
 
-RATE = 4.0  # how fast a weight falls as its view deviates from the mean (chosen on val_seen)
-CAP = 3.0  # largest exponent (heuristic): weights are at least exp(-3) = 0.05 of a typical view's
+# how fast a view's weight falls as the view deviates from the mean (chosen on val_seen)
+RATE = 4.0
+# largest exponent (heuristic); the weight is at least exp(-3) = 0.05 times that of a typical view
+CAP = 3.0
 HIDDEN = 32  # width of the hidden layer of the learned score (heuristic)
 _TINY = 1e-6
 
@@ -85,9 +87,12 @@ class LearnedReliability(nn.Module):
 def weigher(
     width: int, *, learned: bool = False, rate: float | None = None, cap: float = CAP
 ) -> Callable[[Tensor], Tensor]:
-    """Return :func:`reliability`, or a :class:`LearnedReliability` of ``width`` features.
+    """Return a function that computes one weight per view from the view's ``width`` features.
 
-    Raises ValueError if ``learned`` and ``rate`` are both set.
+    The function is :func:`reliability`, or a :class:`LearnedReliability` if ``learned`` is set.
+
+    Raises:
+        ValueError: If ``learned`` and ``rate`` are both set.
     """
     if learned and rate is not None:
         raise ValueError(

@@ -39,7 +39,8 @@ ONNX = ("perceive.onnx", "decide.onnx")
 # files that an export may write; if a folder holds such a file, its manifest must list the file
 KNOWN = (checkpoint.WEIGHTS, adapters.WEIGHTS, adapters.SETTINGS, *FILES, PROGRAM, *ONNX)
 ENTRIES = ("adapters_only", "base", "vocabulary", "commit", "agent")  # required in a card
-LONGEST_PATH = 1000  # characters of a path to base weights (heuristic; Linux allows 4095)
+# maximum length of a path to base weights (heuristic; the limit of Linux is 4095)
+LONGEST_PATH = 1000
 # agents with up to this many weights (128 MiB) are built without a file-size check (heuristic)
 FREE_WEIGHTS = 1 << 25
 TARGET = schema.KINDS[0]
@@ -158,10 +159,12 @@ def _agent_to_fill(agent: Any, config: Path, weights: Path, again: str) -> Any:
 def build_from(config: Path, weights: Path | None = None) -> Any:
     """Build an agent of a shipped class with the settings in ``config`` and random weights.
 
+    The YAML file is read as plain data. A large agent with more weights than the file ``weights``
+    has bytes is rejected before memory is allocated for it.
+
     Raises:
         ValueError: If the file is damaged, or names a different kind of agent. Also if the agent is
-            large and has more weights than the file ``weights`` has bytes, before memory is
-            allocated for it.
+            large and has more weights than the file ``weights`` has bytes.
     """
     kind = kind_of(config)
     make = partial(schema.class_of(kind), **agent_settings(config, kind))
@@ -182,8 +185,10 @@ def build_from(config: Path, weights: Path | None = None) -> Any:
 def config_of(weights: Path) -> Path:
     """Return the path of the config that belongs to ``weights``, which is a file or a folder.
 
-    Raises FileNotFoundError if there are no weights, and ValueError for a file inside a hardened
-    folder.
+    Raises:
+        FileNotFoundError: If there are no weights.
+        ValueError: If ``weights`` is a file inside a hardened folder; the folder itself must be
+            named.
     """
     if is_hardened(weights) or (weights / PEFT_WEIGHTS).is_file():
         return weights / CONFIG
@@ -195,7 +200,10 @@ def config_of(weights: Path) -> Path:
 
 
 def reject_other_models(run: Path) -> None:
-    """Raise ValueError if a run, or its folder ``agent``, holds another model than an agent."""
+    """Raise ValueError if a folder holds a model that is not a navigation agent.
+
+    ``run`` is the folder of a run, or its subfolder ``agent``.
+    """
     config = run / CONFIG
     target = str(_agent_node(config).get("_target_")) if config.is_file() else ""
     page = next((page for start, page in PAGES.items() if target.startswith(f"{start}.")), "")
@@ -211,10 +219,15 @@ def reject_other_models(run: Path) -> None:
 
 
 def check_same(agent: Any, config: Path, again: str) -> None:
-    """Raise ValueError if the settings of ``agent`` differ from those in ``config``.
+    """Compare the settings of ``agent`` with those in ``config``.
 
-    If the agent has no ``settings()``, its attributes of the same names are compared instead. A
-    difference then causes only a warning, because the attribute may mean something else.
+    If the agent has no ``settings()``, each plain setting is compared with the agent's attribute of
+    the same name. In this case, a difference causes only a warning, because the attribute may mean
+    something else.
+
+    Raises:
+        ValueError: If the settings differ, or the file has no settings (this message ends with
+            ``again``).
     """
     stored = _settings_in(config, again)
     actual = stated = stated_settings(agent)
@@ -234,7 +247,11 @@ def check_same(agent: Any, config: Path, again: str) -> None:
 
 
 def give_settings(agent: Any, config: Path, again: str) -> None:
-    """If an agent has no ``settings``, set them to those in ``config``, as ``build_agent`` does."""
+    """If an agent has no ``settings``, set them to the settings in ``config``.
+
+    ``building.build_agent`` does the same, so the fingerprints are equal. Raises the same errors
+    as :func:`check_same`.
+    """
     if stated_settings(agent) is None:
         known = {k: v for k, v in _settings_in(config, again).items() if k != "_target_"}
         agent.settings = partial(dict, known)
@@ -248,7 +265,7 @@ def _settings_in(config: Path, again: str) -> dict[str, Any]:
 
 
 def _agent_node(config: Path) -> dict[str, Any]:
-    """Return the settings of the agent in ``config``, which are empty if it has none."""
+    """Return the agent's settings in ``config``, or an empty dict if it contains none."""
     node = settings.read(config).get("agent")
     return node if isinstance(node, dict) else {}
 
@@ -262,7 +279,10 @@ def _as_json(value: Any) -> Any:
 
 
 def kind_of(config: Path) -> str:
-    """Return the kind of the agent in ``config``, by default the first of ``schema.KINDS``."""
+    """Return the kind of the agent in ``config``, one of ``schema.KINDS``.
+
+    If ``config`` names none of them, return the first kind.
+    """
     target = _agent_node(config).get("_target_")
     return target if target in schema.KINDS else TARGET
 
@@ -288,14 +308,18 @@ def is_hardened(folder: str | Path) -> bool:
 
 
 def adapters_only(folder: str | Path) -> bool:
-    """Return whether ``folder`` is hardened and holds only adapters, but no base weights."""
+    """Return whether ``folder`` is hardened and holds only adapters, which refer to base weights.
+
+    Raises the same errors as :func:`read_card`.
+    """
     return is_hardened(folder) and bool(read_card(Path(folder))["adapters_only"])
 
 
 def fill(agent: Any, folder: str | Path) -> None:
     """Load the weights of a hardened folder into ``agent``, including adapters and base weights.
 
-    Errors are as in :func:`load_hardened`, and ValueError if the agent has different adapters.
+    Adapters of ``agent`` that are not in the folder are not changed. Errors are as in
+    :func:`load_hardened`. ValueError is also raised if the agent has different adapters or weights.
     """
     folder = Path(folder)
     card = check_hardened(folder)
@@ -319,9 +343,11 @@ def _fill(agent: Any, folder: Path, card: dict[str, Any], weights: Path) -> None
 def check_hardened(folder: Path) -> dict[str, Any]:
     """Return the card of ``folder`` after comparing every file with the manifest.
 
+    ``program.pt2`` may be missing: loading does not read it, and `mitigate export FOLDER
+    --programs` writes it again.
+
     Raises:
-        FileNotFoundError: If a file other than ``program.pt2`` is missing; loading does not need
-            it, and `mitigate export FOLDER --programs` writes it again.
+        FileNotFoundError: If another file is missing.
         ValueError: If a file has been changed, or the card is damaged.
     """
     card = read_card(folder)
@@ -389,7 +415,10 @@ def _is_path(value: Any) -> bool:
 
 
 def vocabulary_sha(agent: Any) -> str | None:
-    """Return 12 hex digits of the sha256 of an agent's words, or None if it has no vocabulary."""
+    """Return a hash of an agent's vocabulary, or None if the agent has no vocabulary.
+
+    The hash is the first 12 hex digits of the sha256 of the words, in the order of their ids.
+    """
     if not hasattr(agent, "vocabulary"):  # only some kinds of agents have a vocabulary
         return None
     return hashlib.sha256("\n".join(agent.vocabulary).encode()).hexdigest()[:12]

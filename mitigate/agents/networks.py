@@ -13,7 +13,7 @@ from torch import nn
 
 from mitigate.agents.source import is_users, methods, named_values
 
-MOST_VALUES = 100_000  # values that are visited at most (heuristic; less than a second)
+MOST_VALUES = 100_000  # maximum number of visited values (heuristic; takes less than a second)
 _SCALARS = (str, bytes, int, float, complex, type(None), types.ModuleType)
 
 

@@ -17,18 +17,26 @@ from mitigate.agents.text import MAX_WORDS, UNKNOWN, Vocabulary
 from mitigate.core.names import unknown
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Sensor
 
-# depth is rejected if most values exceed this (heuristic): indoors, at least the floor is nearer
+# Depth is rejected if most values exceed FARTHEST metres (heuristic).
+# Indoors, at least the floor is always nearer than that.
 FARTHEST = 50.0
-# a panorama whose depth never exceeds this causes a warning (heuristic): rooms are larger
+# A panorama causes a warning if its depth never exceeds NEAREST metres (heuristic).
+# In almost every room, at least one surface is farther away.
 NEAREST = 1.0
 
 CHANNELS = {RGB: 3, DEPTH: 1}
 
 
 def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
-    """Raise ValueError if a world lacks the sensors or the number of views that an agent needs.
+    """Check that a world has the sensors and the number of views that an agent declares.
 
-    ``world`` is the name of the world, for messages.
+    Args:
+        agent: any agent; its ``sensors`` and ``views`` are compared.
+        sensors: the sensors of the world.
+        world: name of the world, for messages.
+
+    Raises:
+        ValueError: If a sensor is missing, or the number of views differs.
     """
     contract = as_agent(agent)
     declared = contract.sensors
@@ -36,8 +44,9 @@ def check_fits(agent: Any, sensors: Mapping[str, Sensor], world: str) -> None:
     for name in read:
         if name not in (*sensors, POSE):
             raise ValueError(
-                f"{type(agent).__name__} reads {name}, which the world {world} does not have: "
-                f"{unknown('sensor', name, sensors)} Or choose another agent or world (env=...)."
+                f"{type(agent).__name__} reads {name}, which the world {world} does not have. "
+                f"{unknown('sensor', name, sensors)} Otherwise, choose another agent, or another "
+                "world (env=...)."
             )
     expected = contract.views
     if expected not in (1, VIEWS):
@@ -58,10 +67,18 @@ def frames(observation: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray]:
 
 
 def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
-    """Return the entry "rgb" (uint8) or "depth" (float32 metres) of 1 or 12 ``views``.
+    """Return the entry "rgb" (uint8) or "depth" (float32 metres), ready for torch.
+
+    A warning is issued for depth that looks normalised.
+
+    Args:
+        observation: an observation of the world.
+        name: "rgb" or "depth".
+        views: the number of views, 1 or 12.
 
     Returns:
-        An array [12, H, H, c], or [H, H, c] for one view, ready for torch.
+        An array [12, H, H, c] for 12 views, or [H, H, c] for one view. The array is C-contiguous
+        and writeable.
 
     Raises:
         KeyError: If the entry is missing.
@@ -95,7 +112,12 @@ def frame(observation: Mapping[str, Any], name: str, views: int) -> np.ndarray:
 
 
 def pose(observation: Mapping[str, Any]) -> np.ndarray:
-    """Return the pose [3]; raise KeyError or ValueError if it is missing or not finite."""
+    """Check the pose [3] and return it unchanged.
+
+    Raises:
+        KeyError: If the pose is missing.
+        ValueError: If the pose does not consist of three finite numbers.
+    """
     array = _entry(observation, POSE)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise ValueError(

@@ -140,10 +140,18 @@ def check(
     again: str = _AGAIN,
     where: str = "agent",
 ) -> None:
-    """Raise ValueError if a setting that comes with weights is unknown or invalid.
+    """Check settings that come with weights.
 
-    The message names the source of the settings (``file``), the dotted name of the setting (below
-    ``where``) and the next step (``again``). ``schema`` is a result of :func:`schema_of`.
+    Args:
+        values: the settings.
+        schema: the allowed values (:func:`schema_of`).
+        file: source of the settings, for messages.
+        again: advice that ends the error message.
+        where: dotted name of the settings, for messages.
+
+    Raises:
+        ValueError: If a setting is unknown or has an invalid value; the message names the file and
+            the setting.
     """
     for name, value in values.items():
         key = f"{where}.{name}"

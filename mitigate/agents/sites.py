@@ -24,7 +24,7 @@ class Site:
     kind: str  # MAP for [n, C, h, w], or TOKENS if C is the last axis (including vectors)
     channels: int
     batch: int  # axis along which the frames of a batch lie
-    shape: tuple[int, ...]  # for a batch of two frames
+    shape: tuple[int, ...]  # shape of the output for a batch of two frames
     calls: int  # number of calls of the module in one forward pass
 
 
@@ -35,9 +35,10 @@ def first(output: Any) -> Any:
 
 @torch.no_grad()
 def find_sites(model: nn.Module, run: Run) -> dict[str, Site | str]:
-    """Return, for every module that ``run`` calls, a :class:`Site` or why no adapter fits.
+    """Return a description of the output of every module that ``run`` calls, by the module's name.
 
-    To find the axis of the frames, the encoder runs on two frames and on three.
+    The description is a :class:`Site`, or a text that explains why no adapter fits. To find the
+    axis of the frames, the encoder runs on two frames and on three: this axis grows from 2 to 3.
     """
     with in_eval_mode(model):
         two, three = _shapes(model, run, 2), _shapes(model, run, 3)
@@ -89,7 +90,11 @@ def choose(sites: dict[str, Site | str], model: nn.Module, count: int) -> list[s
     """Return the names of up to ``count`` blocks, spread evenly from the first to the last.
 
     A block is a numbered item of a list (``layers.3``) that contains modules and returns a map or
-    tokens once per forward pass. The outermost list with at least four blocks is used.
+    tokens once per forward pass. If lists are nested, the outermost list with at least four blocks
+    is used. A ResNet, for example, has four stages in one list, and each stage is a list of blocks.
+
+    Raises:
+        ValueError: If the encoder has no list of at least four blocks.
     """
     levels: dict[int, list[str]] = {}
     modules = dict(model.named_modules())
@@ -121,9 +126,12 @@ def listed(what: str, targets: Iterable[str]) -> list[str]:
 
 
 def named(model: nn.Module, targets: Iterable[str]) -> set[str]:
-    """Return the names of modules whose dotted name, or its last parts, matches a target.
+    """Return the names of the modules that match ``targets``.
 
-    Raises ValueError if a target matches no module or is not a regular expression.
+    A target is a regular expression that must match a dotted name or its last parts.
+
+    Raises:
+        ValueError: If a target matches no module or is not a regular expression.
     """
     names = [name for name, _ in model.named_modules() if name]
     matches: set[str] = set()

@@ -35,11 +35,11 @@ class StepDecisions(Batch):
     """A batch of B steps with the expert's answers."""
 
     frames: Frames  # inputs by name, [B, ...]
-    clean: Frames  # the inputs before corruption, empty if they were not kept
-    texts: list[str]
+    clean: Frames  # the inputs before corruption, or an empty dict if they were not kept
+    texts: list[str]  # the instruction of each step
     target: Tensor  # [B, actions], one-hot
     weight: Tensor  # [B]
-    episode_ids: list[str]
+    episode_ids: list[str]  # the episode of each step
 
 
 class StepwiseAgent(Agent, nn.Module):

@@ -4,8 +4,10 @@ The RGB encoder predicts the concepts in the central 36 degrees of each view. Th
 the recurrent policy multiply the probability of each concept by the text embedding of its word. So
 the concepts in views and the words of instructions share one embedding space.
 
+A vocabulary is a small, fixed list of words, with extra tokens for ``[MASK]`` and unknown words.
 The vocabulary is one of an agent's settings, so it is stored with the weights and is part of the
-fingerprint: with a different vocabulary, each embedding would represent a wrong word.
+fingerprint. Loading weights with a different vocabulary of the same size would raise no error, but
+each embedding would represent a wrong word.
 """
 
 from __future__ import annotations
@@ -98,7 +100,10 @@ class Vocabulary:
         return pad_sequence(rows, True, PAD)
 
     def concept_words(self) -> Tensor:
-        """Return float32 [concepts, vocabulary], the mean of each concept's one-hot words."""
+        """Return a matrix float32 [concepts, vocabulary] that maps concepts to words.
+
+        Row c is the mean of the one-hot codes of the words of concept c.
+        """
         out = torch.zeros(len(CONCEPTS), len(self))
         for row, concept in enumerate(CONCEPTS):
             ids = [self.ids[word] for word in _words_of(concept)]

@@ -1,8 +1,9 @@
 """Save a trained encoder as a folder that plain PyTorch can load, and load such folders.
 
 Adapters are stored in ``adapters.safetensors`` and ``adapters.json``; with ``tune=all``, all
-weights are stored in ``model.safetensors``. ``encoder.json`` describes the input and the output.
-Loading runs no code from the folder. Therefore the caller must construct the encoder.
+weights are stored in ``model.safetensors``. ``encoder.json`` describes the input frames and the
+output with which the weights were trained. The manifest lists all files. Loading runs no code from
+the folder. Therefore the caller must construct the encoder.
 """
 
 from __future__ import annotations
@@ -69,7 +70,12 @@ def lines(encoder: Encoder, folder: str | Path) -> str:
 
 
 def card(folder: str | Path) -> dict[str, Any]:
-    """Read ``encoder.json``; FileNotFoundError or ValueError if it is missing or damaged."""
+    """Read ``encoder.json``.
+
+    Raises:
+        FileNotFoundError: If the file is missing.
+        ValueError: If the file is damaged.
+    """
     file = Path(folder) / CARD
     if not file.is_file():
         raise FileNotFoundError(
@@ -80,7 +86,9 @@ def card(folder: str | Path) -> dict[str, Any]:
 
 
 def fill(encoder: Encoder, folder: str | Path) -> None:
-    """Load the trained weights in ``folder`` into ``encoder``, which has its original weights.
+    """Load the trained weights of a folder into ``encoder``.
+
+    ``folder`` must come from :func:`write`, and ``encoder`` must have its original weights.
 
     Raises the same errors as :func:`card` and ``load_adapters``, and ValueError if the folder
     belongs to an encoder with different settings.

@@ -98,7 +98,10 @@ def _imported(path: str, kwargs: dict[str, Any]) -> nn.Module:
 
 
 def describe(error: Exception, line: int = 0) -> str:
-    """Return one line of an error in the user's code: "KeyError: 'x', in net.py, line 3"."""
+    """Describe an error in the user's code: "KeyError: 'x', in net.py, line 3".
+
+    Only one line of the error's message is included: the line with the index ``line``.
+    """
     lines = str(error).strip().splitlines() or [""]
     message = f"{type(error).__name__}: {lines[line][:200]}"
     if isinstance(error, SyntaxError):  # its message already contains file and line
@@ -138,7 +141,11 @@ def _exported(path: Path) -> nn.Module:
 
 
 def find_weights(weights: str) -> Path:
-    """Return the path of a file of weights; pkg://package/path is in an installed package."""
+    """Return the path of a file of weights; ``weights`` is a path or pkg://package/path.
+
+    The second form names a file in an installed package. Raises FileNotFoundError if the file is
+    missing.
+    """
     if weights.startswith(INSTALLED):
         package, _, inside = weights.removeprefix(INSTALLED).partition("/")
         spec = importlib.util.find_spec(package)
@@ -156,7 +163,12 @@ def find_weights(weights: str) -> Path:
 
 
 def load_weights(model: nn.Module, weights: str, prefix: str = "") -> None:
-    """Load the entries of a state dict whose names begin with ``prefix`` into ``model``.
+    """Load a state dict into ``model``.
+
+    Args:
+        model: the encoder.
+        weights: as in :func:`find_weights`.
+        prefix: prefix of the entries to load; it is removed from their names.
 
     Raises:
         FileNotFoundError: If the file does not exist.
@@ -200,7 +212,10 @@ def _form(value: Tensor | None) -> str:
 
 
 def read_state(path: Path) -> dict[str, Tensor]:
-    """Return the tensors in a file of weights, by name and on the CPU."""
+    """Return the tensors in a file of weights, by name and on the CPU.
+
+    Raises the same errors as :func:`load_weights`.
+    """
     if path.suffix == ".safetensors":
         return checkpoint.load_tensors(path)
     state = _load(path)
@@ -214,7 +229,10 @@ def read_state(path: Path) -> dict[str, Tensor]:
 
 
 def _named_tensors(state: Any, levels: int = LEVELS) -> dict[str, Tensor]:
-    """Return the tensors in a mapping by name, or else those in nested mappings (dotted names)."""
+    """Return the tensors in a mapping by name.
+
+    If it contains no tensors, return the tensors in nested mappings, under dotted names.
+    """
     if not isinstance(state, Mapping):
         return {}
     tensors = {str(name): value for name, value in state.items() if isinstance(value, Tensor)}
@@ -237,10 +255,14 @@ def _is_compressed(path: Path) -> bool:
 
 
 class PassedOver:
-    """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``."""
+    """Stand-in for a class whose code must not run; its objects become an empty ``OrderedDict``.
+
+    Objects of other classes would not work, because ``torch.load(weights_only=True)`` sets items
+    only on ``dict``, ``OrderedDict`` and ``Counter``.
+    """
 
     def __new__(cls, *_: Any) -> Any:
-        return OrderedDict()  # torch sets items only on dict, OrderedDict and Counter
+        return OrderedDict()
 
 
 class Ignored:
@@ -258,14 +280,21 @@ def _stand_in(name: str) -> Any:
 
 
 def _named(path: Path) -> list[str]:
-    """Return the names of classes in a checkpoint that torch refuses to load."""
-    with suppress(Exception):  # torch cannot find them in files from before torch 1.6
+    """Return the names of classes in a checkpoint that torch refuses to load.
+
+    The list is empty if torch cannot find them, for example in files from before torch 1.6.
+    """
+    with suppress(Exception):
         return list(torch.serialization.get_unsafe_globals_in_checkpoint(path))
     return []
 
 
 def _load(path: Path) -> Any:
-    """Load a file with ``torch.load(weights_only=True)``; stand-ins replace forbidden classes."""
+    """Load a file with ``torch.load(weights_only=True)``.
+
+    Classes that torch does not allow, such as the class of a config, are replaced by
+    :class:`PassedOver`, so that none of their code runs.
+    """
     if pointer := lfs_problem(path):
         raise ValueError(f"The weights {path} cannot be read: the file {pointer}.")
     problem = "its parts are compressed, which torch never does" if _is_compressed(path) else ""

@@ -105,7 +105,11 @@ class Transform:
 
 
 def transform_of(options: Mapping[str, Any]) -> Transform:
-    """Return a transform with the arguments ``options``; ValueError if one is unknown."""
+    """Return a transform with the arguments ``options``.
+
+    Raises:
+        ValueError: If an argument is unknown or invalid.
+    """
     known = [field.name for field in fields(Transform)]
     for name in options:
         if name not in known:
@@ -252,9 +256,9 @@ class Encoder(nn.Module):
         return self
 
     def forward(self, frames: Tensor) -> Tensor:
-        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]`` for ``frames``.
+        """Return features ``[n, C]``, ``[n, C, h, w]`` or ``[n, T, C]``, as the model returns them.
 
-        Frames are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
+        ``frames`` are RGB (uint8 ``[n, H, W, 3]``) or depth (metres ``[n, H, W, 1]``).
         """
         inputs = self.transform(frames)
         modules = dict(self.model.named_modules()) if isinstance(self.output, str) else {}
@@ -296,7 +300,10 @@ class Encoder(nn.Module):
         say(f"adapters after {', '.join(names)}: {share:.1%} of the encoder's weights")
 
     def _probe(self, count: int) -> Any:
-        """Return the output for random frames; constant frames give NaN in some encoders."""
+        """Return the output for random frames.
+
+        For constant frames, some normalisations would give NaN.
+        """
         size, channels = self.transform.size, SENSORS[self.sensor]
         noise = torch.rand(count, channels, size, size, generator=torch.Generator().manual_seed(0))
         like = next(self.model.parameters(), noise)
@@ -367,7 +374,8 @@ class Encoder(nn.Module):
 def _check_fixed(model: str, first_model: nn.Module, second_model: nn.Module) -> None:
     """Raise ValueError if two calls of ``model`` give different weights.
 
-    Random weights would be lost after training, because only the adapters are saved.
+    Adapters work only with the weights that they were trained with. Random weights would be lost
+    after training, because only the adapters are saved.
     """
     if inserted.backbone_sha(first_model) == inserted.backbone_sha(second_model):
         return

@@ -159,7 +159,10 @@ def _sums(folder):
 
 
 def read(folder):
-    """Return the settings and the tensors of a folder; raises the same errors as ``attach``."""
+    """Return the settings (a dict) and the tensors (by name) of a folder.
+
+    Raises the same errors as ``attach``.
+    """
     folder = str(folder)
     path = os.path.join(folder, WEIGHTS)
     if os.path.getsize(path) > LARGEST:

@@ -1,6 +1,7 @@
-"""Measure how corruptions change features: cosine similarity, retrieval and a linear probe.
+"""Measure how corruptions change an encoder's features.
 
-Each measure has a 95 % interval over scenes.
+The measures are cosine similarity, retrieval and a linear probe. Each measure has a 95 % interval
+over scenes.
 """
 
 from __future__ import annotations
@@ -20,13 +21,18 @@ from mitigate.evaluation.bootstrap import Estimate, with_interval
 BATCH = 32  # number of frames that are encoded at once
 RESAMPLES = 1000  # number of bootstrap resamples of the scenes (heuristic)
 FEWEST = 10  # minimum numbers of positive and of negative frames for a label to be used (heuristic)
-RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)  # candidate penalties, times the number of frames
+# candidates for the ridge penalty, as multiples of the number of frames
+RIDGES = (1e-3, 1e-2, 1e-1, 1.0, 10.0)
 PROBE_SHARE = 0.25  # fraction of the training scenes used to choose the ridge penalty (heuristic)
 
 
 @dataclass
 class Score:
-    """One measure under one condition, for all frames and for each resample of the scenes."""
+    """The value of one measure under one condition.
+
+    ``value`` is the value for all frames, and ``samples`` are the values for the resamples of the
+    scenes.
+    """
 
     value: float
     samples: np.ndarray
@@ -64,9 +70,10 @@ def features(
 
 
 class Resamples:
-    """Scenes that were sampled with replacement; ``weights`` [R, N] is each frame's count.
+    """Bootstrap resamples: scenes that were sampled with replacement.
 
-    With a single scene, R is 0, because the variation between scenes is unknown.
+    ``weights`` (float32 [R, N]) contains how often each frame counts in each resample. With a
+    single scene, the number of resamples R is 0, because the variation between scenes is unknown.
     """
 
     def __init__(self, scene: np.ndarray, seed: int = 0) -> None:
@@ -94,7 +101,11 @@ def cosine(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.n
 
 
 def retrieval(corrupted: np.ndarray, clean: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """Return, for each corrupted frame, whether its clean version is the most similar one."""
+    """Return for each corrupted frame whether retrieval finds its own clean version.
+
+    This is the case if the clean version has the highest cosine similarity of all clean frames.
+    ``centre`` [C] is first subtracted from all features.
+    """
     similarity = _unit(corrupted - centre) @ _unit(clean - centre).T
     return (similarity.argmax(1) == np.arange(len(corrupted))).astype(np.float32)
 
@@ -106,8 +117,9 @@ def _unit(x: np.ndarray) -> np.ndarray:
 class LinearProbe:
     """Ridge regression from clean features [N, C] to labels [N, L] in {0, 1}.
 
-    The penalty from ``RIDGES`` gives the highest mean average precision on a quarter of the
-    training scenes. ``used`` are the labels with enough training frames.
+    The ridge penalty is the value in ``RIDGES`` that gives the highest mean average precision on a
+    quarter of the training scenes. The attribute ``used`` contains the labels with enough training
+    frames.
     """
 
     def __init__(self, clean: np.ndarray, labels: np.ndarray, scene: np.ndarray) -> None:
@@ -155,9 +167,10 @@ def _ridge(x: np.ndarray, y: np.ndarray, ridge: float) -> np.ndarray:
 
 
 def average_precision(guess: np.ndarray, label: np.ndarray, weights: np.ndarray) -> np.ndarray:
-    """Return the average precision [R] of ``guess`` [N], per row of ``weights`` [R, N].
+    """Return the average precision [R] of the scores ``guess`` [N] for ``label`` [N].
 
-    The result is NaN if no frame with a nonzero weight has the label.
+    Each row of ``weights`` [R, N] holds frame weights and gives one value. The value is NaN if no
+    frame with a nonzero weight has the label.
     """
     order = np.argsort(-guess, kind="stable")
     w = weights[:, order]
@@ -175,7 +188,11 @@ def measure(
     unseen: Frames,
     seed: int,
 ) -> dict[tuple[str, str, str], Score]:
-    """Return the score for every (encoder, condition, measure), relative to the first encoder."""
+    """Return the score for every (encoder, condition, measure).
+
+    The clean features of the first encoder are the reference for all encoders; the probe is also
+    fitted to them.
+    """
     original = next(iter(encoders.values()))
     clean = Corruption("clean", 0.0)
     total = len(train) + len(unseen) * (1 + len(encoders) * len(conditions))

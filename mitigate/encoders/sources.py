@@ -29,11 +29,15 @@ from mitigate.worlds.episodes import read_episodes
 from mitigate.worlds.world import Placeable
 
 TRAIN, UNSEEN = "train", "unseen"
-BLOCK = 50  # frames per block at most if all are in one folder or episode (heuristic)
-FEWEST_UNSEEN = 5  # held-out blocks at least, which the bootstrap resamples (heuristic)
-# at least this fraction of valid depth must be nearer than ``FARTHEST`` metres (heuristic),
+# maximum number of frames per block if all frames are in one folder or episode (heuristic)
+BLOCK = 50
+# This is the minimum number of held-out blocks if all frames are in one folder (heuristic).
+# The bootstrap for confidence intervals resamples these blocks instead of scenes.
+FEWEST_UNSEEN = 5
+# minimum fraction of valid depth that must be nearer than ``FARTHEST`` metres (heuristic)
 NEAR = 0.05
-NEAREST = 0.02  # and at least the same fraction farther than this many metres (heuristic)
+# at least a fraction ``NEAR`` of the valid depth must exceed this many metres (heuristic)
+NEAREST = 0.02
 EVERY = 2  # only every second view of a panorama is used
 LARGEST = 4096  # maximum side in pixels (heuristic)
 
@@ -69,6 +73,10 @@ class WorldFrames:
         unseen: an episode list, whose scenes are the unseen scenes.
         label: name of an entry of the ground truth ([views, L] or [L], with values 0 and 1), or
             None for no labels.
+
+    Raises:
+        ValueError: If the world cannot render from arbitrary poses or lacks the sensor, or if a
+            scene is in both splits.
     """
 
     files = False
@@ -235,7 +243,10 @@ Item = TypeVar("Item")
 
 
 def last_scenes(names: Sequence[str], held_out: float) -> list[str]:
-    """Return the last fraction ``held_out`` of the scenes, at least one, but not the only one."""
+    """Return the last scenes: a fraction ``held_out`` of all scenes, but at least one.
+
+    If there is only one scene, the list is empty.
+    """
     count = max(1, round(held_out * len(names)))
     return list(names)[-count:] if len(names) > 1 else []
 
@@ -244,7 +255,11 @@ def split_single(scenes: Mapping[str, list[Item]], held_out: float) -> dict[str,
     """Split a single scene into blocks of consecutive frames; return several scenes unchanged.
 
     A block has at most ``BLOCK`` frames, or fewer if otherwise fewer than ``FEWEST_UNSEEN`` blocks
-    would be held out, given the fraction ``held_out``.
+    would be held out.
+
+    Args:
+        scenes: frames of each scene.
+        held_out: fraction of the blocks that are held out.
     """
     if len(scenes) > 1:
         return dict(scenes)
@@ -317,10 +332,14 @@ def source_of(
     split: str,
     label: str | None,
 ) -> Source:
-    """Return the source that ``world()`` returns, or a source of frames rendered in its world.
+    """Return the source of frames that an ``env`` config describes.
 
-    The scenes of the episode list ``split`` are the unseen scenes of a world. Raises ValueError if
-    this list does not exist, or the world cannot be used.
+    If ``world()`` returns a source, such as a folder of frames, it is used. If it returns a world,
+    frames are rendered from random poses in this world, and the scenes of the episode list
+    ``split`` are the unseen scenes.
+
+    Raises:
+        ValueError: If the episode list does not exist, or the source cannot be used.
     """
     result = world()
     if isinstance(result, Source):

@@ -119,6 +119,6 @@ def test_check_fits_rejects_missing_sensors(agent):
     observed = cameras(64)
     check_fits(agent, observed, "Hall")
     alone = {name: sensor for name, sensor in observed.items() if name != DEPTH}
-    with pytest.raises(ValueError, match="reads depth, which the world Hall does not have: .*rgb"):
+    with pytest.raises(ValueError, match="reads depth, which the world Hall does not have. .*rgb"):
         check_fits(agent, alone, "Hall")
     check_fits(nn.Linear(1, 1), alone, "Hall")  # this agent does not declare its sensors

@@ -58,9 +58,11 @@ WORTH = 6.0  # weight of a frontier's value against path cost in metres (chosen 
 # After LAST actions, the agent uses the lower threshold MAYBE instead.
 FOUND, MAYBE = 4.0, 1.0
 TRIES = 12  # maximum number of attempts to plan in one step
-NEAR_ENOUGH = 0.4  # the agent stops if the object is near with a higher probability
+# the agent stops if the predicted probability that the object is near exceeds this
+NEAR_ENOUGH = 0.4
 ARRIVED = 0.9  # maximum distance in metres from the object's cells at which the agent stops
-MIDDLE = 3.0  # weight of the distance to the object's centre; path cost has weight 1 (heuristic)
+# weight of the distance from a cell to the object's centre; path cost has weight 1 (heuristic)
+MIDDLE = 3.0
 # objects that each room is likely to contain; L3MVN asks a language model for these
 LIKELY = {
     "bedroom": ("bed", "wardrobe", "lamp", "rug"),
@@ -99,7 +101,8 @@ class FrontierAgent(SideBySide, nn.Module):
     }
     views, sensors = 1, (RGB, DEPTH, POSE)
     tasks = ("ogn",)
-    together = 8  # (heuristic) a frame takes twice as long if it is encoded alone
+    # number of episodes at once (heuristic): a frame takes twice as long if it is encoded alone
+    together = 8
     encoders = {RGB: ("rgb_encoder",)}
     labels = {RGB: LABELS[RGB]}
     grid: Grid  # set at the first observation of an episode
@@ -138,7 +141,11 @@ class FrontierAgent(SideBySide, nn.Module):
     # closed loop ------------------------------------------------------------------------------
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; warn if ``instruction`` names no object that the agent knows."""
+        """Start an episode; warn if ``instruction`` names no object that the agent knows.
+
+        Raises:
+            TypeError: If ``instruction`` is not a string.
+        """
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         self.thing = None if "instruction" in self.blind else named(instruction)
@@ -194,7 +201,10 @@ class FrontierAgent(SideBySide, nn.Module):
     def _update_map(
         self, observation: Mapping[str, np.ndarray], pose: np.ndarray, concepts: np.ndarray
     ) -> None:
-        """Add an observation to the map; a forward step that was too short blocks cells ahead."""
+        """Add an observation to the map.
+
+        If the last forward step was too short, mark the cells ahead as blocked.
+        """
         if self.actions == 0:
             self.grid = Grid(pose, self.eye)
         if self._before is not None:
@@ -255,7 +265,10 @@ class FrontierAgent(SideBySide, nn.Module):
         return self.controller.action(pose)
 
     def _check(self, thing: np.ndarray, pose: np.ndarray) -> int | None:
-        """Turn to the object's cells; then stop if it is visible nearby, or discard evidence."""
+        """Turn to the object's cells, and stop if the object is visible nearby.
+
+        If the object is not visible, discard the evidence of these cells.
+        """
         dx, dy = self.grid.place(thing).mean(0) - pose[:2]
         error = np.arctan2(-dx, dy) - pose[2]
         error = np.degrees((error + np.pi) % (2 * np.pi) - np.pi)
@@ -271,7 +284,10 @@ class FrontierAgent(SideBySide, nn.Module):
         return bool(np.hypot(*(self.grid.place(target[None])[0] - pose[:2])) < FORWARD_METRES)
 
     def _beside(self, ways: Routes, thing: np.ndarray) -> np.ndarray | None:
-        """Return the cell [2] within ``ARRIVED`` of the object with the best cost, or None."""
+        """Return the best cell [2] within ``ARRIVED`` of the object, or None.
+
+        The choice balances path cost and distance to the object's centre.
+        """
         reach = int(ARRIVED / CELL)
         steps = np.arange(-reach, reach + 1)
         around = np.stack(np.meshgrid(steps, steps, indexing="ij"), -1).reshape(-1, 2)
@@ -286,7 +302,10 @@ class FrontierAgent(SideBySide, nn.Module):
         return cells[int(cost.argmin())] if np.isfinite(cost.min()) else None
 
     def _frontier(self, ways: Routes) -> np.ndarray | None:
-        """Return the nearest cell [2] of the frontier with the best value minus cost, or None."""
+        """Return the nearest cell [2] of the best frontier, or None if there is no frontier.
+
+        The best frontier has the highest difference between its value and its path cost.
+        """
         best, target = -np.inf, None
         for group in frontiers(self.grid):
             cost = ways.at(group)
@@ -298,7 +317,11 @@ class FrontierAgent(SideBySide, nn.Module):
 
 
 def named(text: str) -> int | None:
-    """Return the index in ``THING_NAMES`` of the object named last, a route's goal, or None."""
+    """Return the index in ``THING_NAMES`` of the object named last in ``text``, or None.
+
+    In a route description, the object named last is the goal. An instruction such as "find a chair"
+    names only one object.
+    """
     ends = [
         (match.end(), len(name), i)
         for i, name in enumerate(THING_NAMES)
@@ -310,7 +333,8 @@ def named(text: str) -> int | None:
 def worth(concepts: np.ndarray, thing: int | None) -> np.ndarray:
     """Return the likelihood [n] that the object lies in the direction of each column.
 
-    It is lower if a column only shows a room that is likely to contain the object.
+    The likelihood is high if the column shows the object. It is lower if the column only shows a
+    room that is likely to contain the object.
     """
     if thing is None:
         return np.zeros(len(concepts), np.float32)

@@ -24,7 +24,8 @@ CELL = 0.1  # metres
 SIDE = 320  # cells: 32 m
 REACH = 5.0  # maximum depth in metres that is used (as in VLFM)
 LOW, HIGH = 0.15, 1.5  # surfaces between these heights in metres are obstacles
-THINGS_LOW, THINGS_HIGH = 0.05, 2.3  # surfaces between these heights can belong to objects
+# surfaces between these heights in metres can belong to objects
+THINGS_LOW, THINGS_HIGH = 0.05, 2.3
 # Observing an occupied cell adds HIT to its log-odds, and observing a free cell subtracts MISS.
 # The absolute value of the sum is at most MOST.
 HIT, MISS, MOST = 0.9, 0.4, 3.5
@@ -34,9 +35,11 @@ SURE = 40.0  # bound of the evidence for the object, a sum of log-odds
 
 RADIUS = 0.2  # distance in metres that the agent keeps from occupied cells
 TIGHT, WIDE = 3.0, 0.4  # cells less than WIDE metres from an obstacle cost TIGHT times as much
-UNKNOWN = 4.0  # cost factor of unknown cells, finite so that missing depth encloses no agent
+# cost factor of unknown cells; it is finite, so that missing depth cannot enclose the agent
+UNKNOWN = 4.0
 MARGIN = 12  # planning includes a margin of this many cells around the known area
-SHARE = 0.7  # least evidence of the object's cells, as a fraction of the highest (heuristic)
+# minimum evidence of the object's cells, as a fraction of the highest evidence (heuristic)
+SHARE = 0.7
 SMALLEST = 4  # minimum number of cells of a frontier
 
 
@@ -81,7 +84,7 @@ class Grid:
             depth: float32 [H, W] metres, of a forward view of 90 degrees.
             pose: [3].
             seen: [n, 2], for each column from left to right, the probability that the object is
-                visible, and that it is visible within 2 m.
+                visible and the probability that it is visible within 2 m.
             worth: [n], the likelihood that the object lies in the direction of each column.
         """
         self._looks += 1
@@ -101,7 +104,7 @@ class Grid:
             self.blocked[i, j] = self.known[i, j] = True
 
     def settle(self, cell: np.ndarray) -> None:
-        """Mark all cells near ``cell`` as known, so that no frontier remains there."""
+        """Mark all cells within 0.5 m of ``cell`` as known, so that no frontier remains there."""
         reach = int(0.5 / CELL)
         i, j = np.maximum(cell - reach, 0)
         self.known[i : i + 2 * reach + 1, j : j + 2 * reach + 1] = True
@@ -236,7 +239,11 @@ def routes(grid: Grid, xy: np.ndarray) -> Routes:
 
 
 def _graph(open_: np.ndarray, price: np.ndarray) -> coo_matrix:
-    """Return the 8-connected graph of open cells; ``price`` is the cost per metre in each cell."""
+    """Return the 8-connected graph of open cells.
+
+    ``price`` is the cost per metre in each cell. The cost of an edge is its length times the mean
+    ``price`` of its two cells.
+    """
     index = np.arange(open_.size).reshape(open_.shape)
     parts = []
     for di, dj in ((0, 1), (1, 0), (1, 1), (1, -1)):
@@ -263,9 +270,10 @@ def frontiers(grid: Grid) -> list[np.ndarray]:
 
 
 def object_cells(grid: Grid, least: float) -> np.ndarray:
-    """Return the group of cells [n, 2] with the most evidence for the object, above ``least``.
+    """Return the group of cells [n, 2] with the most evidence for the object.
 
-    The threshold rises with the highest evidence, so observations that agree shrink the group.
+    A cell is in the group if its evidence is above both ``least`` and ``SHARE`` times the highest
+    evidence. So each observation that confirms earlier observations makes the group smaller.
     """
     likely = grid.evidence > max(least, SHARE * float(grid.evidence.max()))
     if not likely.any():
@@ -277,8 +285,9 @@ def object_cells(grid: Grid, least: float) -> np.ndarray:
 
 
 def clear_ahead(grid: Grid, path: np.ndarray, most: float) -> np.ndarray:
-    """Return the farthest cell of ``path`` [n, 2] on a free straight line of at most ``most`` m.
+    """Return the farthest cell of ``path`` [n, 2] that can be reached in a straight line.
 
+    The line keeps a distance of ``RADIUS`` from occupied cells and is at most ``most`` metres long.
     The first step is not checked, because the agent may already be closer to an obstacle.
     """
     gap, step = clearance(grid), int(np.ceil(FORWARD_METRES / CELL))

@@ -1,4 +1,8 @@
-"""Add a critic to a policy, for reinforcement learning: it estimates the return of an episode."""
+"""Policies from other libraries as actor-critics, for reinforcement learning.
+
+:class:`ActorCritic` adds a critic to a :class:`~mitigate.agents.policies.policy.Policy`: an
+estimate of the return from the current frame to the end of the episode.
+"""
 
 from __future__ import annotations
 
@@ -44,7 +48,11 @@ class Joint(Distribution):
         )  # type: ignore[return-value]
 
     def entropy(self) -> Tensor:
-        """Return the entropy of each action's distribution, [B]; ValueError if it is unknown."""
+        """Return the entropy of each action's distribution, [B].
+
+        Raises:
+            ValueError: If the distribution of a part has no known entropy.
+        """
         try:
             return sum(_per_action(part.entropy()) for part in self.parts)  # type: ignore[return-value]
         except NotImplementedError:
@@ -56,12 +64,18 @@ class Joint(Distribution):
 
 
 class ActorCritic(nn.Module):
-    """A policy (not copied) with a critic.
+    """A policy with a critic.
 
-    The critic of a stable-baselines3 policy is a copy of the policy's critic. Other policies get a
-    small network that reads the output of ``module``; ``frames`` are example frames [1, ...] for
-    its size. Training the critic does not train modules of the policy, so that wrong values cannot
+    For a policy of stable-baselines3, the new critic starts as a copy of the critic in the policy.
+    Other policies get a new critic, a small network that reads the output of one of the policy's
+    modules. Training the critic does not train modules of the policy, so that wrong values cannot
     change the actions directly.
+
+    Args:
+        policy: the policy. It is not copied.
+        frames: an example frame [1, ...] for each sensor; the frames determine the input size of a
+            new critic.
+        module: name of the module of the network whose output a new critic reads.
 
     Raises:
         ValueError: If the policy has a memory, or returns no distribution of its actions.

@@ -17,7 +17,8 @@ from torch.distributions import (
     kl_divergence,
 )
 
-DISCRETE = (Categorical, OneHotCategorical)  # torchrl's OneHotCategorical is a Categorical
+# torchrl's OneHotCategorical is a subclass of Categorical
+DISCRETE = (Categorical, OneHotCategorical)
 # one distribution per part of the action, or a tensor [B, ...] of actions or of action values
 Answer = Sequence[Distribution] | Tensor
 
@@ -63,10 +64,11 @@ def divergence(teacher: Answer, student: Answer) -> Tensor:
 def imitation(teacher: Answer, student: Answer) -> Tensor:
     """Return the student's mean error in predicting the teacher's most likely action.
 
-    For discrete actions, the error is the cross-entropy. Otherwise, it is the squared error divided
-    by the variance of the teacher's answers over the batch. Unlike the KL divergence, it also
-    counts differences where the teacher is undecided: if its two best actions have probabilities of
-    0.50 and 0.48, a student that swaps them acts differently.
+    For discrete actions, the error is the cross-entropy. For continuous actions, and for values
+    without a distribution, it is the squared error divided by the variance of the teacher's answers
+    over the batch. Unlike the KL divergence, this error also counts differences where the teacher
+    is undecided: if the teacher's two best actions have probabilities of 0.50 and 0.48, a student
+    that swaps these probabilities acts differently.
     """
     if isinstance(teacher, Tensor) or isinstance(student, Tensor):
         return divergence(teacher, student)

@@ -81,7 +81,10 @@ class Policy(Agent, nn.Module):
         return self.executable(first_answer)
 
     def executable(self, chosen: Tensor) -> Any:
-        """Convert an action of the network, such as a sample of its distribution, for the world."""
+        """Convert an action of the network to an action of the world.
+
+        ``chosen`` is, for example, a sample of the network's distribution.
+        """
         if isinstance(self.space, MultiDiscrete):
             return chosen.long().cpu().numpy().reshape(self.space.counts.shape)
         if isinstance(self.space, Discrete):
@@ -134,7 +137,11 @@ class Policy(Agent, nn.Module):
         return self.action(answer)
 
     def entropy(self, observation: Mapping[str, Any]) -> Tensor:
-        """Return the entropy of the last action's distribution; ValueError if there is none."""
+        """Return the entropy of the last action's distribution (``agents/agent.py``).
+
+        Raises:
+            ValueError: If the policy returns no distribution of actions.
+        """
         frames = {name: np.asarray(observation[name])[None] for name in self.sensors}
         answer = self.answer(self.native(frames), self._before)[0]
         if isinstance(answer, Tensor):
@@ -188,7 +195,11 @@ def _forget(network: nn.Module) -> None:
 
 
 def copied(policy: Policy) -> Policy:
-    """Return a copy of a policy with its own weights; ValueError if it cannot be copied."""
+    """Return a copy of a policy that shares no weights with the original.
+
+    Raises:
+        ValueError: If the network cannot be copied.
+    """
     _forget(policy.network)
     try:
         twin = copy.copy(policy)
@@ -202,7 +213,11 @@ def copied(policy: Policy) -> Policy:
 
 
 def last_convolution(policy: Policy) -> str:
-    """Return the name of the last convolution, or of the first linear layer if there is none."""
+    """Return the name of the last convolution, or of the first linear layer if there is none.
+
+    Raises:
+        ValueError: If the network has neither a convolution nor a linear layer.
+    """
     modules = policy.network.named_modules()
     layers = {n: module for n, module in modules if checkpoint.ADAPTER not in f".{n}."}
     kinds = (nn.Conv1d, nn.Conv2d, nn.Conv3d)

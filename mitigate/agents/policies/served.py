@@ -105,7 +105,12 @@ class ServedPolicy(Agent):
         return {"version": self.version, "cameras": cameras, "state": self.state}
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; raise ConnectionError if the server cannot be reached."""
+        """Start an episode.
+
+        Raises:
+            TypeError: If the instruction is not text.
+            ConnectionError: If the server cannot be reached.
+        """
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         if self._episode is not None:

@@ -45,7 +45,8 @@ from mitigate.core.observation import DEPTH, RGB
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
-LIMIT = 90  # steps of a training rollout at most (heuristic); the expert takes 53 on average
+# maximum number of steps in a training rollout (heuristic): the expert takes 53 steps on average
+LIMIT = 90
 _SCALE = 5.0  # unit of the predicted distance, in metres
 
 POLICY = {  # allowed values of the keyword arguments of ``Policy``
@@ -98,7 +99,8 @@ class RecurrentAgent(SideBySide, nn.Module):
     sensors: tuple[str, ...]
     views = 1
     actions = ACTIONS
-    together = 8  # (heuristic) an episode that runs alone takes 2.5 times as long
+    # number of episodes at once (heuristic): an episode that runs alone takes 2.5 times as long
+    together = 8
     loss_weights = {"distance": 0.3, "grounding": 0.3}
     _walk: Walk | None = None
 
@@ -174,8 +176,10 @@ class RecurrentAgent(SideBySide, nn.Module):
     ) -> Piece:
         """Run episodes and return the decisions with the expert's answers (``agents/agent.py``).
 
-        A STOP of the agent is never executed, so that the agent also learns from the steps after a
-        wrong STOP. If the encoders are frozen, the result holds their features instead of frames.
+        A rollout ends when the expert's STOP is executed, or after ``LIMIT`` steps. A STOP of the
+        agent is never executed, so that the agent also learns from the steps after a wrong STOP.
+        The result is plain data. If the encoders are frozen, the result holds their features
+        instead of frames.
         """
         walks = [TrainingWalk(w, e, self.sensors) for w, e in zip(worlds, episodes, strict=True)]
         text = self.policy.read(self.tokens([e.instruction.text for e in episodes]))
@@ -276,7 +280,11 @@ class RecurrentAgent(SideBySide, nn.Module):
 
     @torch.inference_mode()
     def begin(self, instruction: str) -> Walk:
-        """Return the memory of a new episode; warn if all words of ``instruction`` are unknown."""
+        """Return the memory of a new episode; warn if all words of ``instruction`` are unknown.
+
+        Raises:
+            TypeError: If ``instruction`` is not a string.
+        """
         checked.instruction(instruction, self.vocabulary)
         tokens = self.tokens([instruction])
         # pad to one length, so that texts of several episodes can be joined
@@ -296,7 +304,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         motions = [walk.odometer.moves() for walk in memories]
         moves = torch.from_numpy(np.stack(motions))
         text = Text(*map(torch.cat, zip(*(walk.text for walk in memories), strict=True)))
-        state = State(*map(torch.cat, zip(*(walk.state for walk in memories), strict=True)))
+        state = State.join([walk.state for walk in memories])
         state = self.policy.step(text, columns, moves.to(self.device), state)
         logits = check_logits(self.policy.answer(state.hidden), self)
         actions = logits.argmax(-1).tolist()[:count]

@@ -10,6 +10,7 @@ instructions describe routes in order.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -45,7 +46,13 @@ class Odometer:
         self.metres += FORWARD_METRES * (action == FORWARD)
 
     def correct(self, action: int, metres: float, radians: float) -> None:
-        """Correct the last step: the agent did not make its own motion (see ``Agent.taken``)."""
+        """Correct the last step, in which the agent did not make the motion that it chose.
+
+        Args:
+            action: replaces the last action; -1 means no action.
+            metres: distance that the agent really moved forward.
+            radians: angle that the agent really turned to the left.
+        """
         self.heading -= math.radians(TURN_DEGREES) * ((self.last == LEFT) - (self.last == RIGHT))
         self.metres -= FORWARD_METRES * (self.last == FORWARD)
         self.last = action
@@ -53,7 +60,12 @@ class Odometer:
         self.metres += max(0.0, metres)
 
     def moves(self) -> np.ndarray:
-        """Return the features of the motion, float32 [MOVES]."""
+        """Return the features of the motion, float32 [9].
+
+        The first five values are a one-hot code of the last action (no action, or one of four). The
+        others are the sine and cosine of the heading relative to the start, the metres moved
+        divided by 5, and the number of steps divided by 50.
+        """
         out = np.zeros(MOVES, np.float32)
         out[1 + self.last] = 1.0  # one-hot: no action, or one of four
         out[5:7] = math.sin(self.heading), math.cos(self.heading)
@@ -84,6 +96,11 @@ class State(NamedTuple):
         last = torch.zeros_like(text.mask, dtype=text.values.dtype)
         return cls(torch.zeros_like(text.values[:, 0]), last, last.clone())
 
+    @classmethod
+    def join(cls, states: Sequence[State]) -> State:
+        """Concatenate ``states`` whose texts have equal length."""
+        return cls(*(torch.cat(parts) for parts in zip(*states, strict=True)))
+
     def rows(self, index: Tensor) -> State:
         return State(*(part[index] for part in self))
 
@@ -106,7 +123,14 @@ def gated(inputs: Tensor, hidden: Tensor, cell: nn.GRUCell) -> Tensor:
 class Policy(TextReader):
     """Recurrent policy that reads instructions, views and motion.
 
-    ``rgb`` and ``depth`` are the numbers of features per column, 0 without that sensor.
+    Args:
+        rgb: number of RGB features per column, or 0 without RGB.
+        depth: number of depth features per column, or 0 without depth.
+        vocabulary: words of the instructions.
+        width: width of all layers.
+        heads: attention heads of the text layers.
+        text_layers: number of transformer layers over the text.
+        dropout: dropout rate.
     """
 
     def __init__(
@@ -163,11 +187,21 @@ class Policy(TextReader):
         return self.column_norm(x)
 
     def step(self, text: Text, columns: Tensor, moves: Tensor, state: State) -> State:
-        """Advance E episodes by one step, given columns [E, 4, width] and motions [E, MOVES]."""
+        """Advance E episodes by one step.
+
+        Args:
+            text: the encoded instructions.
+            columns: features of four image columns, [E, 4, width].
+            moves: the last motions, [E, MOVES].
+            state: the memory before this step.
+        """
         return self._step(text, columns, self._inputs(columns, moves), state)
 
     def _inputs(self, columns: Tensor, moves: Tensor) -> Tensor:
-        """Return the part of both cells' inputs that needs no memory, [..., 6 * width]."""
+        """Return the part of both cells' inputs that needs no memory, [..., 6 * width].
+
+        This part is computed for all steps at once.
+        """
         x = self.whole(columns.flatten(-2)) + self.move(moves)
         width = x.shape[-1]
         first = F.linear(x, self.first.weight_ih, self.first.bias_ih)
@@ -196,12 +230,17 @@ class Policy(TextReader):
         return self.act(self.dropout(hidden)).float()
 
     def forward(self, text: Text, views: Tensor, moves: Tensor) -> dict[str, Tensor]:
-        """Run all steps of E episodes, given views [E, T, F] and moves [E, T, MOVES].
+        """Run all steps of E episodes.
+
+        Args:
+            text: E instructions.
+            views: [E, T, F].
+            moves: [E, T, MOVES].
 
         Returns:
-            "logits" [E, T, 4]; "distance" [E, T], the predicted metres to the goal divided by 5;
-            "grounding" [E, T, 4], one logit per column for whether it shows the goal's landmark;
-            and "state" [E, T, width].
+            A dict with the entries "logits" [E, T, 4]; "distance" [E, T], the predicted metres to
+            the goal divided by 5; "grounding" [E, T, 4], one logit per column, which predicts
+            whether the column shows the goal's landmark; and "state" [E, T, width].
         """
         columns = self.look(views)
         inputs = self._inputs(columns, moves)

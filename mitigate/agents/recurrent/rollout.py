@@ -42,13 +42,16 @@ class WalkDecisions(Batch):
     episode_ids: list[str]  # the episode of each step
 
     def padded(self, flat: Tensor) -> Tensor:
-        """Return [N, ...] in the shape [E, T, ...], with zeros after the end of each rollout."""
+        """Return ``flat`` [N, ...] as [E, T, ...], with zeros after the end of each rollout."""
         size = (len(self.tokens), int(self.time.max()) + 1)
         return flat.new_zeros(*size, *flat.shape[1:]).index_put((self.walk, self.time), flat)
 
 
 class TrainingWalk:
-    """One training rollout, which records each step with the expert's answer."""
+    """One training rollout.
+
+    It records the observation, the action and the expert's answer of each step.
+    """
 
     def __init__(self, world: World, episode: Episode, sensors: Sequence[str]) -> None:
         self.world, self.episode, self.sensors = as_world(world), episode, sensors

@@ -160,7 +160,11 @@ class TopologicalAgent(Agent, nn.Module):
     # features, which training recipes use ----------------------------------------------------
 
     def perceive(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Encode P panoramas, uint8 [P, 12, H, W, 3] and metres [P, 12, H, W, 1].
+        """Encode P panoramas; inputs in ``blind`` are blanked.
+
+        Args:
+            rgb: uint8 [P, 12, H, W, 3].
+            depth: float32 metres [P, 12, H, W, 1].
 
         Returns:
             View features [P, 12, rgb + concepts + depth], which contain the probabilities of
@@ -189,8 +193,10 @@ class TopologicalAgent(Agent, nn.Module):
 
     # training ---------------------------------------------------------------------------------
 
-    # the planner predicts the distance to the goal and the views that show its landmark
-    # ("grounding"); perception predicts concepts and free space ("waypoints")
+    # These are the weights of the auxiliary losses, chosen for the shipped agents.
+    # The planner predicts the distance to the goal.
+    # It also predicts the views that show the goal's landmark ("grounding").
+    # Perception predicts the concepts in each view, and free space (the loss called "waypoints").
     loss_weights = {"distance": 0.3, "grounding": 0.3, "concepts": 2.0, "waypoints": 2.0}
     encoders = {RGB: ("rgb_encoder",), DEPTH: ("depth_encoder", "waypoint_head")}
     labels = LABELS
@@ -222,7 +228,10 @@ class TopologicalAgent(Agent, nn.Module):
         rngs: Sequence[np.random.Generator],
         clean: bool = False,
     ) -> Piece:
-        """Run episodes; with frozen perception, the result holds features instead of frames."""
+        """Run episodes and return the decisions with the oracle's answers (``agents/agent.py``).
+
+        If the perception is frozen, the result holds features instead of frames.
+        """
         weights = self.named_parameters()
         trains = any(p.requires_grad for name, p in weights if name.startswith(PERCEPTION))
         labels = ("concepts", "free", "goal") if trains else ("goal",)
@@ -251,6 +260,7 @@ class TopologicalAgent(Agent, nn.Module):
         return Piece(traces, seen)
 
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
+        """If ``clean`` is true, replace the clean frames by their features."""
         if clean and CLEAN_RGB in piece.seen:
             views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
@@ -261,7 +271,10 @@ class TopologicalAgent(Agent, nn.Module):
         return join(pieces, self.tokens)
 
     def decide(self, decisions: MapDecisions, *, clean: bool = False) -> Output:
-        """Return logits over [stop] and ghosts, features "views" [P, 12, F] and "nodes" [n, C]."""
+        """Return the logits over [stop] and ghost nodes, and the features.
+
+        The features are "views" [P, 12, F] and "nodes" [n, width].
+        """
         views, losses, figures = self._perception(decisions, clean)
         planner, valid = self.planner, decisions.valid
         out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
@@ -275,7 +288,10 @@ class TopologicalAgent(Agent, nn.Module):
         return Output(out["logits"], features, losses, figures)
 
     def see(self, sensor: str, frames: Tensor, truth: Tensor | None = None) -> Output:
-        """Return the view features of one sensor's frames, with concepts for RGB."""
+        """Return the view features of one sensor's frames (``agents/agent.py``).
+
+        The features of RGB frames include the probabilities of concepts.
+        """
         if sensor == DEPTH:
             features, logits = self.encode_depth(frames)
         else:
@@ -293,7 +309,10 @@ class TopologicalAgent(Agent, nn.Module):
     def _perception(
         self, seen: MapDecisions, clean: bool
     ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
-        """Return view features [P, 12, F], and the losses and metrics of trained perception."""
+        """Return view features [P, 12, F], losses and metrics.
+
+        Losses and metrics are empty unless perception is being trained.
+        """
         if clean:
             if seen.clean_views is not None:
                 return seen.clean_views, {}, {}
@@ -321,7 +340,11 @@ class TopologicalAgent(Agent, nn.Module):
 
     @contextmanager
     def remembering(self) -> Iterator[None]:
-        """Cache the features of recent frames; the weights must not change inside the context."""
+        """Cache the features of recent frames, so that identical frames are encoded only once.
+
+        Actions do not change, because equal frames have equal features. The weights must not
+        change inside the context. In training mode, no features are cached.
+        """
         before, self._memory = self._memory, Memory(FEATURES)
         try:
             yield
@@ -329,7 +352,11 @@ class TopologicalAgent(Agent, nn.Module):
             self._memory = before
 
     def reset(self, instruction: str) -> None:
-        """Start an episode; warn if the agent knows no word of ``instruction``."""
+        """Start an episode; warn if the agent knows no word of ``instruction``.
+
+        Raises:
+            TypeError: If ``instruction`` is not a string.
+        """
         checked.instruction(instruction, self.vocabulary)
         self.map, self.controller = TopologicalMap(), Controller()
         self._started = True
@@ -342,7 +369,13 @@ class TopologicalAgent(Agent, nn.Module):
             self._text = self.planner.read(self.tokens([instruction]))
 
     def act(self, observation: Mapping[str, np.ndarray]) -> int:
-        """Return one low-level action; read frames only when a decision is due."""
+        """Return one low-level action; read frames only when a decision is due.
+
+        Raises:
+            RuntimeError: If ``reset`` was not called.
+            KeyError, TypeError, ValueError: If an entry of the observation is missing or has a
+                wrong dtype, shape or unit.
+        """
         check_started(self._started)
         self._decided: Decision | None = None  # the last decision in this call of act
         while (action := self.controller.action(checked.pose(observation))) is None:

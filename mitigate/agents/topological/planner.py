@@ -41,7 +41,8 @@ class DecisionBatch(Batch):
 def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) -> DecisionBatch:
     """Pad decisions and join them into a batch.
 
-    ``episodes`` are the indices of their texts; ``offsets``, of their episodes' first panoramas.
+    ``episodes[i]`` is the index of the text of decision i, and ``offsets[i]`` is the index of the
+    first panorama of its episode.
     """
     n = max(len(d.nodes) for d in decisions)
     g = max(1, max(len(d.ghosts) for d in decisions))
@@ -67,8 +68,17 @@ def collate(decisions: list[Decision], episodes: list[int], offsets: list[int]) 
 class Planner(TextReader):
     """Score [stop] and ghost nodes; the module's docstring describes the structure.
 
-    With ``fusion``, keyword arguments of ``fusion.weigher``, views with reliable encoder features
-    get higher weights; otherwise, all views have equal weights.
+    Args:
+        rgb_width: number of RGB features per view.
+        depth_width: number of depth features per view.
+        width: width of all layers.
+        heads: attention heads.
+        text_layers: transformer layers over the text.
+        layers: cross-modal layers.
+        dropout: dropout rate.
+        fusion: keyword arguments of ``fusion.weigher`` (rate, cap, learned). Views with reliable
+            encoder features then get higher weights. If None, all views have equal weights.
+        vocabulary: words of the instructions, or None for the default vocabulary.
     """
 
     yaws: Tensor
@@ -135,7 +145,12 @@ class Planner(TextReader):
     def forward(
         self, text: tuple[Tensor, Tensor], views: Tensor, batch: DecisionBatch
     ) -> dict[str, Tensor]:
-        """Score every token, given the results of ``read`` and ``look``.
+        """Score every token.
+
+        Args:
+            text: the result of ``read``.
+            views: [P, 12, ...], the result of ``look``.
+            batch: the padded decisions.
 
         Returns:
             "logits" [B, 1 + N + G], -inf for tokens that are not allowed; "distance" [B, 1 + N +

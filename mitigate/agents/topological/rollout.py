@@ -27,7 +27,8 @@ from mitigate.worlds.world import World, expert_of
 # the oracle stops at most this many metres from the goal, if the world counts that as success
 STOP_WITHIN = 1.0
 STOP_BEST = 1.75  # this limit applies if no ghost node is closer to the goal
-_TEMPERATURE = 0.3  # in metres; ghosts with similar costs get similar target probabilities
+# temperature in metres; ghost nodes with similar costs get similar target probabilities
+_TEMPERATURE = 0.3
 STOP_WEIGHT = 1.5  # weight of stop decisions, which are about one decision in six
 FARTHEST = 25.0  # targets of the distance loss are clipped at this many metres
 _TRAVEL = 0.4  # weight of the path to a ghost relative to the path from the ghost to the goal
@@ -57,7 +58,8 @@ class Step:
 
     decision: Decision
     target: np.ndarray  # float32 [1 + g], the probabilities of [stop] and of the ghosts
-    metres: np.ndarray  # from the current position, each node and each ghost to the goal
+    # geodesic distance in metres to the goal from the current position, each node and each ghost
+    metres: np.ndarray
 
 
 @dataclass
@@ -78,7 +80,11 @@ class Piece:
 
 
 def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
-    """Return the decision with the oracle's answer, which is based on shortest paths."""
+    """Return the decision with the oracle's answer, which is based on shortest paths.
+
+    Raises:
+        ValueError: If the world's expert does not provide distances.
+    """
     nodes = [walk.expert.distance(p) for p in graph.positions]
     ghosts = np.array([walk.expert.distance(graph.ghosts[g].position) for g in decision.ghosts])
     if np.isnan([*nodes, *ghosts]).any():
@@ -102,8 +108,16 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
 class LiveWalk:
     """A rollout in a world, from the start of ``episode``.
 
-    ``looks`` holds, for each decision, the frames, the frames before corruption if ``clean`` is
-    set, and those entries of the ground truth in ``labels`` that the world has.
+    ``looks`` holds the frames and labels of each decision, by name.
+
+    Args:
+        world: any world.
+        episode: the episode to run.
+        labels: ground-truth entries to store with each observation; missing entries are skipped.
+        clean: also keep the frames before corruption.
+
+    Raises:
+        ValueError: If the world has no expert.
     """
 
     def __init__(
@@ -151,11 +165,20 @@ def roll_out(
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
-    """Run one episode per walk until the oracle stops, ``limit`` is reached or the episode ends.
+    """Run all episodes; each runs until the oracle stops, the limit is reached or the episode ends.
 
     Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
-    from the planner's distribution over ghosts. The planner cannot choose to stop. ``look`` encodes
-    the current panorama of each walk, and ``tokens`` [E, L] are the instructions.
+    from the planner's distribution over ghosts. The planner cannot choose to stop, so that a
+    trace continues until the oracle stops.
+
+    Args:
+        planner: the planner.
+        tokens: int64 [E, L], the instructions.
+        walks: one :class:`Walk` per episode.
+        look: function that encodes the current panorama of each walk.
+        follow_oracle: probability of following the oracle.
+        rngs: one random generator per walk, so that its samples do not depend on the other walks.
+        limit: maximum number of decisions.
     """
     graphs = [TopologicalMap() for _ in walks]
     traces = [Trace(walk.episode) for walk in walks]
@@ -215,8 +238,9 @@ def _sample_ghosts(
 class MapDecisions(DecisionBatch):
     """B padded decisions of E episodes with P panoramas, and the oracle's answers.
 
-    ``target`` and ``metres`` are [B, 1 + N + G], ``weight`` [B], ``tokens`` int64 [E, L].
-    Observations are features [P, 12, F] or frames. Labels are None if the world lacks them.
+    ``target`` and ``metres`` have the shape [B, 1 + N + G], ``weight`` has [B], and ``tokens`` is
+    int64 [E, L]. Observations are either features (``views``, ``clean_views`` [P, 12, F]) or
+    frames. Labels are None if the world lacks them.
     """
 
     target: Tensor

@@ -1,10 +1,11 @@
 """Stored features of whole scenes, for training without rendering.
 
-``ScenesTask`` computes the features of a :class:`TopologicalAgent`'s encoders in worker processes,
-on a lattice of poses in each scene. ``Store`` keeps them in memory-mapped folders, which processes
-share. ``StoredWalk`` runs episodes on them. A scene may have corrupted *variants*, each with one
-fixed corruption. Only training imports this module, because tensordict is as slow to import as
-torch.
+``ScenesTask`` computes the features of an agent's encoders in worker processes, on a lattice of
+poses in each scene. ``Store`` keeps the features in memory-mapped folders, which worker processes
+share. ``StoredWalk`` runs episodes on stored features. A scene may have corrupted *variants*, each
+with one fixed corruption. Only training imports this module, because tensordict is as slow to
+import as torch. Agents are instances of :class:`TopologicalAgent`. This module cannot import that
+class, because the class's module imports this one.
 """
 
 from __future__ import annotations
@@ -67,8 +68,11 @@ ScenePoses.__module__ = "mitigate.agents.topological.stored_walk"
 class Features:
     """The stored features of one scene at n poses.
 
-    ``views`` are float16 [n, 12, F]. ``waypoints`` are [n, 6, 2]; unused rows have 0 metres. Bit i
-    of ``seen``, uint64 [n, 12], is set if object i is visible in the centre of the view.
+    Attributes:
+        xy: [n, 2].
+        views: float16 [n, 12, F].
+        waypoints: [n, 6, 2]; unused rows have 0 metres.
+        seen: uint64 [n, 12]; bit i is set if object i is visible in the centre of the view.
     """
 
     def __init__(self, poses: ScenePoses) -> None:
@@ -141,8 +145,9 @@ def _turns(heading: float) -> int:
 class ScenesTask:
     """Compute the features of scenes in worker processes (``mitigate/core/workers.py``).
 
-    The result of a job is a list of pairs: the number of a variant, 0 for clean, and the entries of
-    its ``ScenePoses``. ``kind`` is the floating-point precision of the encoders.
+    The result of a job is a list of pairs: a variant's number, and the entries of its
+    ``ScenePoses``. Variant 0 is clean. ``schedule`` samples the corruptions of all other variants,
+    and ``seed`` is their seed. ``kind`` is the floating-point precision of the encoders.
     """
 
     agent: Any
@@ -229,7 +234,10 @@ def _frames(world: Any, xy: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndar
 def _features(
     agent: Any, frames: list[tuple], known: list[tuple] | None = None
 ) -> dict[str, np.ndarray]:
-    """Return the features of all ``frames`` by name, without sensors whose frames are ``known``."""
+    """Return a dict that maps the name of each feature to its values for all ``frames``.
+
+    Sensors are left out if their frames are the same as in ``known``.
+    """
     rgb, depth, seen = zip(*frames, strict=True)
     features = {"seen": np.stack(seen).view(np.int64)}  # torch cannot map uint64
     known_rgb, known_depth, _ = zip(*known, strict=True) if known else ((), (), ())
@@ -258,12 +266,17 @@ class Store:
 
     Args:
         agent: the agent whose encoders are used.
-        world: function that returns a world, which must render from any pose and have an expert.
-            Its ground truth must have the entry "seen": the objects that each view shows.
+        world: function that returns a world. The world must render from any pose and have an
+            expert. Its ground truth must have the entry "seen", which marks the objects that are
+            visible in each view.
         root: parent folder of the stores, which has one subfolder per set of encoders.
-        schedule: samples the corruption of each variant, and the share of rollouts on clean scenes.
+        schedule: samples the corruption of each variant. Its ``clean_share`` is the fraction of
+            rollouts on clean scenes.
         variants: number of corrupted variants per scene.
         seed: corruption seed.
+
+    Raises:
+        ValueError: If ``variants`` is above 0, but no schedule samples corruptions.
     """
 
     def __init__(
@@ -297,10 +310,14 @@ class Store:
         self._loaded: dict[tuple[str, int], Features] = {}
 
     def build(self, workers: int | None = None) -> None:
-        """Compute the features that are not stored yet, without blanking inputs.
+        """Compute the features that are not stored yet.
 
-        ``workers`` is the number of processes, which does not affect the features: None starts one
-        per core if there is enough work, and 0 uses only this process.
+        The features are stored without blanking inputs; :meth:`Features.blank` does that later. The
+        features do not depend on the number of processes.
+
+        Args:
+            workers: number of worker processes. None starts one process per core if there is enough
+                work, and 0 uses only this process.
         """
         for folder in (self.folder, self.corrupted) if self.variants else (self.folder,):
             delete_abandoned(make_folder(folder).glob(".*.tmp"))
@@ -371,7 +388,10 @@ class Store:
 
 
 def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
-    """Write the entries of ``ScenePoses`` to a temporary folder, which is then renamed."""
+    """Write the entries of ``ScenePoses`` atomically.
+
+    They are written to a temporary folder, which is then renamed.
+    """
     tensors = {name: torch.from_numpy(array) for name, array in arrays.items()}
     poses = ScenePoses(**tensors, batch_size=[len(arrays["xy"])])  # type: ignore[call-arg]
     suffix = f".{os.getpid()}.tmp"
@@ -388,6 +408,9 @@ def _save(arrays: dict[str, np.ndarray], path: Path) -> None:
 
 
 def _content(schedule: Schedule) -> tuple[Any, ...]:
-    """Return the settings and versions that, together with the seed, determine a variant."""
+    """Return the content of a schedule that, together with the seed, determines a variant.
+
+    This is the settings that the schedule uses, and the versions of its corruptions.
+    """
     names = (*schedule.names, *(BROAD if schedule.broad_share else ()))
     return replace(schedule, **UNUSED), SUITE_VERSION, [version(name) for name in names]

@@ -51,7 +51,8 @@ from mitigate.worlds.world import World
 
 INSTALL = "pip install -e '.[train,vlm]'"
 CONFIG, BASE = "adapter_config.json", "base.json"  # files of a saved agent, next to its weights
-LIMIT = 90  # decisions of a training rollout at most (heuristic), as for the recurrent agent
+# maximum number of decisions in a training rollout (heuristic), as for the recurrent agent
+LIMIT = 90
 
 
 class VLMAgent(AnsweringAgent, nn.Module):
@@ -136,7 +137,10 @@ class VLMAgent(AnsweringAgent, nn.Module):
         self._read_template()
 
     def settings(self) -> dict[str, Any]:
-        """Return the arguments that determine the answers; ``base_sha256`` stands for ``model``."""
+        """Return the constructor's arguments that determine the answers, except ``model``.
+
+        ``base_sha256`` identifies the model.
+        """
         return dict(self._settings)
 
     @property
@@ -146,7 +150,10 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # prompts and likelihoods ------------------------------------------------------------------
 
     def _read_template(self) -> None:
-        """Read the special tokens, and the tokens of each answer, from the chat template."""
+        """Read the special tokens, and the tokens of each answer, from the model's chat template.
+
+        Raises ValueError for a chat template that omits a part of the conversation.
+        """
         tokenizer = self.processor.tokenizer
         added = tokenizer.added_tokens_decoder.values()
         special = {*tokenizer.all_special_tokens, *(t.content for t in added if t.special)}
@@ -287,7 +294,10 @@ class VLMAgent(AnsweringAgent, nn.Module):
     # files ------------------------------------------------------------------------------------
 
     def save(self, folder: str | Path) -> None:
-        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model."""
+        """Write the LoRA weights in PEFT's folder format, with the sha256 of the base model.
+
+        Raises ValueError if the agent has no LoRA weights.
+        """
         with folders.write_folder(folder, "agent") as draft:
             tensors = {name: value.cpu().clone() for name, value in self._adapter().items()}
             self.network.peft_config["default"].base_model_name_or_path = self.model
@@ -301,8 +311,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.
 
-        Raises FileNotFoundError if there are none, and ValueError if they are damaged, or were
-        trained for a different base model or for other modules.
+        Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
+        weights are damaged, or were trained for a different base model or for other modules.
         """
         from peft import set_peft_model_state_dict
 
@@ -346,7 +356,7 @@ class VLMAgent(AnsweringAgent, nn.Module):
 
 
 def load_processor(place: str) -> Any:
-    """Return the tokenizer and image processor of the model ``place`` (a folder or hub id).
+    """Return the processor of the model ``place`` (a folder or hub id), without its video part.
 
     The agent sends images only, and the video processors of transformers would require torchvision.
     """
@@ -369,11 +379,16 @@ def load_processor(place: str) -> Any:
 
 
 def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: Tensor) -> Tensor:
-    """Return the log-likelihood [n] of each answer (token ids [n, L]) after a prompt.
+    """Return the log-likelihood [n] of each answer after a prompt.
 
-    The prompt (``inputs``, with batch size 1) is computed once, and its keys and values are
-    repeated for the answers. Answers are padded on the right (``mask`` is False), and causal
-    attention ignores later tokens.
+    The prompt is computed once, and its keys and values are repeated for the answers. Answers are
+    padded on the right, and causal attention ignores later tokens.
+
+    Args:
+        network: a causal language model of the transformers library.
+        inputs: the model's inputs for the prompt, with batch size 1.
+        ids: token ids [n, L] of the answers.
+        mask: bool [n, L], False for padding.
     """
     prompt = network(**inputs, use_cache=True, logits_to_keep=1)
     # transformers 5.24 renamed this argument
@@ -391,7 +406,10 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
 
 
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
-    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``."""
+    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``.
+
+    Raises ValueError if a name matches no module.
+    """
     from peft import LoraConfig, get_peft_model
 
     language = {id(module) for module in network.get_decoder().modules()}

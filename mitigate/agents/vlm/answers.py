@@ -13,7 +13,8 @@ from mitigate.core.names import unknown
 from mitigate.core.observation import FORWARD, FORWARD_METRES, LEFT, RIGHT, STOP, TURN_DEGREES
 
 MOST = 3  # maximum number of low-level actions in an answer: 75 cm or 45 degrees, as in NaVid
-LONGEST = 200  # characters of an answer that are read (heuristic); the longest answer has 22
+# number of characters of an answer that are read (heuristic); the longest answer has 22
+LONGEST = 200
 
 
 class Answer(NamedTuple):
@@ -46,14 +47,21 @@ ANSWERS: dict[str, tuple[Answer, ...]] = {
 
 
 def answers_of(style: str) -> tuple[Answer, ...]:
-    """Return the answers of ``style``; raise ValueError for an unknown style."""
+    """Return the answers of ``style``; the first answer is "stop".
+
+    Raises ValueError for an unknown style.
+    """
     if style not in ANSWERS:
         raise ValueError(unknown("style of answers (agent.answers)", style, ANSWERS))
     return ANSWERS[style]
 
 
 def read_answer(text: str, answers: tuple[Answer, ...]) -> Answer | None:
-    """Return the answer that is exactly ``text``, except for case, spaces and a full stop."""
+    """Return the answer whose text is exactly ``text``, or None if there is no such answer.
+
+    Case, spaces, and a full stop at the end do not matter. An answer within a longer
+    text does not count.
+    """
     words = re.sub(r"(?<=\d)(?=[a-z])", " ", text.lower().strip().removesuffix("."))  # "75cm"
     return {answer.text: answer for answer in answers}.get(" ".join(words.split()))
 

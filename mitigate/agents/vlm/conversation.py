@@ -41,7 +41,9 @@ class Memory:
 def views_of(count: int, history: int) -> list[int]:
     """Return the indices of the frames that the model sees, from the earliest to the last.
 
-    These are the last of ``count`` frames, and up to ``history`` earlier ones, spread evenly.
+    Args:
+        count: number of frames so far.
+        history: maximum number of earlier frames, which are spread evenly over the episode.
     """
     earlier = np.linspace(count - 2, 0, min(history, count - 1)).round().astype(int)
     return [*reversed(earlier.tolist()), count - 1]
@@ -106,7 +108,10 @@ class AnsweringAgent(Agent):
         return [{"role": "system", "content": [{"type": "text", "text": system}]}, user]
 
     def begin(self, instruction: str) -> Memory:
-        """Return the memory of a new episode."""
+        """Return the memory of a new episode.
+
+        Raises TypeError if the instruction is not a string.
+        """
         if not isinstance(instruction, str):
             raise TypeError(f"instruction must be a string, got a {type(instruction).__name__}.")
         return Memory(instruction, self.system_prompt)
@@ -114,7 +119,10 @@ class AnsweringAgent(Agent):
     def act_all(
         self, observations: Sequence[Mapping[str, np.ndarray]], memories: Sequence[Memory]
     ) -> list[int]:
-        """Return one action per episode; actions of an earlier answer are taken first."""
+        """Return one low-level action per episode.
+
+        An episode's observation is ignored while actions from an earlier answer are still pending.
+        """
         deciding = [i for i, memory in enumerate(memories) if not memory.pending]
         for i in deciding:
             memories[i].frames.append(checked.frame(observations[i], RGB, 1).copy())

@@ -1,4 +1,7 @@
-"""Write episodes of a LeRobot dataset as conversations with images, as LLaVA and NaVid read."""
+"""Write episodes of a LeRobot dataset as conversations with images.
+
+The format of the conversations is that of LLaVA and NaVid.
+"""
 
 from __future__ import annotations
 
@@ -90,18 +93,21 @@ def write_lerobot_conversations(
 
 
 class _Drive(NamedTuple):
-    """The rows of an episode that have a low-level action; times are seconds since its start."""
+    """The rows of an episode that have a low-level action."""
 
     episode: DatasetEpisode
     instruction: str
-    rows: list[int]
-    times: list[float]
-    actions: list[int]
+    rows: list[int]  # indices of the rows
+    times: list[float]  # seconds since the start of the episode, for each row
+    actions: list[int]  # the low-level action of each row
 
 
 @dataclass(eq=False)
 class _RecordedWorld(World, Expert):
-    """World whose steps replay the rows of drives; its expert takes the recorded actions."""
+    """World that replays drives. Its expert takes the recorded actions.
+
+    Each step goes to the next row, independent of the action.
+    """
 
     dataset: Dataset
     camera: Camera

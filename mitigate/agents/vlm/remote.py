@@ -90,7 +90,10 @@ class RemoteAgent(AnsweringAgent):
         return dict(self._settings)
 
     def ask(self, memories: Sequence[Memory]) -> list[Answer]:
-        """Return each episode's answer; raise ConnectionError if a request got none."""
+        """Return the answer of each episode; the requests run at the same time.
+
+        Raises ConnectionError if a request got no answer.
+        """
         if not memories:
             return []
         with ThreadPoolExecutor(len(memories)) as pool:

@@ -26,12 +26,12 @@ class AnswerDecisions:
     """A batch of B decisions with the expert's answers."""
 
     frames: Tensor  # uint8 [F, H, W, 3], the frames of all episodes; they stay on the CPU
-    clean: Tensor | None  # the frames before corruption, if they were kept
+    clean: Tensor | None  # the frames before corruption, or None if they were not kept
     views: list[list[int]]  # the frames that each decision sees, as indices into ``frames``
-    texts: list[str]
+    texts: list[str]  # the instruction of each decision
     target: Tensor  # [B, n], one-hot
     weight: Tensor  # [B]
-    episode_ids: list[str]
+    episode_ids: list[str]  # the episode of each decision
 
     def to(self, device: Any) -> AnswerDecisions:
         """Return a copy of the batch on ``device``."""
@@ -57,9 +57,19 @@ def run_episode(
     the target is the shortest answer with the expert's action. The agent's STOP is never executed,
     so that the agent also learns from later steps.
 
-    Returns the index of the target of each decision, and its frame before corruption if ``clean``
-    is set. ``chances`` returns the agent's probabilities [n] of ``answers``, and a fraction
-    ``expert_share`` of the decisions follows the expert.
+    Args:
+        world: the world.
+        episode: the episode.
+        memory: the memory of the new episode.
+        chances: function that returns the agent's probabilities [n] of ``answers``.
+        answers: the allowed answers.
+        expert_share: fraction of decisions that follow the expert.
+        rng: the episode's random generator.
+        clean: whether to return the frames before corruption.
+        limit: maximum number of decisions.
+
+    Returns:
+        For each decision, the index of its target and its frame before corruption.
     """
     observation, expert = world.reset(episode), expert_of(world)
     targets: list[int] = []
