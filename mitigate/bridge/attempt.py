@@ -57,7 +57,8 @@ class Attempt:
         # size and hash of the files that the command names, at the start of the command
         self.files: dict[str, dict[str, Any]] = {}
         self.loaded = False  # whether a Python process of the command loaded the hook
-        self.left: list[str] = []  # processes that still ran after the command ended
+        # descriptions of processes that were still running after the command ended
+        self.left: list[str] = []
         self.listener: Listener | None = None
         self.events: IO[str] | None = None
         self.process: Command | None = None
@@ -65,9 +66,12 @@ class Attempt:
 
     @uninterrupted()  # otherwise an interrupt could leave a started process unknown to ``kill``
     def start(self) -> None:
-        """Start the server and the command in an empty folder; move files of an earlier attempt.
+        """Start the server and the command in an empty folder.
 
-        Raises ValueError if another run uses the folder, or the command cannot be started.
+        Files of an earlier attempt are moved to another folder first.
+
+        Raises:
+            ValueError: If another run uses the folder, or the command cannot be started.
         """
         cell, folder = self.cell, self.cell.folder
         make_folder(folder)

@@ -79,9 +79,10 @@ class Camera:
 
 
 def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
-    """Return the camera that a message describes; ``sensor`` is the default depth range.
+    """Return the camera that is described in a message.
 
-    Raises ValueError if frames of the camera cannot be corrupted.
+    ``sensor`` is the depth range to use if the description has none. Raises ValueError if frames of
+    the camera cannot be corrupted.
     """
     name, kind = description.get("name"), description.get("type")
     if not isinstance(name, str):
@@ -124,7 +125,10 @@ def read_camera(description: Mapping[str, Any], sensor: DepthSensor) -> Camera:
 
 
 def _read_orientation(orientation: Sequence[float] | None, name: str) -> tuple[float, float, float]:
-    """Return pitch and roll (radians) and yaw (degrees to the left), which may be in the name."""
+    """Return pitch and roll in radians and yaw in degrees to the left.
+
+    If there is no orientation, the yaw is read from the camera's name.
+    """
     if orientation is not None and len(orientation) == 3:
         pitch, yaw, roll = map(float, orientation)
         return pitch, round(math.degrees(yaw), 3) % 360, roll
@@ -158,9 +162,11 @@ class Rig:
         descriptions: The descriptions that the agent's process sent.
         missing: Value in metres for missing depth.
         turn: Direction of increasing yaw, "left" (Habitat) or "right".
-        streams: Streams of recent frames of each group in the previous rig, to continue them.
+        streams: Maps each group of cameras to the stream of its recent frames. Pass the streams of
+            the previous rig of an environment to continue them; None starts new streams.
 
-    Raises ValueError if a camera cannot be corrupted, or there are too many cameras.
+    Raises:
+        ValueError: If a camera cannot be corrupted, or there are too many cameras.
     """
 
     def __init__(
@@ -224,8 +230,12 @@ class Rig:
     ) -> list[str]:
         """Corrupt the frames in ``memory`` in place; return the names of the cameras that changed.
 
-        Parts of the corruption for other modalities are ignored. ``offsets`` are those of
-        :meth:`lay_out`, and ``heading`` is in radians, or None if it is unknown.
+        Args:
+            memory: Shared memory.
+            offsets: Offset of each camera in ``memory``.
+            corruption: Corruption to apply; parts for other modalities are ignored.
+            key: Key from which all random numbers are derived.
+            heading: The agent's heading in radians; None if unknown.
         """
         changed: list[str] = []
         for group in (g for g in self.groups if g.cameras[0].kind in corruption.modalities):
@@ -313,7 +323,11 @@ def _make_frames(group: Group, views: np.ndarray) -> list[Frame]:
 
 
 def _pair(frames: Sequence[Frame]) -> list[list[Frame]]:
-    """Group an RGB frame with the depth frame of the same view, if both are level and unique."""
+    """Group frames into observations.
+
+    An RGB frame and a depth frame form one observation if they have the same geometry, both are
+    level, and no other frame has this geometry. Each remaining frame forms a separate observation.
+    """
     by_geometry: dict[tuple, list[Frame]] = {}
     for frame in frames:
         by_geometry.setdefault(frame.geometry(), []).append(frame)

@@ -53,7 +53,10 @@ def folder_name(condition: str, severity: float, repeat: int = 0) -> str:
 
 
 def write_done(folder: Path, entries: Mapping[str, Any]) -> None:
-    """Write ``entries`` and a checksum of the events to ``done.json``."""
+    """Mark a condition as finished with a file ``done.json``.
+
+    The file contains ``entries`` and a checksum of the events.
+    """
     write_json(folder / DONE, {**entries, "events": _seal(folder)})
 
 
@@ -66,8 +69,8 @@ def _seal(folder: Path) -> dict[str, Any]:
 def read_done(folder: Path) -> dict[str, Any] | None:
     """Return the entries of a finished condition, or None if it is not finished.
 
-    Raises ValueError, with advice, if ``done.json`` is damaged or belongs to a different condition,
-    or if the events changed after it was written.
+    Raises ValueError if ``done.json`` is damaged or belongs to a different condition, or if the
+    events changed after it was written. The message names the file and says what to do.
     """
     file = folder / DONE
     again = f"No file was changed. To continue, {measure_again(folder)}"
@@ -113,10 +116,11 @@ class Cell:
     folder: Path  # folder for the events and the output of the command
     condition: Condition  # applies the corruption to frames and instructions
     label: dict[str, Any]  # entries that are added to all rows
-    # what the result depends on; a finished condition is reused only if this is the same
+    # the result depends on these; a finished condition is reused only if they are the same
     settings: dict[str, Any]
     environment: dict[str, str]  # environment variables that are set for the command
-    # folder of the clean condition, whose episodes must also end here; None if this one is clean
+    # Folder of the clean condition, or None for the clean condition itself. Each episode that ended
+    # there must also end under this condition.
     clean: Path | None = None
     recording: Path | None = None  # the folder that the option ``record=`` names
 
@@ -134,7 +138,10 @@ class Cell:
         return self.folder / LOG
 
     def entries(self) -> dict[str, Any] | None:
-        """Return :func:`read_done` of the folder."""
+        """Return the entries of ``done.json``, or None if the condition is not finished.
+
+        Raises ValueError if a file is damaged, or if the events do not match the entries.
+        """
         return read_done(self.folder)
 
     def changed_settings(self) -> list[str]:
@@ -143,7 +150,10 @@ class Cell:
         return [name for name, value in self.settings.items() if entries.get(name) != value]
 
     def is_done(self) -> bool:
-        """Return whether the result can be used. Raises ValueError if settings changed."""
+        """Return whether the condition is finished and need not be measured again.
+
+        Raises ValueError if settings changed.
+        """
         entries = self.entries()
         if entries is None:
             return False
@@ -169,7 +179,7 @@ class Cell:
         return ""
 
     def missing_episodes(self) -> list[str]:
-        """Return the episodes that ended when clean, but not under this condition."""
+        """Return the episodes that ended under the clean condition, but not under this one."""
         return sorted(self.clean_reports().ends.keys() - self.reports().ends.keys())
 
     def clean_reports(self) -> Reports:
@@ -177,7 +187,7 @@ class Cell:
         return results.read(self.clean, self.config.count_closed) if self.clean else Reports()
 
     def extra_episodes(self) -> list[str]:
-        """Return the episodes that ended under this condition, but not when clean."""
+        """Return the episodes that ended under this condition, but not under the clean one."""
         clean = self.clean_reports().ends
         return sorted(self.reports().ends.keys() - clean.keys()) if clean else []
 
@@ -199,7 +209,10 @@ class Cell:
         return results.rows(reports, self.corruption, self.label, self.config.rule, clean)
 
     def rule_problem(self) -> str:
-        """Return why ``rule=`` cannot judge every episode, or ""."""
+        """Return the reason why ``rule=`` cannot judge every episode, or "".
+
+        A success rate over only some of the episodes would be misleading.
+        """
         reports, rule = self.reports(), self.config.rule
         missing = results.count_missing(reports, rule) if rule else {}
         if not missing:
@@ -213,7 +226,10 @@ class Cell:
         )
 
     def describe_missing(self, missing: list[str]) -> str:
-        """Return a text such as "3 of clean's 6 episodes are missing"."""
+        """Return a text such as "3 of clean's 6 episodes are missing".
+
+        "clean" is the name of the condition without corruption.
+        """
         verb = "is" if len(missing) == 1 else "are"
         all_clean = counted(len(self.clean_reports().ends), "episode")
         return f"{len(missing)} of clean's {all_clean} {verb} missing"
@@ -261,7 +277,7 @@ class Cell:
 def describe_lost(reports: Reports) -> str:
     """Return a text like "2 episodes were left unfinished, such as s0/2: a process died ...".
 
-    If possible, the example is an episode for which the reason is known.
+    If possible, the example is an episode for which the reason is known. The text ends with advice.
     """
     name = next((name for name in reports.lost if reports.dropped[name]), reports.lost[0])
     reason = reports.dropped[name] or (

@@ -66,10 +66,13 @@ class FirstFrames(Observer):
 
 
 def check(config: RunConfig, command: Sequence[str]) -> Path | None:
-    """Run ``command`` up to its first frames; return the path of the picture, or None without one.
+    """Run ``command`` up to its first frames; return the path of the picture.
 
-    Raises ValueError if an option is invalid, or if the command sends no frame before it ends or
-    within ``FIRST_FRAME_LIMIT`` seconds.
+    If the command has no cameras, the result is None.
+
+    Raises:
+        ValueError: If an option is invalid, if the command ends before its first frame, or if
+            ``FIRST_FRAME_LIMIT`` seconds pass before that frame.
     """
     plan = make_plan(config, command)
     out = Path(config.out or f"{config.runs}/run/{plan.name}-check")
@@ -123,7 +126,11 @@ def _sensors(part: Corruption) -> list[str]:
 
 
 def _shows_past(part: Corruption) -> bool:
-    """Return whether this is a temporal fault, which needs more than one frame to be seen."""
+    """Return whether a corruption is a temporal fault that cannot be shown with a single frame.
+
+    Most of these faults repeat earlier frames. The fault ``intermittent`` has no effect of its own:
+    it determines when another corruption acts.
+    """
     return record(part.name).family == TEMPORAL and record(part.name).draw is not None
 
 
@@ -196,7 +203,10 @@ def _describe_depth(group: Group, frames: Mapping[str, np.ndarray]) -> str:
 
 
 def entry_name(camera: str) -> str:
-    """Return the name in ``first.npz``; the prefix avoids names of arguments of ``numpy.savez``."""
+    """Return the name of the array in ``first.npz`` that contains a camera's frame.
+
+    The name must not be the name of an argument of ``numpy.savez``.
+    """
     return f"camera {camera}"
 
 
@@ -207,9 +217,10 @@ def draw_sheet(
     first: Mapping[str, Any],
     seed: int,
 ) -> Figure:
-    """Plot clean frames and one row per corruption, for the largest group of cameras.
+    """Plot a row of clean frames and one row per corruption, for the largest group of cameras.
 
     If a corruption does not change every frame, its picture shows the first call that it changes.
+    Faults that repeat earlier frames are left out.
 
     Args:
         rig: The cameras.

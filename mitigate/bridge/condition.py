@@ -82,7 +82,11 @@ class Condition:
     observer: Observer = field(default_factory=Observer)
 
     def key(self, scene: str, episode: str, frame: int) -> Key:
-        """Return the key for random numbers of one call in an episode."""
+        """Return the key for the random numbers of one call.
+
+        The key consists of the seed, the name of the scene file with the episode id, and the number
+        of the call.
+        """
         name = f"{scene.rpartition('/')[2]}/{episode}" + (f"#{self.repeat}" if self.repeat else "")
         return Key(self.seed, name, frame)
 
@@ -120,7 +124,8 @@ def needs_tokenizer(corruption: Corruption, clean: Reports, words: Words) -> boo
 class Words:
     """Corrupts instructions."""
 
-    # for agents that read tokens; without it, they would read the original instruction
+    # The tokenizer for agents that read tokens. If it is None, changing the instruction of such an
+    # agent is an error, because the agent would read the original tokens.
     tokenizer: Tokenizer | None = None
     length: int | None = None  # length of padded tokens, or None to keep the episode's length
 
@@ -133,9 +138,15 @@ class Words:
     ) -> dict[str, Any]:
         """Return ``text`` and ``tokens`` for the agent, or an empty dict if nothing changes.
 
-        ``message`` begins the episode, with ``text``, ``tokens``, ``language`` and ``category``.
-        ``guards`` change the corrupted instruction. Raises ValueError if the result cannot be
-        passed to the agent.
+        Args:
+            message: The message that begins the episode, with ``text``, ``tokens``, ``language``,
+                ``category``.
+            corruption: The corruption of the condition.
+            key: Key from which all random numbers are derived.
+            guards: Guards that change the corrupted instruction.
+
+        Raises:
+            ValueError: If the corrupted instruction cannot be passed to the agent.
         """
         text, tokens = message.get("text"), message.get("tokens")
         parts = [part for part in corruption.parts if part.modality == "instruction"]
@@ -164,9 +175,10 @@ class Words:
 
 
 def load_tokenizer(name: str) -> Tokenizer:
-    """Load a tokenizer from a folder, a hub name, or the vocabulary of an R2R-CE file.
+    """Load a tokenizer from a folder, a hub name, or an R2R-CE file.
 
-    Raises ValueError if there is no tokenizer, or FileNotFoundError if there is no file or folder.
+    An R2R-CE file is a ``.json`` or ``.json.gz`` file with a vocabulary. Raises ValueError if the
+    file or folder contains no tokenizer, and FileNotFoundError if there is no such file or folder.
     """
     if name.endswith((".json", ".json.gz")):
         return tokenizer_for(VOCABULARY, read_extras(name))
@@ -184,14 +196,16 @@ class Subset:
 
     count: int  # the requested number of episodes
     folder: Path  # the run's folder, in which the choice of episodes is stored
-    # if no new environment reports its episodes for this many seconds, all are assumed to be known
+    # If no new environment reports its episodes for this many seconds, all environments are assumed
+    # to be known.
     settled: float = SETTLE_TIME
 
     def keep(self, names: list[str], least: int = 1) -> list[int]:
-        """Return the indices of the episodes to keep, at least ``least`` (0 or 1).
+        """Return the indices of the episodes to keep.
 
-        ``names`` are those of one environment's episodes, such as "scene.glb/17". The default of
-        ``least`` is 1, because Habitat rejects an empty dataset.
+        ``names`` are the names of the episodes of one environment, such as "scene.glb/17". At least
+        ``least`` episodes are kept, 0 or 1. The default is 1, because Habitat rejects an empty
+        dataset.
         """
         bound = (self._choice() or self._choose(names))["bound"]
         hashes = [hash_episode(name) for name in names]
@@ -204,7 +218,11 @@ class Subset:
             (self.folder / name).unlink(missing_ok=True)
 
     def _choice(self) -> dict[str, Any] | None:
-        """Return the stored bound of hashes, request ("episodes") and total ("of"), or None."""
+        """Return the stored choice of episodes, or None if no choice is stored.
+
+        Its entry "bound" is the largest hash of a chosen episode. The entry "episodes" is the
+        requested number of episodes, and "of" is the number of episodes to choose from.
+        """
         file = self.folder / "episodes.json"
         if not output.is_regular(file):
             return None
@@ -255,7 +273,10 @@ def is_count(value: object) -> bool:
 
 
 def _read_name(line: str, file: Path) -> str:
-    """Return the episode name in a ``line`` of ``file``."""
+    """Return the episode name in a ``line`` of ``file``.
+
+    Raises ValueError if the line is damaged.
+    """
     try:
         name: object = json.loads(line)
     except (ValueError, RecursionError):

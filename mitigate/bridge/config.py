@@ -122,7 +122,10 @@ def check_options(config: RunConfig, command: Sequence[str]) -> None:
 
 
 def _check_watched(name: str) -> None:
-    """Raise ValueError if ``name`` is neither a file nor a set environment variable."""
+    """Raise ValueError if ``name`` is neither a file nor a set environment variable.
+
+    Folders are rejected, because changes in them would not be noticed.
+    """
     if os.path.isdir(name):
         raise ValueError(
             f"watch must name files or environment variables, got the folder {name}. Name the "
@@ -141,7 +144,11 @@ def _check_watched(name: str) -> None:
 
 
 def command_name(command: Sequence[str]) -> str:
-    """Return the name of a command's first script, else of its module, else of its program."""
+    """Return a short name for a command.
+
+    This is the name of its first script. If there is no script, it is the first module (``-m``).
+    If there is no module either, it is the name of the executable.
+    """
     scripts = [Path(word).stem for word in command if word.endswith((".py", ".sh", ".bash"))]
     modules = [name for word, name in pairwise(command) if word == "-m"]
     return [*scripts, *modules, Path(command[0]).stem][0]

@@ -49,7 +49,11 @@ def _describe_error(kind: str, error: Exception) -> str:
 
 
 class SharedMemory:
-    """A mapped file for frames, deleted as soon as server and environment have mapped it."""
+    """Memory for frames that the server and an environment's process share.
+
+    The memory is a mapped file in ``folder``. The file is deleted as soon as both sides have mapped
+    it.
+    """
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
@@ -86,8 +90,8 @@ class SharedMemory:
 class Connection:
     """Serves one environment. Each kind of message has a method that computes the answer.
 
-    The other side must send ``token``. Events are written in ``folder``, and files for shared
-    memory in ``memory``.
+    The other side must send the secret ``token``. Events are written to ``folder``. The files for
+    shared memory are in the folder ``memory``.
     """
 
     def __init__(
@@ -170,7 +174,8 @@ class Connection:
         """Record that the current episode was left unfinished; ``fault`` is the reason if known."""
         if not self.open:
             return
-        # Habitat's first call belongs to the reset; in a loop without Habitat, each call is a step
+        # Habitat's first call belongs to the reset, so an episode with only one call had no step.
+        # In a loop without Habitat, each call is a step.
         if self.calls > (0 if self.loop else 1):
             fields = {"scene": self.scene, "episode": self.episode, "fault": fault}
             write_event(self.folder, event="dropped", **fields)
@@ -230,7 +235,10 @@ class Connection:
         return words
 
     def _check_chosen(self) -> None:
-        """Raise ValueError if the program ignores ``episodes=``."""
+        """Raise ValueError if the program did not ask which episodes to run.
+
+        This is an error only if ``episodes=`` is set.
+        """
         if self.condition.chosen is None or self.chosen:
             return
         self.chosen = any(e["event"] == "dataset" for _, e in read_events(self.folder))
@@ -268,7 +276,10 @@ class Connection:
         return {"changed": list(dict.fromkeys(changed))}
 
     def on_end(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Record the result of an episode; if an exception is raised, it stays unfinished."""
+        """Record the result of an episode.
+
+        If an exception is raised, the episode stays unfinished.
+        """
         if message.get("how") == BROKEN:
             self._leave(_one_line(message.get("fault")))
             return {}
@@ -307,10 +318,11 @@ class Connection:
         self.condition.guards.check_shown(sorted(self.kinds), f"episode {self.episode}")
 
     def on_dataset(self, message: Mapping[str, Any]) -> dict[str, Any]:
-        """Receive episode names, and reply with the indices to keep, or None to keep all episodes.
+        """Receive the names of an environment's episodes, and reply with the indices to keep.
 
-        The names arrive in several messages; the final reply is sent when all ``count`` names are
-        known. At least ``least`` episodes are kept, because Habitat rejects an empty dataset.
+        The reply is None if the program must run all episodes. The names arrive in several
+        messages. The final reply is sent when all ``count`` names are known. ``least`` is the
+        minimum number of episodes to keep, because Habitat rejects an empty dataset.
         """
         chosen = self.condition.chosen
         self.names += [str(key) for key in message["keys"]]

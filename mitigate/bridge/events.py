@@ -61,8 +61,9 @@ def measure_again(folder: Path) -> str:
 def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
     """Yield the number and the content of each line of the events in ``folder``.
 
-    A last line without a line break is skipped: it is still being written, or its process was
-    killed. Raises ValueError if any other line is not a JSON object with a string field ``event``.
+    If the last line has no line break, it is skipped: it is still being written, or the process
+    that wrote it was killed. Raises ValueError if any other line is not a JSON object with a string
+    field ``event``.
     """
     file = folder / EVENTS
     if not is_regular(file):
@@ -83,8 +84,11 @@ def read_events(folder: Path) -> Iterator[tuple[int, dict[str, Any]]]:
 def put_aside(folder: Path, kind: str) -> None:
     """Move the files of an earlier attempt to ``<folder>.<kind>``, replacing that folder.
 
-    The lock file stays. ``done.json`` is deleted first, so that the condition immediately counts as
-    unfinished. Raises UnsafePathError, before any change, if ``<folder>.<kind>`` is no folder.
+    The lock file stays. Results that the program wrote to ``folder`` are also moved. ``done.json``
+    is deleted first, so that the condition immediately counts as unfinished.
+
+    Raises:
+        UnsafePathError: If ``<folder>.<kind>`` is a link, a FIFO or a file; nothing was changed.
     """
     if any(path.name != LOCK for path in folder.iterdir()):
         aside = folder.with_name(f"{folder.name}.{kind}")
@@ -122,9 +126,12 @@ def read_start(message: Mapping[str, Any]) -> tuple[str, str]:
 def read_end(message: Mapping[str, Any], episode: str) -> dict[str, Any]:
     """Check the report about the end of ``episode``, and return its ``FIELDS``.
 
-    A distance that is NaN, or a path that contains NaN, is omitted as unknown. Raises ValueError if
-    a metric is not a finite number allowed in rows (only ``distance_to_goal`` may be infinite), if
-    the SPL is not in [0, 1], a count or distance is negative, or the path has no points [2] or [3].
+    A distance that is NaN, or a path that contains NaN, is treated as unknown and omitted.
+
+    Raises:
+        ValueError: If a field is invalid. Metrics must be finite numbers that are allowed in rows
+            (only ``distance_to_goal`` may be infinite), the SPL must lie in [0, 1], counts and
+            distances must be >= 0, and the path must be a list of points [2] or [3].
     """
     try:
         return _check_end({name: message[name] for name in FIELDS if message.get(name) is not None})

@@ -106,7 +106,11 @@ def _adapter_environment(config: RunConfig) -> dict[str, str]:
 
 
 def _settings(plan: Plan, guards: Guards) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the command with its options, and hashes of everything that changes the agent."""
+    """Return the settings, except the corruption, that all results of a run depend on.
+
+    Returns:
+        The command and options, and the hashes of everything that changes the agent.
+    """
     config = plan.config
     options = {"command": shlex.join(plan.command)}
     options |= {name: vars(config)[name] for name in SETTINGS}
@@ -138,7 +142,10 @@ def _as_text(values: dict[str, str | None] | None) -> str | None:
 
 
 def _make_label(plan: Plan, agent: dict[str, Any]) -> dict[str, Any]:
-    """Return the entries that are the same in all rows of a run."""
+    """Return the entries that are the same in all rows of a run.
+
+    The hash of the agent includes the restorer, safeguard, adapters and watched values.
+    """
     config = plan.config
     sha = _digest(shlex.join(plan.command))
     safeguard = None if agent["safeguard"] == "none" else agent["safeguard"]

@@ -44,10 +44,18 @@ class Command:
     """Starts a command under a supervisor, and ends all of its processes.
 
     A process belongs to the command if it is a descendant of the command, or if its environment
-    contains ``marker``, which no other command has. The marker identifies processes in a container,
-    and processes that outlive the supervisor. The output of the command is written to ``log``.
+    contains ``marker``. The marker identifies processes in a container, and processes that outlive
+    the supervisor.
 
-    Raises OSError if the command cannot be started.
+    Args:
+        words: The command and its arguments.
+        log: File that receives the output of the command.
+        environment: All environment variables of the command.
+        marker: A value in ``environment`` that no other command has; it identifies the processes of
+            this command.
+
+    Raises:
+        OSError: If the command cannot be started.
     """
 
     def __init__(
@@ -106,8 +114,10 @@ class Command:
     def end(self, connected: Callable[[], bool]) -> None:
         """End all processes with SIGTERM, and after ``GRACE`` with SIGKILL.
 
-        If the command has ended and no process is ``connected`` to the bridge, SIGKILL follows at
-        once.
+        Args:
+            connected: Function that returns whether any of the processes is connected to the
+                bridge. If the command has ended and no process is connected, SIGKILL follows at
+                once.
         """
         until = time.monotonic() + GRACE
         signal_all(self.running(), signal.SIGTERM)
@@ -129,7 +139,10 @@ class Command:
         self._pipe.close()
 
     def _next(self) -> dict[str, Any]:
-        """Return the supervisor's next line, or {} if there is none (lines are never partial)."""
+        """Return the content of the supervisor's next line, or {} if there is no new line.
+
+        The supervisor writes a whole line in one call, so a part of a line is never read.
+        """
         line = b"" if self._pipe.closed else self._pipe.readline()
         message: dict[str, Any] = json.loads(line) if line else {}
         return message
@@ -236,7 +249,11 @@ def _report(pipe: int, **message: object) -> None:
 
 
 def _reap(child: int, pipe: int) -> bool:
-    """Reap ended processes, report a failure of ``child``, and return whether any process runs."""
+    """Reap ended processes; return whether any process still runs.
+
+    The forked process ``child`` reports the exit status of the program. If the forked process
+    itself failed or was killed, this function reports the status of the forked process instead.
+    """
     while True:
         try:
             pid, status = os.waitpid(-1, os.WNOHANG)

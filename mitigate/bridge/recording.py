@@ -60,8 +60,8 @@ class Recorder(Observer):
     """Observer that writes frames, poses and results to ``folder``, the folder of the condition.
 
     An episode is first written to a temporary folder (``draft``). When the episode ends, this
-    replaces any earlier recording of the episode (``target``). During an episode, ``output_root``
-    checks that no other process replaces the folder.
+    folder replaces any earlier recording of the episode (``target``). During an episode,
+    ``output_root`` is used to check that no other process replaces the folder.
     """
 
     folder: Path
@@ -131,7 +131,12 @@ class Recorder(Observer):
 
 
 def delete_drafts(folder: Path) -> None:
-    """Delete the episodes in a recording whose process ended before it finished them.
+    """Delete unfinished episodes in the recording of a condition.
+
+    An unfinished episode is deleted if the process that was recording it has ended.
+
+    Args:
+        folder: The folder of the recording.
 
     Raises:
         UnsafePathError: If ``folder``, or a scene or an episode in it, is a symbolic link, a FIFO

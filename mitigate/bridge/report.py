@@ -65,7 +65,15 @@ def write_report(cells: Sequence[Cell], out: Path) -> None:
 
 
 def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) -> None:
-    """Write the rows of a run. Raises ValueError if existing rows would be lost."""
+    """Write the rows of a run; never drop rows of an existing file without a message.
+
+    The existing file is copied if it holds rows of conditions in ``left_out``, or rows of a
+    different agent, seed or split.
+
+    Raises:
+        ValueError: If the file holds rows of a condition or episode that is not in ``new_rows``. In
+            this case, the file is not changed.
+    """
     before = rows.read(file) if file.exists() else []
     now = {_condition_and_episode(row) for row in new_rows}
     dropped = [key for key in map(_condition_and_episode, before) if key not in now]
@@ -91,7 +99,10 @@ def _write_rows(file: Path, new_rows: Sequence[Row], left_out: Sequence[str]) ->
 
 
 def _condition_and_episode(row: Row) -> tuple[str, float, str]:
-    """Return a key that is the same for all success rules of an episode."""
+    """Return a key for the condition and the episode of a row.
+
+    Rows that differ only in their success rule have the same key.
+    """
     return str(row["corruption"]), float(row["severity"]), str(row["episode_id"])
 
 
@@ -105,9 +116,11 @@ def _unused(path: Path) -> Path:
 
 
 def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str]]:
-    """Return finished conditions in ``out`` that are not in ``cells``, and names of unusable ones.
+    """Return finished conditions in ``out`` that are not in ``cells``.
 
-    Conditions with another agent or other settings are unusable; the reason is printed.
+    Returns:
+        The conditions with the same agent and settings, and the names of the other conditions. For
+        the other conditions, the function prints why they are left out of the table.
     """
     known = {cell.name for cell in cells}
     earlier: list[Cell] = []
@@ -130,7 +143,11 @@ def find_earlier(cells: Sequence[Cell], out: Path) -> tuple[list[Cell], list[str
 
 
 def _read_cell(clean: Cell, file: Path) -> Cell | None:
-    """Return the condition of a ``done.json``, or None if its corruption no longer exists."""
+    """Return the condition that a ``done.json`` describes; other options are taken from ``clean``.
+
+    The result is None if the corruption no longer exists. Raises ValueError if the file or its
+    events are damaged.
+    """
     folder = file.parent
     entries = read_done(folder)
     assert entries is not None
@@ -152,7 +169,9 @@ def _read_cell(clean: Cell, file: Path) -> Cell | None:
 def describe_randomness(runs: Sequence[Sequence[Row]]) -> str:
     """Return a Markdown paragraph on repeated clean runs.
 
-    Only episodes that occur in all runs are used, with the success rule of the first row.
+    The paragraph states the SR of each run, the fraction of episodes whose outcome differs between
+    runs, and the SR difference between the first two runs with its confidence interval. Only
+    episodes that occur in all runs are used. The success rule of the first row applies.
     """
     rule = runs[0][0]["rule"]
     successes = [{r["episode_id"]: r["success"] for r in run if r["rule"] == rule} for run in runs]

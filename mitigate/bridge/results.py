@@ -44,7 +44,8 @@ class Reports:
     hellos: list[dict[str, Any]] = field(default_factory=list)
     # the first description of each camera
     cameras: list[dict[str, Any]] = field(default_factory=list)
-    # observations of the first call that look like frames, but do not come from cameras
+    # Descriptions of observations that look like frames, but do not come from cameras. They belong
+    # to the first call. Each contains the type of its sensor.
     unread: list[str] = field(default_factory=list)
     # maps the name of each episode to the event of its end (:meth:`end`)
     ends: dict[str, dict[str, Any]] = field(default_factory=dict)
@@ -93,8 +94,14 @@ class Reports:
 def read(folder: Path, count_closed: bool = False) -> Reports:
     """Read the reports from the events in ``folder``; ignore an incomplete last line.
 
-    With ``count_closed``, an episode counts even if its Env was closed before it was over, while
-    other Envs ran in parallel. Raises ValueError, with advice, if another line is damaged.
+    Args:
+        folder: The folder of a condition.
+        count_closed: Whether to count an episode whose Env was closed before the episode was over,
+            while other Envs ran in parallel.
+
+    Raises:
+        ValueError: If another line is damaged. The message names the file and the line, and says
+            what to do.
     """
     reports, began = Reports(), dict[int, int]()
     for number, event in read_events(folder):
@@ -112,7 +119,14 @@ def read(folder: Path, count_closed: bool = False) -> Reports:
 
 
 def _add(reports: Reports, event: dict[str, Any], began: dict[int, int]) -> None:
-    """Add one event; ``began`` maps each connection to the number of ends before its episode."""
+    """Add one event to the reports.
+
+    Args:
+        reports: The reports from all earlier events.
+        event: One line of the events.
+        began: For each connection, the number of episodes that had ended when its current episode
+            began.
+    """
     kind = event["event"]
     name = episode_name(event.get("scene", ""), event.get("episode", ""))
     if kind == "hello":
@@ -159,7 +173,8 @@ def rows(
         reports: The reports of the condition.
         corruption: The corruption of the condition.
         label: Values that are the same in all rows ("agent", "name", "split", "seed").
-        rule: A name in ``RULES``, which replaces the agent's own Success measure, or None.
+        rule: A name in ``RULES``; this rule replaces the agent's own Success measure. If it is None
+            and the agent reports no Success measure, all rows are judged by the common rule.
         clean: The reports of the clean condition, if ``reports`` belong to a different condition.
     """
     rules = _choose_rules(reports, rule, clean)
@@ -183,14 +198,21 @@ def rows(
 
 
 def _choose_rules(reports: Reports, rule: str | None, clean: Reports | None = None) -> list[Rule]:
-    """Return the requested success rule and, if it can judge the episodes, the common rule."""
+    """Return the requested success rule and the common success rule.
+
+    The common rule is omitted in each of these cases:
+
+    - The task has no common rule. An example is PointNav, which has neither words nor objects.
+    - An episode can be judged by the agent's own rule, but not by the common rule.
+    - Neither this condition nor the clean condition reports a distance.
+    """
     requested = [RULES[rule]] if rule else []
     task = next((name for name in COMMON if reports.first.get(name)), None)
-    if task is None:  # such as PointNav
+    if task is None:
         return requested
     ends = [*reports.ends.values()]
     with_success = [end for end in ends if "success" in end.get("metrics", {})]
-    # the agent's own rule can judge an episode that the common rule cannot
+    # whether the agent's own rule can judge an episode that the common rule cannot
     partial = any(_missing(end, COMMON[task]) for end in with_success)
     all_ends = [*ends, *(clean.ends.values() if clean is not None else ())]
     no_distance = all(_goal_distance(end) is None for end in all_ends)
@@ -219,9 +241,12 @@ def _goal_distance(end: dict[str, Any]) -> Any:
 
 
 def _missing(end: dict[str, Any], rule: Rule) -> str:
-    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or ""."""
+    """Return the argument of ``finish`` that ``rule`` needs and that this episode lacks, or "".
+
+    A reported failure without a distance is a failure by every rule. An episode that ends too far
+    from the goal is also a failure, with or without STOP.
+    """
     metres = _goal_distance(end)
-    # a failure without a distance, or too far from the goal, is a failure by every rule
     if metres is None:
         return "" if end.get("metrics", {}).get("success", 1) <= 0 else "distance_to_goal"
     return "stopped" if end.get("stopped") is None and rule.stop and rule.met(metres, True) else ""
@@ -234,7 +259,11 @@ def count_missing(reports: Reports, rule: str) -> dict[str, int]:
 
 
 def _spl(end: dict[str, Any], success: bool) -> float:
-    """Return the SPL of the reported path, else the reported SPL, else 1 for a success."""
+    """Return the SPL of the reported path, or else the SPL that the agent reported.
+
+    The SPL of a successful episode is 1 if the agent reported neither a path nor an SPL. Such
+    episodes are counted by :func:`count_without_path`.
+    """
     start, length = _shortest_path(end), _path_length(end)
     if not success:
         return 0.0
@@ -271,7 +300,10 @@ def maybe_normalised(reports: Reports) -> list[str]:
 
 
 def _shortest_path(end: dict[str, Any]) -> float | None:
-    """Return the length of the shortest path in metres, or None without a (known) path."""
+    """Return the length of the shortest path in metres.
+
+    The result is None if the length is unknown or if there is no path.
+    """
     metres = end.get("start_distance", end.get("metrics", {}).get("geodesic_distance"))
     return metres if metres is not None and math.isfinite(metres) else None
 

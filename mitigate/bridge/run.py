@@ -133,7 +133,13 @@ def _check_rule(cells: Sequence[Cell]) -> None:
 
 
 def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
-    """Return the conditions that can reach the agent, and those that lack a tokenizer."""
+    """Return the conditions whose corruption can reach the agent.
+
+    The function prints the other conditions, and the number of instructions in other languages.
+
+    Returns:
+        The conditions, and the names of conditions that need a tokenizer but have none.
+    """
     applicable: list[Cell] = []
     untokenized: list[str] = []
     reports = cells[0].reports()
@@ -152,7 +158,11 @@ def _select_applicable(cells: Sequence[Cell]) -> tuple[list[Cell], list[str]]:
 
 
 def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] = ()) -> list[str]:
-    """Return the files that changed since a condition finished; print those not in ``known``."""
+    """Print and return the files that have changed since a condition finished.
+
+    Only the files that the command line names are compared. Files in ``known``, and files that the
+    command created, are returned but not printed.
+    """
     changed: dict[str, list[str]] = {}
     created: set[str] = set()
     now = hash_files(cells[0].command)
@@ -177,7 +187,10 @@ def _warn_changed_files(cells: Sequence[Cell], out: Path, known: Sequence[str] =
 
 
 def run_all(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run unfinished conditions with the launcher; return the problems."""
+    """Run unfinished conditions with the launcher, ``plan.config.jobs`` at a time.
+
+    Return the problems.
+    """
     waiting = [cell for cell in cells if not cell.is_done()]
     for cell in cells:
         if cell not in waiting:
@@ -233,12 +246,18 @@ def _start(attempt: Attempt) -> str:
 
 
 def _report(cell: Cell, problem: str, single: bool) -> list[str]:
-    """Print one line about a condition that ended; return its problem, if any."""
+    """Print one line about a condition that ended: its summary or its error message.
+
+    The error message is cut to ``MAX_REASON`` characters. It is omitted if the run has only this
+    condition (``single``), because the full message is then printed next.
+
+    Returns:
+        A list with the error message, preceded by the condition's name; empty if there is none.
+    """
     if not problem:
         say(f"{cell.name}: {cell.summary()}")
         return []
     line = problem.splitlines()[0]
-    # the full message of a single condition is printed next
     reason = "" if single else f": {line[:MAX_REASON]}{'...' * (len(line) > MAX_REASON)}"
     say(f"{cell.name}: failed{reason}")
     return [f"{cell.name}: {problem}"]
@@ -290,7 +309,11 @@ class ConditionTask:
 
 
 def _run_on_launcher(plan: Plan, cells: Sequence[Cell]) -> list[str]:
-    """Run conditions on the launcher's machines; return the problems."""
+    """Run conditions on the launcher's machines, ``jobs`` at a time; return the problems.
+
+    Raises:
+        WorkersDied: If several workers died while running the same condition.
+    """
     if not cells:
         return []
     task = ConditionTask(replace(plan, out=plan.out.resolve()), Path.cwd())

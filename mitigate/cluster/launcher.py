@@ -16,8 +16,9 @@ from mitigate.core.workers import Task
 def chosen(launcher: LauncherConfig) -> LauncherConfig:
     """Check ``launcher`` before any work is done, and return it.
 
-    Raises ValueError if a number is out of range, a package is missing, or the cluster is unknown
-    or cannot be reached.
+    Raises:
+        ValueError: If a number is out of range, a package is missing, or the cluster is unknown or
+            cannot be reached.
     """
     for name in ("cpus", "memory", "attempts", "processes", "minutes"):
         value = vars(launcher).get(name)
@@ -33,8 +34,16 @@ def chosen(launcher: LauncherConfig) -> LauncherConfig:
 def count(launcher: LauncherConfig, requested: int | None, jobs: int, worth: int) -> int:
     """Return the number of workers to start (for SLURM, the number of SLURM jobs).
 
-    If ``requested`` is None, these are as many as are worth starting, with at least ``worth`` jobs
-    per process, or as many as fit into the Ray cluster. Raises ValueError if ``requested`` is < 1.
+    Args:
+        launcher: place where the workers run.
+        requested: the requested number. None means as many workers as are worth starting, or as
+            many as fit into the Ray cluster.
+        jobs: number of jobs.
+        worth: minimum number of jobs per process; with fewer jobs, starting a process costs more
+            time than it saves.
+
+    Raises:
+        ValueError: If ``requested`` is less than 1.
     """
     if launcher.name == "local":
         return workers.count(requested, jobs, worth)
@@ -58,7 +67,10 @@ def results(
     """Run jobs in ``started`` workers of the launcher, and yield (job number, result) pairs.
 
     As with ``core.workers.results``, each result is yielded exactly once, even if workers die.
-    Raises WorkersDied if the worker of a group died too often, and the errors of jobs.
+
+    Raises:
+        WorkersDied: If the worker of a group of jobs died too often.
+        Exception: The error that a job raised.
     """
     if isinstance(launcher, RayConfig):
         return ray_actors.results(task, groups, started, progress, launcher)

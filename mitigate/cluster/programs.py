@@ -128,9 +128,12 @@ def run(
 ) -> None:
     """Run ``chains`` on the machines of ``launcher``, at most ``jobs`` chains at a time.
 
-    When a chain has ended, ``ended`` is called with the chain's number and its problem, or "". If
-    this function is interrupted, all chains are stopped; programs on this machine can save their
-    state first. Raises WorkersDied if the worker process that ran a chain died too often.
+    When a chain has ended, ``ended`` is called with the chain's number and its problem, or "" after
+    success. If this function is interrupted, all chains are stopped. Programs on this machine can
+    save their state first.
+
+    Raises:
+        WorkersDied: If the worker process that ran a chain died too often.
     """
     if launcher.name == "local":
         return _run_here(list(enumerate(chains)), jobs, progress, ended)

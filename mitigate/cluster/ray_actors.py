@@ -177,7 +177,10 @@ class _Crew:
         self.busy[stream] = (actor, deque(group), attempt)
 
     def _hear(self, stream: Any) -> Iterator[tuple[int, Any]]:
-        """Yield the next result of a stream, or handle the end of its group or of its actor."""
+        """Yield the next result of a stream.
+
+        If the stream has ended, handle the end of the group or the death of the actor.
+        """
         actor, left, attempt = self.busy[stream]
         try:
             result = self.ray.get(next(stream))

@@ -40,8 +40,8 @@ TASK = "task.pickle"  # only this file, which the submitting process wrote, is u
 class _Share:
     """A submitted SLURM job and its part of the work."""
 
-    job: Any  # of submitit
-    groups: Sequence[Sequence[tuple[int, Any]]]  # of (number, job)
+    job: Any  # the job object of submitit
+    groups: Sequence[Sequence[tuple[int, Any]]]  # groups of (number, job)
     lines: Path  # file to which the SLURM job writes results
     left: dict[int, Any]  # jobs that have no result yet, by number
     attempt: int
@@ -102,7 +102,10 @@ def results(
 
 
 def _end(running: list[_Share], folder: Path) -> None:
-    """Wait up to ``LATE`` seconds until the SLURM jobs have ended, and then remove their folder."""
+    """Wait until the SLURM jobs have ended after their last result, and then remove their folder.
+
+    If a job has not ended after ``LATE`` seconds, the folder is kept.
+    """
     waited = time.monotonic()
     while running and time.monotonic() - waited < LATE:
         running[:] = [share for share in running if not share.job.done()]
@@ -178,7 +181,10 @@ def serve(
 
 
 def _fresh(share: _Share) -> Iterator[tuple[int, Any]]:
-    """Yield each new result of a SLURM job. Raises ValueError if the job reported an error."""
+    """Yield each new result of a SLURM job; an incomplete last line is read later.
+
+    If the job reported an error instead of a result, the function raises a ValueError.
+    """
     if not share.lines.is_file():
         return
     with open(share.lines, "rb") as file:
@@ -213,7 +219,10 @@ def _parse(line: bytes, file: Path) -> dict[str, Any]:
 def _again(
     share: _Share, task: Task, launcher: SlurmConfig, progress: Progress, done: int, total: int
 ) -> int:
-    """Return the number of the next attempt to run the unfinished jobs of ``share``."""
+    """Return the number of the next attempt to run the unfinished jobs of ``share``.
+
+    Raises WorkersDied after too many attempts.
+    """
     try:
         problem: Any = share.job.exception()
     except Exception as error:  # submitit has its own errors for jobs without a result

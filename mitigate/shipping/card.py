@@ -6,6 +6,7 @@ Hugging Face reads.
 
 from __future__ import annotations
 
+import json
 import math
 import re
 import subprocess
@@ -68,7 +69,10 @@ def facts(cfg: dict[str, Any], agent: Any) -> dict[str, Any]:
 
 
 def reference(weights: str) -> dict[str, str]:
-    """Return the path of ``weights`` (relative below the current folder) and its sha256."""
+    """Return the path of ``weights`` and its sha256.
+
+    A path below the current folder is made relative.
+    """
     path = find(weights)
     adapters_only = loading.adapters_only(path)
     file = path / adapters.WEIGHTS if adapters_only else checkpoint.weights_file(path)
@@ -111,9 +115,14 @@ def metrics(rows: Iterable[Row]) -> list[dict[str, Any]]:
     return [_entry(section) for section in sections(mine)] if mine else []
 
 
-def readme(card: dict[str, Any]) -> str:
-    """Return the README of a folder as Markdown, with Hugging Face's front matter."""
-    parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card)]
+def readme(card: dict[str, Any], folder: str) -> str:
+    """Return the README of an exported folder as Markdown, with Hugging Face's front matter.
+
+    Args:
+        card: the card of the folder.
+        folder: path of the folder, shown in the example that loads the agent.
+    """
+    parts = [f"# {card['name']}", _origin(card), *map(_table, card["metrics"]), _use(card, folder)]
     if not card["metrics"]:
         parts.insert(2, "There are no metrics, because no result rows were given at export.")
     return front_matter(card) + "\n" + "\n\n".join(parts) + "\n"
@@ -223,8 +232,9 @@ def _cell(numbers: list[float | None]) -> str:
     return f"{texts[0]} {interval}"
 
 
-def _use(card: dict[str, Any]) -> str:
-    load = f'mitigate.load_hardened("checkpoints/hardened/{card["name"]}"'
+def _use(card: dict[str, Any], folder: str) -> str:
+    # a JSON string is a string literal of Python with double quotes
+    load = f"mitigate.load_hardened({json.dumps(folder, ensure_ascii=False)}"
     whole = card.get("program", True)
     of_user = not whole and card.get("class") not in schema.KINDS
     start = (
@@ -310,10 +320,12 @@ def _version(package: str) -> str | None:
 
 
 def front_matter(card: dict[str, Any]) -> str:
-    """Return the front matter of a README for Hugging Face, YAML between two lines of ``---``.
+    """Return the front matter of a README for Hugging Face.
 
-    The hub shows a model page with the library, the licence, tags and metrics (docs/deployment.md).
-    The format is described in https://github.com/huggingface/hub-docs/blob/main/modelcard.md
+    The front matter is YAML between two lines of ``---``. After ``hf upload``, the hub shows a
+    model page with the library, the licence, tags and metrics (docs/deployment.md). If there are no
+    metrics, there is no ``model-index``. The format is described in
+    https://github.com/huggingface/hub-docs/blob/main/modelcard.md
     """
     kind = "adapters" if card["adapters_only"] else "full-weights"
     fields: dict[str, Any] = {

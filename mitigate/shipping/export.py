@@ -116,7 +116,7 @@ def export(
         )
     cfg, agent = finished(run, walks)
     with output_folder(out, name), folders.replace_folder(target) as draft:
-        _write(draft, run, cfg, agent, name, list(rows), onnx, walks)
+        _write(draft, target, run, cfg, agent, list(rows), onnx, walks)
     return target
 
 
@@ -156,10 +156,17 @@ def finished(run: Path, walks: Walks | None = None) -> tuple[dict[str, Any], Any
 
 
 def add_programs(folder: Path) -> Path:
-    """Export the agent in the hardened ``folder`` again, and return the path of ``program.pt2``.
+    """Export the agent in the hardened ``folder`` again, and replace its ``program.pt2``.
 
-    Raises FileNotFoundError if ``folder`` is not a complete hardened folder, and ValueError if it
-    is damaged, was exported without programs, or if its program and agent differ in outputs.
+    The outputs of the program on the probe inputs are compared with the outputs of the agent.
+
+    Returns:
+        The path of the file.
+
+    Raises:
+        FileNotFoundError: If ``folder`` is not a complete hardened folder.
+        ValueError: If the folder is damaged, if it was exported without programs, or if the outputs
+            differ.
     """
     folder = find(folder)
     folders.repair_folder(folder.resolve())
@@ -199,7 +206,10 @@ def _input_size(folder: Path) -> int:
 
 
 def _check_free(target: Path, overwrite: bool) -> None:
-    """Raise ValueError if ``target`` exists, unless an earlier export wrote it (``overwrite``)."""
+    """Raise ValueError if ``target`` exists and must not be replaced.
+
+    With ``overwrite``, only a folder that an earlier export wrote may be replaced.
+    """
     if not os.path.lexists(target):
         return
     if not overwrite:
@@ -220,7 +230,11 @@ def _check_free(target: Path, overwrite: bool) -> None:
 def check_outputs(folder: str, expected: str) -> None:
     """Raise ValueError unless the agent and the programs in ``folder`` give the expected outputs.
 
-    ``export`` runs this in a new process. ``expected`` is a safetensors file.
+    ``export`` runs this in a new process.
+
+    Args:
+        folder: the hardened folder.
+        expected: safetensors file with the expected outputs on the probe inputs.
     """
     expected_outputs = load_file(expected)
     agent = loading.load_hardened(folder)
@@ -240,15 +254,15 @@ def check_outputs(folder: str, expected: str) -> None:
 
 def _write(
     draft: Path,
+    target: Path,
     run: Path,
     cfg: dict[str, Any],
     agent: Any,
-    name: str,
     rows: list[Path | str],
     onnx: bool,
     walks: Walks | None,
 ) -> None:
-    """Write all files into ``draft`` and check them."""
+    """Write all files into ``draft``, which will become ``target``, and check them."""
     # The path of the run is left out, because it is not relevant.
     config = yaml.safe_dump({**cfg, "folder": None}, sort_keys=False)
     config = config.replace(f"{Path.cwd()}/", "")
@@ -272,7 +286,7 @@ def _write(
         checks, expected = _programs(draft, agent, shipped, onnx)
     card = {
         "format": loading.FORMAT,
-        "name": name,
+        "name": target.name,
         **known,
         "agent": checkpoint.weights_sha(shipped),  # this entry and run_agent are hashes of weights
         "run_agent": checkpoint.weights_sha(agent),
@@ -282,7 +296,7 @@ def _write(
         "metrics": metrics(agent_rows),
         **checks,
     }
-    write_text(draft / loading.README, readme(card))
+    write_text(draft / loading.README, readme(card, str(target)))
     write_json(draft / loading.CARD, card, indent=2, allow_nan=False)
     for file in draft.iterdir():
         file.chmod(0o644)  # safetensors writes files that only their owner can read
@@ -297,7 +311,12 @@ def _write(
 def _programs(
     draft: Path, agent: TopologicalAgent, shipped: TopologicalAgent, onnx: bool
 ) -> tuple[dict[str, Any], dict[str, Tensor]]:
-    """Write the programs of ``shipped``; return their entries of the card, and its outputs."""
+    """Write the exported programs of ``shipped``.
+
+    Returns:
+        The card's entries that describe the programs, and the outputs of ``shipped`` on the probe
+        inputs.
+    """
     size = agent.rgb_encoder.size
     inputs = programs.probe(agent, size)
     print("exporting the programs", flush=True)
@@ -342,7 +361,10 @@ def _only_adapters_trained(cfg: dict[str, Any], agent: Any) -> bool:
 
 
 def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
-    """Return the rows in ``run`` and ``rows`` whose weight hash is in ``agents``."""
+    """Return the rows in ``run`` and ``rows`` whose weight hash is in ``agents``.
+
+    Raises ValueError if ``rows`` contains no row of these weights.
+    """
     try:
         run_rows = result_rows.gather([run])
     except FileNotFoundError:
@@ -358,10 +380,11 @@ def _rows(run: Path, rows: list[Path | str], agents: set[str]) -> list[Row]:
 
 
 def _of_one_agent(run_rows: list[Row], other_rows: list[Row], weights: set[str]) -> Iterator[Row]:
-    """Yield the rows of the exported agent, whose weight hash is in ``weights``.
+    """Yield the rows of the exported agent, which are rows whose weight hash is in ``weights``.
 
-    The same weights with a blanked sensor or a guard are another agent. Of several agents, only the
-    one in ``run_rows`` is used. Raises ValueError if it is not unique.
+    The same weights count as a different agent if a sensor is blanked or a guard is added. If the
+    rows come from several such agents, only the agent in ``run_rows`` is used. Raises ValueError if
+    this agent is not unique.
     """
     rows = [
         row for row in result_rows.unique([*run_rows, *other_rows]) if weights_of(row) in weights
@@ -398,7 +421,11 @@ def _reload_walks(draft: Path, agent: nn.Module, walks: Walks) -> None:
 
 
 def _run_apart(check: str, what: str, *paths: Path) -> None:
-    """Call ``check`` of this module in a new process. Raises ValueError if it fails."""
+    """Call the function ``check`` of this module in a new process.
+
+    If the check fails, raise ValueError. The message states that ``what`` must be equal for the
+    exported and the original agent, and quotes the last line of the output.
+    """
     root = str(Path(__file__).resolve().parents[2])
     with tempfile.TemporaryFile() as errors:
         process = subprocess.run(
@@ -416,7 +443,10 @@ def _run_apart(check: str, what: str, *paths: Path) -> None:
 
 
 def check_walks(draft: str, check_file: str, expected: str) -> None:
-    """Raise ValueError if the agent in ``draft`` does not reproduce ``expected`` measures."""
+    """Raise ValueError if the agent in ``draft`` does not reproduce the measures in ``expected``.
+
+    :func:`_reload_walks` runs this in a new process.
+    """
     path, walks = pickle.loads(Path(check_file).read_bytes())
     sys.path[:] = path
     agent = loading.load_hardened(draft, agent=walks.make_agent())

@@ -92,7 +92,10 @@ def main() -> None:
 
 
 def _walks_of(run: Path, overrides: list[str], configs: Path | None) -> Walks:
-    """Return the check for the agent and world in ``overrides``; settings are read as data."""
+    """Return the check settings for the agent and the world that ``overrides`` name.
+
+    The settings of the agent are read from the folder of the run, as data and not as code.
+    """
     from mitigate.agents import building
     from mitigate.shipping.export import WALKS, Walks
 

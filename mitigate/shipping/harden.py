@@ -307,7 +307,7 @@ def harden(
 
 
 class _Training:
-    """Training episodes, from a list or from seeds that the comparison does not use."""
+    """Episodes for training, from a list or from seeds that the comparison does not use."""
 
     def __init__(self, listed: Iterable[Episode] | None, compared: Sequence[Episode]) -> None:
         self.listed = None if listed is None else episode_list("training", listed)

@@ -97,7 +97,10 @@ class Decide(nn.Module):
 
 
 class Stored(nn.Module):
-    """Stores the tensors that ``network`` uses, as float16 where this loses no precision."""
+    """Wrapper around ``network`` that stores a tensor as float16 if this loses no precision.
+
+    Only tensors that the network uses are stored.
+    """
 
     def __init__(self, network: nn.Module, inputs: tuple[Tensor, ...]) -> None:
         super().__init__()
@@ -233,14 +236,20 @@ def difference(one: dict[str, Tensor], two: dict[str, Tensor]) -> float:
 def latency(kinds: dict[str, dict[str, Any]], agent: TopologicalAgent, size: int) -> dict[str, Any]:
     """Measure the milliseconds per call of each network.
 
-    Calls alternate between the variants of the networks in ``kinds``, such as ``{"eager":
-    networks(agent), "exported": ...}``. Each call to ``perceive`` processes one panorama. Each call
-    to ``decide`` makes one decision among three nodes and four ghosts.
+    Calls alternate between the variants of the networks, such as eager and exported. Each call to
+    ``perceive`` processes one panorama. Each call to ``decide`` makes one decision among three
+    nodes and four ghosts.
+
+    Args:
+        kinds: maps the name of a variant to its two networks, such as ``{"eager": networks(agent),
+            "exported": ...}``.
+        agent: the agent, for the probe.
+        size: width of the views in pixels.
 
     Returns:
-        Two measurements for each variant of each network: "wall", the wall time of the fastest of
-        ``TIMED`` calls, and "cpu", the median CPU time over all threads of this process, which
-        other programs on the machine affect less.
+        Two measurements for each variant of each network. "wall" is the wall time of the fastest of
+        ``TIMED`` calls. "cpu" is the median CPU time over all threads of this process. Other
+        programs on the machine affect the CPU time less than the wall time.
     """
     inputs_by_name = probe(agent, size)
     single = {n: t if n == "views" else t[:1] for n, t in inputs_by_name.items()}
@@ -297,7 +306,10 @@ def _used(network: nn.Module, inputs: tuple[Tensor, ...]) -> list[str]:
 
 
 def _drop_type_checks(program: ExportedProgram) -> None:
-    """Remove the checks of tensor types, of which a program has over 100 and none can fail."""
+    """Remove the checks of tensor types from the exported ``program``.
+
+    A program contains more than a hundred of these checks, and none of them can fail.
+    """
     graph = program.graph_module.graph
     for node in list(graph.nodes):
         if node.target is torch.ops.aten._assert_tensor_metadata.default:
@@ -306,7 +318,10 @@ def _drop_type_checks(program: ExportedProgram) -> None:
 
 
 def _free(shape: str) -> dict[int, Any]:
-    """Return the dynamic dimensions of a shape in :data:`INPUTS`: those with capital letters."""
+    """Return the dynamic dimensions of a shape in :data:`INPUTS`.
+
+    Dynamic dimensions are named by single letters or by sums that contain letters.
+    """
     free: dict[int, Any] = {}
     for place, name in enumerate(shape.strip("[]").split(", ")):
         if "+" in name:

@@ -65,7 +65,11 @@ for _primary in ("table1", "table2"):
 
 
 def read_options(cfg: DictConfig) -> TablesConfig:
-    """Return the composed options of a table as typed data."""
+    """Return the composed options of a table as typed data.
+
+    Raises:
+        ValueError: If an entry refers to a missing entry.
+    """
     config: TablesConfig = conf.typed(cfg, "table2")
     config.suite = open_entries(SuiteConfig, config.suite)
     return config
@@ -83,7 +87,10 @@ class Cell:
 
     @property
     def trains(self) -> bool:
-        """Whether the agent is trained; otherwise, the options name existing weights."""
+        """Whether the agent is trained.
+
+        If the agent is not trained, the options name existing weights.
+        """
         return any(option.startswith("recipe=") for option in self.options)
 
     @property
@@ -111,11 +118,18 @@ class Cell:
         return self.evaluation_folder("")
 
     def evaluation_folder(self, name: str) -> Path:
-        """Return the folder for the rows of the evaluation ``name`` ("": the main evaluation)."""
+        """Return the folder for the rows of the evaluation ``name``.
+
+        "" is the name of the main evaluation.
+        """
         return self.folder / (f"evaluation-{name}" if name else "evaluation")
 
     def commands(self, config: TablesConfig) -> list[tuple[str, list[str]]]:
-        """Return the programs that compute the cell, as (title, arguments after ``python -m``)."""
+        """Return the programs that compute the cell.
+
+        Each program is a pair (title, arguments after ``python -m``). The title is "train",
+        "evaluate" or "evaluate NAME".
+        """
         commands = []
         if self.trains:
             commands.append(("train", ["mitigate.train", *self.training]))
@@ -126,7 +140,11 @@ class Cell:
         return commands
 
     def measurement(self, config: TablesConfig, name: str, options: Sequence[str]) -> list[str]:
-        """Return all options of the evaluation ``name``; ``options`` override the table's."""
+        """Return all options for this cell's evaluation ``name``.
+
+        ``options`` extend or override the options of the table. The number of episodes is at most
+        ``config.episodes``.
+        """
         return [
             f"name={self.column}",
             *self.agent,  # the agent's options may set another name
@@ -180,7 +198,10 @@ def _at_most(most: int | None, option: str) -> str:
 
 
 def cells(config: TablesConfig) -> list[Cell]:
-    """Return all cells, those of the first seed first, so that an early table has every column."""
+    """Return all cells of the table, ordered by seed.
+
+    The cells of the first seed come first, so even an unfinished table has every column.
+    """
     columns = listed(config.columns, "columns")
     if not config.seeds or not columns or config.jobs < 1:
         raise ValueError(
@@ -198,7 +219,7 @@ def cells(config: TablesConfig) -> list[Cell]:
 def listed(entries: Mapping[str, Any], place: str) -> dict[str, tuple[str, ...]]:
     """Return the options of each entry of ``columns`` or ``evaluations``; skip null entries.
 
-    Raises ValueError for an entry that is not a list of options, or a password in an address.
+    Raises ValueError if an entry is not a list of options, or if an address contains a password.
     """
     lists = {str(name): options for name, options in entries.items() if options is not None}
     for name, options in lists.items():
@@ -219,8 +240,9 @@ def measured(config: TablesConfig) -> list[str]:
 def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
     """Check the options of a table before any cell runs.
 
-    Raises ValueError for a repeated seed, an option, split or condition that does not exist, or a
-    cell's folder with rows of a different agent.
+    Raises:
+        ValueError: If a seed is repeated, or if an option, a split or a condition does not exist.
+            It is also raised if the folder of a cell contains rows of a different agent.
     """
     from mitigate.training import plan  # brings torch
 
@@ -255,7 +277,11 @@ def check(table_cells: Sequence[Cell], config: TablesConfig) -> None:
 
 
 def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> None:
-    """Raise ValueError for options that the table itself sets."""
+    """Raise ValueError for options that the table itself sets.
+
+    Such an option would have no effect, change the agent of the rows, or write the rows to a folder
+    that the table does not read.
+    """
     for option in options:
         key = option.lstrip("+~").partition("=")[0]
         whole = "evaluation" if key.startswith("evaluation.") else key
@@ -264,7 +290,10 @@ def _check_own(options: Sequence[str], reserved: Sequence[str], why: str) -> Non
 
 
 def evaluation_of(options: Sequence[str]) -> EvaluateConfig:
-    """Return the typed options of an evaluation, with the kind of agent that the weights name."""
+    """Return the typed options of an evaluation.
+
+    The kind of agent is read from the weights.
+    """
     from mitigate.agents.building import with_kind  # brings torch
 
     return evaluate_options.read(conf.composed("evaluate", with_kind(options)))

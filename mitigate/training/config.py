@@ -132,7 +132,10 @@ class TrainConfig:
 
     @property
     def has_base(self) -> bool:
-        """Whether the agent is also evaluated with its initial weights, which cover all parts."""
+        """Whether the initial weights cover all parts of the agent.
+
+        In that case, the agent is also evaluated with its initial weights.
+        """
         return bool(self.init and not self.init_parts)
 
 
@@ -144,7 +147,11 @@ OmegaConf.register_new_resolver("either", lambda a, b: b if a is None else a, re
 
 
 def read(cfg: DictConfig) -> TrainConfig:
-    """Return the composed options of a training run as typed data, including its folder."""
+    """Return the composed options of a training run as typed data, including its folder.
+
+    Raises:
+        ValueError: If an entry refers to a missing entry.
+    """
     cfg = cfg.copy()
     # the folder is set first, because other entries refer to it
     cfg.folder = cfg.folder or default_folder(cfg)

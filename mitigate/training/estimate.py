@@ -59,7 +59,11 @@ def _steps(config: TrainConfig) -> dict[str, int]:
 
 
 def _episodes(config: TrainConfig) -> int:
-    """Return the number of evaluated episodes (approximately, if the number is not set)."""
+    """Return how many episodes are run after training.
+
+    If the number of episodes is not set, ``EPISODES`` is assumed. For other kinds of report, the
+    result is 0.
+    """
     if not config.evaluation.enabled or config.report != REPORT:
         return 0
     count = config.evaluation.episodes or EPISODES

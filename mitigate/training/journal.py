@@ -66,7 +66,12 @@ class Journal:
         self._progress.advance()
 
     def means(self, step: int, **values: float) -> None:
-        """Log the means of collected values, additional ``values``, and the steps per second."""
+        """Log the means of collected values, additional ``values``, and the steps per second.
+
+        Args:
+            step: number of updates so far.
+            values: additional values, which are not averaged.
+        """
         means = {name: sum(items) / len(items) for name, items in self._values.items()}
         before, then = self._since
         pace = (self._progress.done - before) / max(1e-9, time.monotonic() - then)

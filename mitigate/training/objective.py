@@ -238,10 +238,13 @@ def do(objective: Objective, job: Any) -> Any:
 def accumulate(
     objective: Objective, batch: dict[str, Any], kind: str, device: torch.device
 ) -> dict[str, Tensor]:
-    """Run the forward pass in precision ``kind`` and the backward pass for each part of ``batch``.
+    """Run the forward pass and the backward pass for each part of ``batch``.
 
-    If the loss of a part is not finite, no gradient is computed for that part. Returns the sums of
-    the values that ``forward`` returned.
+    The forward pass is computed in the precision ``kind``. If the loss of a part is not finite, no
+    gradient is computed for that part.
+
+    Returns:
+        The values that ``forward`` returned, summed over the parts.
     """
     values: dict[str, Tensor] = {}
     for part in objective.micro_batches(batch):
@@ -291,8 +294,9 @@ class ObjectiveSpec:
     def of(cls, recipe: Mapping[str, Any]) -> ObjectiveSpec:
         """Split the arguments in a stage's ``recipe`` node between the two constructors.
 
-        Raises ValueError if neither constructor declares an argument, or if the class is not an
-        objective or accepts no agent.
+        Raises:
+            ValueError: If neither constructor declares an argument, or if the class is not an
+                objective or accepts no agent.
         """
         target = str(recipe["_target_"])
         kind = locate(target)
@@ -310,9 +314,13 @@ class ObjectiveSpec:
         return cls(target, objective_arguments, source_arguments if parameter else None, parameter)
 
     def build(self, agent: nn.Module) -> Objective:
-        """Build the objective for ``agent``; it chooses which parameters are trained.
+        """Build the objective for ``agent``.
 
-        Raises ValueError if the target does not build an objective, or if its constructor does.
+        The objective chooses which parameters are trained.
+
+        Raises:
+            ValueError: If the target does not build an objective, or if its constructor raises
+                ValueError.
         """
         for parameter in agent.parameters():
             # integer parameters, such as 8-bit weights, cannot be trained
@@ -331,9 +339,10 @@ class ObjectiveSpec:
 def split_arguments(
     kind: Any, parameter: str, arguments: Mapping[str, Any], target: str
 ) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the arguments of the objective ``kind`` and of its source; both may take the same one.
+    """Return the arguments of the objective ``kind`` and the arguments of its source.
 
-    Raises ValueError for an argument that neither constructor declares.
+    An argument that both constructors declare is in both of the returned dicts. Raises ValueError
+    for an argument that neither of them declares.
     """
     names, is_open = _parameters(kind)
     source_names, source_open = _parameters(kind.sources[parameter]) if parameter else ((), False)
@@ -361,7 +370,10 @@ def _parameters(kind: Any) -> tuple[tuple[str, ...], bool]:
 
 
 def _source_of(kind: Any, arguments: Container[str]) -> str:
-    """Return the parameter of ``kind`` that takes the source; "" without one, or if it is set."""
+    """Return the name of the parameter of ``kind`` that takes the data source.
+
+    Returns "" if there is no such parameter or if ``arguments`` already sets it.
+    """
     if not is_objective(kind):
         return ""
     names, _ = _parameters(kind)
@@ -369,7 +381,10 @@ def _source_of(kind: Any, arguments: Container[str]) -> str:
 
 
 def is_objective(kind: Any) -> bool:
-    """Return whether ``kind`` is a subclass of Objective, and not a function that builds one."""
+    """Return whether ``kind`` is a subclass of Objective.
+
+    For a function that builds an objective, the result is False.
+    """
     return isinstance(kind, type) and issubclass(kind, Objective)
 
 
@@ -399,7 +414,10 @@ def check_counts(**counts: int) -> None:
 
 
 def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
-    """Divide ``count`` items evenly: return jobs (step, index, number of jobs, number of items)."""
+    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
+
+    Each job is a tuple (step, index of the job, number of jobs, number of items).
+    """
     parts = np.array_split(np.arange(count), pieces)
     return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
 

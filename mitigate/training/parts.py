@@ -38,12 +38,17 @@ def policy_parts(agent: Any) -> list[str]:
 def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
     """Freeze every parameter of ``agent`` outside ``parts``.
 
-    Parts are names from ``agent.parts()``; "policy" means all except the encoders, and None means
-    all. Adapters are trained only if "adapters" is one of the parts.
+    Adapters are trained only if "adapters" is one of the parts.
 
-    Raises ValueError if a part is unknown, if a parameter belongs to no part, or if the agent is
-    not trainable. It is also raised if adapters with gates would be trained, because gates cannot
-    be trained on episodes.
+    Args:
+        agent: the agent.
+        parts: names from ``agent.parts()``; "policy" means all parts except the encoders. If it is
+            None, all parts are selected.
+
+    Raises:
+        ValueError: If a part is unknown, if a parameter belongs to no part, or if the agent is not
+            trainable. It is also raised if adapters with gates are to be trained, because gates
+            cannot be trained on episodes.
     """
     if not isinstance(agent, Trainable):
         absent = missing_members(agent, TRAINABLE)
@@ -74,7 +79,10 @@ def train_only(agent: nn.Module, parts: Iterable[str] | str | None) -> None:
 
 
 def refuse_gates(module: nn.Module) -> None:
-    """Raise ValueError if adapters of ``module`` have a gate, which needs pairs of views."""
+    """Raise ValueError if adapters of ``module`` have a gate.
+
+    Gates can be trained only on pairs of corrupted and clean views (``recipes/adapt.py``).
+    """
     if any(isinstance(adapter, FrameGate) for adapter in adapters_of(module)):
         raise ValueError(
             "This recipe cannot train the gates of agent.adapters.gates. Leave them out, or choose "
@@ -96,9 +104,13 @@ def freeze(agent: nn.Module) -> None:
 def hold_statistics(module: nn.Module, around: Sequence[nn.Parameter] = ()) -> None:
     """Set eval mode for the frozen BatchNorm layers in ``module``.
 
-    In training mode, every batch would change their running statistics. A layer without weights
-    counts as frozen if all weights of the nearest enclosing module that has weights (``around``)
-    are frozen. Adapters are ignored.
+    In training mode, every batch would change their running statistics, although no weight is
+    trained. A normalisation layer may have no weights. Such a layer counts as frozen if all weights
+    of the nearest enclosing module that has weights are frozen. Adapters are ignored.
+
+    Args:
+        module: the module.
+        around: weights of the enclosing module, which decide if ``module`` has no weights.
     """
     weights = [p for name, p in module.named_parameters() if checkpoint.ADAPTER not in f".{name}"]
     around = weights or around
@@ -115,8 +127,12 @@ def load_teacher(agent: nn.Module, weights: str | None) -> nn.Module:
 
     Args:
         agent: the agent.
-        weights: a file or folder of complete weights that fit the agent, or "start" for the
-            current weights. Others raise ValueError or FileNotFoundError.
+        weights: a file or folder with the weights of the teacher, or "start" for the current
+            weights.
+
+    Raises:
+        ValueError: If the weights contain only adapters, or do not match the agent.
+        FileNotFoundError: If the weights do not exist.
     """
     if weights is None:
         raise ValueError(

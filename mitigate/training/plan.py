@@ -113,9 +113,12 @@ def _target_of(stage: StageConfig) -> str:
 def plan(config: TrainConfig, ranks: Ranks) -> Plan:
     """Plan a training run from options that :func:`check` has accepted.
 
-    Print a line for each decision that a user may not expect. Raises ValueError if the options, the
-    recipe, the agent, the world and the folder do not fit each other, and FileNotFoundError if
-    weights are missing.
+    Print a line for each decision that a user may not expect.
+
+    Raises:
+        ValueError: If the options, the recipe, the agent, the world and the folder are not
+            compatible with each other.
+        FileNotFoundError: If weights are missing.
     """
     config = copy.deepcopy(config)
     folder = Path(config.folder or "")
@@ -174,7 +177,9 @@ def _contains(node: Any, target: str) -> bool:
 def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     """Replace each stage that would train no part of ``agent`` with None, and print its name.
 
-    Raises ValueError if no stage is left, unless ``agent.blind`` is to be evaluated.
+    Raises:
+        ValueError: If no stage is left. If ``agent.blind`` is set and evaluation is enabled, there
+            is no error and the agent is only evaluated.
     """
     for name, stage in config.active_stages.items():
         reason = nothing_to_train(stage.recipe, agent)
@@ -194,7 +199,10 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
-    """Return why a stage would train nothing in this kind of agent, or None."""
+    """Return why a stage would train nothing in this kind of agent, or None if it trains something.
+
+    Possible reasons: the agent lacks the sensor, stores no features, or can only train encoders.
+    """
     sensor = recipe.get("modality")
     kind = type(agent).__name__
     encoders = as_agent(agent).encoders
@@ -208,7 +216,11 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
-    """Leave out stages on random poses that the agent or the world lacks, if others remain."""
+    """Leave out stages on random poses that the agent or the world does not support.
+
+    If no other stage can train the agent, these stages are kept, and :func:`plan_stages` rejects
+    them.
+    """
     kinds = {name: locate(_target_of(stage)) for name, stage in config.active_stages.items()}
     views = [name for name, kind in kinds.items() if is_objective(kind) and kind.needs == SEEING]
     others = [kind for name, kind in kinds.items() if name not in views]
@@ -229,7 +241,10 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def keep_cameras(config: TrainConfig) -> None:
-    """Set ``camera_share`` to 0 in stages whose world cannot displace its camera; print them."""
+    """Set ``camera_share`` to 0 in stages whose world cannot render a displaced camera.
+
+    The names of these stages are printed.
+    """
     for name, stage in config.active_stages.items():
         if not stage.recipe.get("camera_share"):
             continue
@@ -243,7 +258,10 @@ def keep_cameras(config: TrainConfig) -> None:
 
 
 def _misfit(kind: Any, agent: nn.Module) -> str:
-    """Return why an objective cannot train ``agent``, or "" (also for a function)."""
+    """Return why an objective cannot train ``agent``, or "" if it can.
+
+    If ``kind`` is not a class, the result is "".
+    """
     return str(kind.misfit(agent)) if is_objective(kind) else ""
 
 
@@ -260,9 +278,12 @@ def warn_warmup(config: TrainConfig) -> None:
 
 
 def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
-    """Remove and print corruptions of sensors that ``agent`` does not read.
+    """Remove corruptions from the stages' schedules if ``agent`` does not read their sensors.
 
-    Raises ValueError if a schedule would contain no corruptions after the removal.
+    Such corruptions would leave the agent's frames clean. The removed corruptions are printed.
+
+    Raises:
+        ValueError: If a schedule would contain no corruptions after the removal.
     """
     declared = as_agent(agent).sensors
     sensors = (RGB, DEPTH) if declared is None else declared
@@ -292,7 +313,12 @@ def drop_unread_corruptions(config: TrainConfig, agent: nn.Module) -> None:
 
 
 def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[StagePlan]:
-    """Return the stages that will run. Raises ValueError if one of them cannot train ``agent``."""
+    """Return the stages that will run.
+
+    Raises:
+        ValueError: If a stage cannot train ``agent``, or if :meth:`ObjectiveSpec.of` raises
+            ValueError.
+    """
     stages = []
     for name, stage in config.active_stages.items():
         objective = ObjectiveSpec.of(stage.recipe)
@@ -327,7 +353,13 @@ def _check_settings(node: Mapping[str, Any], agent: nn.Module) -> None:
 
 
 def check_fit(config: TrainConfig, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Raise ValueError if the world, the folder, the stages or the ranks do not fit the agent."""
+    """Check before the first step that the world, the folder and the stages fit the agent.
+
+    Raises:
+        ValueError: If the number of views differs between the world and the agent, or if the folder
+            contains a different run. It is also raised if there are more ``ranks`` than pieces of
+            work per step.
+    """
     contract = as_agent(agent)
     if contract.views is not None or contract.sensors is not None:
         check_fits(agent, maker(config.env.world)().sensors, config.env.name)
@@ -359,10 +391,15 @@ def check_folder(config: TrainConfig, stages: list[StagePlan]) -> None:
 
 
 def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ranks) -> None:
-    """Build the objectives of all stages on a copy of ``agent``, to find mistakes before the first.
+    """Build the objectives of all stages on a copy of ``agent``.
 
-    The check stops at an objective that a user wrote, because it is unknown how it changes the
-    agent. Raises ValueError for too many ``ranks``, and the errors of the objectives.
+    This finds a mistake in a later stage before the first stage is trained. The check stops at an
+    objective that a user wrote, because it is unknown how such an objective changes the agent.
+
+    Raises:
+        ValueError: If there are more ``ranks`` than work items per step, or if an objective
+            raises ValueError.
+        FileNotFoundError: If an objective raises FileNotFoundError.
     """
     if len(stages) < 2 and ranks.count == 1:  # a single stage is built immediately after this check
         return
@@ -383,8 +420,9 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
 def agent_config(node: Mapping[str, Any], agent: nn.Module) -> dict[str, Any]:
     """Return the config that is saved together with the weights of ``agent``.
 
-    It contains the agent's ``settings()``, such as its vocabulary, but not the class names of the
-    agent's parts: the program that loads the agent takes these from its own config.
+    The config contains the agent's ``settings()``, such as its vocabulary. It does not contain the
+    class names of the agent's parts, because the program that loads the agent takes these names
+    from its own config.
     """
 
     def data(value: Any) -> Any:

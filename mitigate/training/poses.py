@@ -86,9 +86,14 @@ class Poses(DrawsBySuccess):
         self._last: np.ndarray | None = None
 
     def learn(self, label: str, every: int) -> None:
-        """Choose the ground truth ``label`` as targets, and every ``every``-th view of a panorama.
+        """Choose which targets and views later batches contain.
 
-        Without this call, targets are empty. Every second view is useful: neighbours overlap.
+        Without this call, targets are empty.
+
+        Args:
+            label: ground-truth entry of the world to use as targets.
+            every: use every n-th view of a panorama. The value 2 is useful because neighbouring
+                views overlap.
         """
         self.label = label
         self.every = every
@@ -126,6 +131,11 @@ class Poses(DrawsBySuccess):
         return -(-self.panoramas // PIECE)
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
+        """Return the jobs of a step (:meth:`divide`).
+
+        If the schedule needs success rates but has none, they are measured with ``workers``
+        processes.
+        """
         return self.divide(step, self.panoramas, self.pieces, workers)
 
     def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
@@ -184,7 +194,10 @@ class Poses(DrawsBySuccess):
     def _put(
         self, xy: np.ndarray, heading: float, views: list[int] | None, key: Key
     ) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray], Mapping[str, np.ndarray]]:
-        """Return frames of the undisplaced and the possibly displaced camera, and the labels."""
+        """Return the frames of two cameras, and the labels.
+
+        The first camera is not displaced. The second camera may be displaced.
+        """
         rgb = self.sensor == RGB
         clean, truth = self.placed.put(xy, heading, views=views, rgb=rgb)
         if uniform(digest(key, "camera_share")) >= self.camera_share:
@@ -210,5 +223,8 @@ class OnViews(OnSource):
         return self.poses.collate(pieces)
 
     def weight(self, batch: dict[str, Any]) -> float:
-        """Return the number of panoramas (of views, with a single camera) in the batch."""
+        """Return the number of panoramas in the batch.
+
+        With a single camera, this is the number of views.
+        """
         return float(len(batch["frames"]))

@@ -36,7 +36,10 @@ class Ranks:
 
     @classmethod
     def of_environment(cls) -> Ranks:
-        """Read the rank that torchrun has set; without torchrun, it is the only one."""
+        """Return the rank that torchrun's environment variables describe.
+
+        If they are not set, return a single rank.
+        """
         return cls(int(os.environ.get("RANK", 0)), int(os.environ.get("WORLD_SIZE", 1)))
 
     def __enter__(self) -> Ranks:

@@ -24,7 +24,7 @@ GROUP = 12
 
 
 class PosePairs(Poses):
-    """Source of corrupted and clean panoramas, or single views, at random poses."""
+    """Source of corrupted and clean panoramas, or single views, at random poses (``poses.py``)."""
 
     ring = False  # whether the views of a time step form a panorama
 
@@ -43,8 +43,9 @@ class PosePairs(Poses):
 
 @dataclass(eq=False, repr=False)
 class FramePairs:
-    """Source of corrupted and clean frames from a folder (``encoders/sources.py``). Each frame is
-    corrupted as a separate time step.
+    """Source of corrupted and clean frames from a folder (``encoders/sources.py``).
+
+    Each frame is corrupted as a separate time step.
     """
 
     source: Source
@@ -72,7 +73,10 @@ class FramePairs:
         return {"frames_sha256": self.frames.sha256()}
 
     def __getstate__(self) -> dict[str, Any]:
-        """Leave out the frames: workers receive only those of their jobs."""
+        """Return the state to pickle, without the frames.
+
+        Workers receive only the frames of their jobs.
+        """
         return {**self.__dict__, "frames": None}
 
     def jobs(self, step: int) -> list[tuple[int, int, Frames]]:
@@ -129,7 +133,10 @@ def pairs_of(
 
 
 def with_clean_share(pairs: Pairs, share: float) -> Pairs:
-    """Return a copy of ``pairs``, not started yet, in which ``share`` of the frames stays clean."""
+    """Return a copy of ``pairs`` in which a fraction ``share`` of the frames stays clean.
+
+    Call this function before ``start``.
+    """
     copied = copy.copy(pairs)
     copied.schedule = replace(pairs.schedule, clean_share=share)
     return copied

@@ -66,7 +66,10 @@ class Rollouts(DrawsBySuccess):
         self.picture: np.ndarray | None = None
 
     def keep_clean(self, *teachers: Any) -> None:
-        """Also keep clean observations, from which ``teachers`` compute features in advance."""
+        """Also keep the clean observations.
+
+        From these, ``teachers`` compute their fixed features in advance.
+        """
         self.clean = True
         self.teachers = teachers
 
@@ -81,6 +84,11 @@ class Rollouts(DrawsBySuccess):
         return dict(getattr(self.training, "identity", dict)())
 
     def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
+        """Return the jobs of a step (:meth:`divide`).
+
+        If the schedule needs success rates, they are measured with ``workers`` processes at the
+        first step and every ``refresh_every`` steps.
+        """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
         return self.divide(step, self.episodes, self.pieces, workers, due)
 

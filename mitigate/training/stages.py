@@ -48,7 +48,10 @@ def run_plan(plan: Plan, ranks: Ranks) -> Path:
 def train_stage(
     plan: Plan, stage: StagePlan, agent: nn.Module, workers: Workers | None, ranks: Ranks
 ) -> str:
-    """Train ``agent`` in one stage, or load its result if it is finished; return the precision."""
+    """Train ``agent`` in place in one stage, and return the precision that was used ("fp32", ...).
+
+    If a stage is already finished, its result is loaded from its folder.
+    """
     seed = plan.config.seed
     seeding.seed_everything(seed, "stage", stage.name)
     start = checkpoint.weights_sha(agent)

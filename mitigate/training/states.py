@@ -45,7 +45,8 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
     """Write ``state`` as ``step-<state["step"]>.pt`` and delete older checkpoints.
 
     Of the checkpoints up to this step, only the newest ``keep`` are retained. Checkpoints of later
-    steps are damaged ones, from which the run did not resume; they are not deleted.
+    steps can exist only if they are damaged and the run has resumed from an earlier one. They are
+    not deleted.
     """
     assert set(REQUIRED) <= {"format", *state}, f"state lacks {set(REQUIRED) - set(state)}"
     path = Path(folder) / f"step-{state['step']:08d}.pt"
@@ -60,8 +61,11 @@ def save(folder: Path, state: dict[str, Any], *, keep: int = 2) -> Path:
 def load(path: Path) -> dict[str, Any]:
     """Return the state that is stored in ``path``, with tensors on the CPU.
 
-    Raises FileNotFoundError if the file is missing, Damaged if it is truncated or its bytes have
-    changed, and ValueError if it is not a checkpoint of this trainer or cannot be read.
+    Raises:
+        FileNotFoundError: If the file is missing.
+        Damaged: If the file is truncated or its bytes have changed.
+        ValueError: If the file is not a checkpoint of this trainer, or if it is intact but cannot
+            be read.
     """
     path = Path(path)
     if not path.is_file():
@@ -130,7 +134,10 @@ def differences(old: Any, new: Any, path: str = "") -> list[str]:
 def check_same(
     folder: Path, old: dict[str, Any], new: dict[str, Any], advice: str = OTHER_FOLDER
 ) -> None:
-    """Raise ValueError, with ``advice``, if the run in ``folder`` has another config."""
+    """Raise ValueError if the run in ``folder`` has a config (``old``) that differs from ``new``.
+
+    The message ends with ``advice``.
+    """
     different = differences(old, new)
     if different:
         raise ValueError(

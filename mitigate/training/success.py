@@ -30,10 +30,14 @@ class DrawsBySuccess:
     def divide(
         self, step: int, count: int, pieces: int, workers: int | None, due: bool = False
     ) -> list[tuple]:
-        """Return jobs (step, index, number of jobs, number of items, state of the schedule).
+        """Divide ``count`` items of a step evenly among ``pieces`` jobs.
 
-        If the schedule lacks success rates, or if new ones are ``due``, ``workers`` processes
-        measure them.
+        If the schedule samples by success rate, the rates are first measured with ``workers``
+        processes. They are measured only if there are none yet, or if new ones are ``due``.
+
+        Returns:
+            One tuple per job: (step, index of the job, number of jobs, number of items, state of
+            the schedule).
         """
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
@@ -44,9 +48,13 @@ class DrawsBySuccess:
         """Measure the success rate under every corruption, and update the schedule.
 
         The same training episodes, which are sampled from (seed, step), are run under every
-        corruption. The agent is in training mode afterwards. The rates do not depend on
-        ``workers``, the number of processes: with 0, only this process is used; None means one
-        process per core if that saves time, but only this process if the agent is on a GPU.
+        corruption. The agent is in training mode afterwards.
+
+        Args:
+            step: training step.
+            workers: number of processes, which does not affect the rates; with 0, only this process
+                is used. None means one process per core if that saves time, but only this process
+                if the agent is on a GPU.
         """
         rng = generator(self.seed, "refresh", step)
         episodes = [self.training.draw(rng, (0, 1)) for _ in range(self.refresh_episodes)]
@@ -72,7 +80,10 @@ class DrawsBySuccess:
 
 
 def refuse(schedule: Schedule | None) -> None:
-    """Raise ValueError if ``schedule`` needs success rates, which the calling recipe lacks."""
+    """Raise ValueError if ``schedule`` samples by success rate.
+
+    The recipe that calls this function measures no success rates.
+    """
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(
             "schedule=success_distributed needs success rates, which this recipe does not measure. "

@@ -51,7 +51,10 @@ OWN = re.compile(r"(command|runs|jobs|launcher(\.[\w.]+)?)=")
 def run_all(config: SweepConfig, options: Sequence[str]) -> None:
     """Run every combination of ``options``, then write and print the table of ``config.runs``.
 
-    Raises ValueError for an unknown option before anything runs, and for failed runs at the end.
+    Raises:
+        ValueError: If an option is unknown, or if runs failed. An unknown option is reported before
+            anything runs. Failed runs are reported after all other runs are finished and the table
+            is written.
     """
     if config.command not in COMMANDS:
         raise ValueError(unknown("command", config.command, COMMANDS))
@@ -80,7 +83,13 @@ def run_all(config: SweepConfig, options: Sequence[str]) -> None:
 def run_chains(
     title: str, unit: str, chains: Sequence[programs.Chain], jobs: int, place: Any
 ) -> list[str]:
-    """Run and report ``chains`` on the launcher ``place``; return one line per failed chain."""
+    """Run ``chains`` on the machines of the launcher ``place``, at most ``jobs`` at a time.
+
+    Print a line for each chain of programs that has ended.
+
+    Returns:
+        A list with one line for each chain of programs that failed.
+    """
     problems = []
     with Progress(title, len(chains), unit=unit) as progress:
 
@@ -106,7 +115,10 @@ def _check_own(options: Sequence[str]) -> None:
 
 
 def combinations(options: Sequence[str]) -> list[list[str]]:
-    """Return each combination of values, in Hydra's grammar (``seed=0,1``, ``range(3)``)."""
+    """Return each combination of values, using Hydra's grammar: ``seed=0,1``, ``range(3)``.
+
+    Raises ValueError for an option that Hydra cannot parse.
+    """
     try:
         overrides = OverridesParser.create().parse_overrides(list(options))
     except HydraException as error:
@@ -129,7 +141,11 @@ def _name(options: Sequence[str]) -> str:
 def chain(
     config: SweepConfig, options: Sequence[str], combined: Sequence[Sequence[str]] = ()
 ) -> programs.Chain:
-    """Return the programs of one combination; a digest distinguishes equal names of logs."""
+    """Return the programs of one combination.
+
+    Different combinations may give the same name, for example ``checkpoint=a/b`` and
+    ``checkpoint=a_b``. Then a digest is appended to the name.
+    """
     _, named = without_config_folder(options)
     name = _name(options)
     if len(name) > LONGEST or [*map(_name, combined)].count(name) > 1:
@@ -151,7 +167,10 @@ def chain(
 
 
 def main() -> int:
-    """Run from the command line; without options to combine, print the help and return 2."""
+    """Run from the command line and return the exit status.
+
+    If there are no options to combine, print the help and return 2.
+    """
     words = sys.argv[1:]
     sweep_options = [option for option in words if OWN.match(option)]
     options = [option for option in words if not OWN.match(option)]

@@ -46,9 +46,13 @@ def run(cfg: DictConfig) -> Path:
 def make_table(config: TablesConfig) -> Path:
     """Compute all cells and the report; return the path of the report.
 
-    If ``config.rows`` is set, the report is computed from those rows (FileNotFoundError if they are
-    missing), and no cell is run. Raises ValueError for invalid settings before any cell runs, and
-    for failed cells after the others are finished, with the end of their logs.
+    If ``config.rows`` is set, the report is computed from those rows, and no cell is run.
+
+    Raises:
+        ValueError: If settings are invalid, or if a cell failed. Invalid settings are reported
+            before any cell runs. A failed cell is reported after the others are finished; the
+            message contains the end of its log.
+        FileNotFoundError: If rows are missing.
     """
     out = Path(config.out)
     if config.rows:
@@ -60,7 +64,10 @@ def make_table(config: TablesConfig) -> Path:
 
 
 def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) -> Path:
-    """Compute the cells and write the report into ``out``."""
+    """Compute the cells and write the report into ``out``.
+
+    Raises the same errors as :func:`make_table`.
+    """
     chains = [cell.chain(config) for cell in table_cells]
     for cell in table_cells:
         cell.keep()
@@ -85,7 +92,11 @@ def _make_cells(table_cells: Sequence[Cell], config: TablesConfig, out: Path) ->
 
 
 def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -> Path:
-    """Write ``table.md`` with all tables, and ``overview.md`` with the paper's results."""
+    """Write a report that summarizes the rows found under ``paths``.
+
+    ``table.md`` contains all tables and plots. ``overview.md`` contains short tables that also show
+    the results of the paper.
+    """
     from mitigate.evaluation import report  # imports matplotlib
 
     rows = gather(paths)
@@ -113,7 +124,10 @@ def write_report(config: TablesConfig, out: Path, paths: Sequence[Path | str]) -
 def write_additional_reports(
     table_cells: Sequence[Cell], config: TablesConfig, out: Path
 ) -> list[Path]:
-    """Write ``NAME/table.md`` for each additional evaluation; their episodes may differ."""
+    """Write ``NAME/table.md`` and its pictures for each additional evaluation; return the paths.
+
+    Each evaluation has its own table, because evaluations may use different episodes.
+    """
     from mitigate.evaluation import report  # brings matplotlib
 
     reports = []
@@ -127,8 +141,8 @@ def write_additional_reports(
 def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
     """Plot episodes in which the first column of ``config.walks`` fails and the last succeeds.
 
-    The agents of the first training seed run these episodes again, with the guards of their
-    columns. Nothing is plotted if one of these columns has no cell.
+    These episodes are run again with the agents of the first training seed, each with the guards of
+    its column. Nothing is plotted if one of these columns has no cell.
     """
     from mitigate.evaluation.trajectories import write_pictures  # brings matplotlib
     from mitigate.guards.opening import open_guards
@@ -165,7 +179,10 @@ def draw_walks(config: TablesConfig, out: Path) -> list[Path]:
 
 
 def _named(folder: Path) -> str:
-    """Return the name in a cell's rows (with guards), or without rows the name of its folder."""
+    """Return the agent name in the result rows of a cell. The name includes guards.
+
+    If the cell has no rows, return the name of its folder.
+    """
     rows = _rows(folder / "evaluation")
     return str(rows[0]["name"]) if rows else folder.name.rpartition("-seed")[0]
 

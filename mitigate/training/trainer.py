@@ -39,7 +39,10 @@ FIXED = ("steps", "lr", "weight_decay", "warmup", "grad_clip", "seed", "precisio
 
 
 class LossNotFinite(ValueError):
-    """The loss or its gradient is not finite. The weights are those before that step."""
+    """Raised if the loss or its gradient is not finite.
+
+    The weights are still those before that step.
+    """
 
 
 @dataclass(eq=False, repr=False)
@@ -127,7 +130,9 @@ class Trainer:
         self._finished = False  # whether the newest checkpoint is marked as finished
 
     def fit(self) -> Objective:
-        """Train the objective, from the newest checkpoint if there is one, and return it.
+        """Train the objective and return it.
+
+        If the folder has a checkpoint, resume from the newest one.
 
         Raises:
             LossNotFinite: If the loss, its gradient or the weights are not finite.
@@ -181,7 +186,10 @@ class Trainer:
 
     @contextmanager
     def _save_on_signal(self, done: int, ending: SignalDelay) -> Iterator[None]:
-        """Save the state after ``done`` steps if a signal arrives (unless it is the second one)."""
+        """If a signal interrupts the code in the context, save the state after ``done`` steps.
+
+        A second signal ends the run without saving.
+        """
         try:
             yield
         except Ended:
@@ -250,7 +258,10 @@ class Trainer:
         )
 
     def _evaluate_due(self, done: int, journal: Journal, ending: SignalDelay) -> None:
-        """Evaluate and log figures if they are due after ``done`` steps and no signal arrived."""
+        """Evaluate and log figures if they are due after ``done`` steps.
+
+        Nothing is done if a signal was received.
+        """
         if ending.number is None and self._due(self.eval_every, done):
             self.objective.eval()
             with torch.no_grad():
@@ -326,7 +337,11 @@ class Trainer:
 
 
 def _scheduler(optimizer: AdamW, steps: int, warmup: int) -> LambdaLR:
-    """Return a schedule that rises for ``warmup`` updates, then falls on a cosine to 0."""
+    """Return the schedule of the learning rate.
+
+    The learning rate rises from 0 during ``warmup`` updates. It then follows a cosine, and is 0
+    after ``steps`` updates.
+    """
 
     def factor(step: int) -> float:
         if step < warmup:

@@ -59,13 +59,20 @@ class Workers:
             worker.close()
 
     def take(self, objective: Objective, kind: str) -> None:
-        """Send a copy of ``objective`` to every worker; they compute in the precision ``kind``."""
+        """Send a copy of ``objective`` to every worker.
+
+        The workers compute in the precision ``kind``. Raises ValueError if the objective cannot be
+        pickled.
+        """
         packed = _packed(objective)
         for worker in self._all:
             worker.take(packed, kind)
 
     def send_weights(self, objective: Objective) -> None:
-        """Send the trained weights and all buffers, by value: shared tensors could change."""
+        """Send the current trained weights and all buffers to the workers.
+
+        Weights are sent by value, because shared tensors would change while a worker reads them.
+        """
         trained = {
             name: p.detach().cpu() for name, p in objective.named_parameters() if p.requires_grad
         }
@@ -75,12 +82,18 @@ class Workers:
             worker.renew(weights)
 
     def order(self, jobs: list[Any], turn: int = 0) -> None:
-        """Send ``jobs`` to workers; consecutive values of ``turn`` choose different workers."""
+        """Send ``jobs`` to the workers. Their results are returned by :meth:`receive`.
+
+        If ``turn`` increases by one per call, consecutive calls use different workers.
+        """
         for worker, job in zip(self._of(len(jobs), turn), jobs, strict=True):
             worker.order(job)
 
     def receive(self, count: int, turn: int = 0) -> list[Any]:
-        """Return the results of the next ``count`` jobs, in the order of :meth:`order`."""
+        """Return the results of the next ``count`` jobs, in the order in which they were sent.
+
+        Raises WorkersDied, or the error of a job.
+        """
         return [worker.receive() for worker in self._of(count, turn)]
 
     def _of(self, jobs: int, turn: int) -> list[_Worker]:
@@ -90,7 +103,10 @@ class Workers:
 
 
 class _Worker:
-    """One worker process, and its pending jobs with the weights that each of them needs."""
+    """One worker process and its pending jobs.
+
+    Each pending job is stored with the weights that it needs.
+    """
 
     def __init__(self, number: int) -> None:
         self.number = number
@@ -224,9 +240,10 @@ def _work(connection: Connection, messages: SimpleQueue) -> None:
 
 
 def _listen(connection: Connection, messages: SimpleQueue) -> None:
-    """Queue the parent's messages, and None at the end of the connection.
+    """Receive messages from the parent in a thread, and put them into the queue.
 
-    The thread prevents a deadlock: the parent may send weights while the worker sends a result.
+    When the connection ends, None is put into the queue. The thread prevents a deadlock: the parent
+    may send weights while the worker sends a result.
     """
     try:
         while True:

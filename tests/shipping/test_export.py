@@ -237,6 +237,7 @@ def test_card_describes_the_agent_and_lists_every_file(place):
     assert f"weights is `{after}` (`{before}` before rounding)." in text
     assert f"Result rows name this agent `{ROWS}`." in text
     assert "Clean SR | 0.750 [" in text and "spatter" in text.lower()
+    assert f'mitigate.load_hardened("{folder}")' in text
     for kind in ("eager", "exported"):
         for name in ("perceive", "decide"):
             assert card["latency_ms"][kind][name]["cpu"] > 0
@@ -673,10 +674,14 @@ def test_readme_states_what_is_known_of_the_commit(place):
     card = loading.read_card(place / "hardened/whole")
     end = f"Exported at commit `{card['commit']}`"
     assert "uncommitted" in card
-    assert f"{end}." in cards.readme(card | {"uncommitted": False})
-    assert f"{end}, with uncommitted changes." in cards.readme(card | {"uncommitted": True})
-    assert f"{end}." in cards.readme({n: v for n, v in card.items() if n != "uncommitted"})
-    assert "commit" not in cards.readme(card | {"commit": None}).partition("## ")[0]
+
+    def text_of(card: dict) -> str:
+        return cards.readme(card, "hardened/whole")
+
+    assert f"{end}." in text_of(card | {"uncommitted": False})
+    assert f"{end}, with uncommitted changes." in text_of(card | {"uncommitted": True})
+    assert f"{end}." in text_of({n: v for n, v in card.items() if n != "uncommitted"})
+    assert "commit" not in text_of(card | {"commit": None}).partition("## ")[0]
 
 
 def test_missing_teacher_is_reported(place, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 from pathlib import Path
 
@@ -39,7 +40,8 @@ def test_shipped_folder_is_a_model_repository(folder):
     assert clean.metric_value == entry["clean"]["SR"][0] and clean.dataset_split == "val_unseen"
     assert clean.dataset_args["episodes"] in (100, 300) and clean.metric_args["level"] == 0.95
     assert loaded.text.strip().startswith(f"# {card['name']}")
-    assert (folder / "README.md").read_text(encoding="utf-8") == readme(card)
+    path = f"checkpoints/hardened/{folder.name}"
+    assert (folder / "README.md").read_text(encoding="utf-8") == readme(card, path)
 
 
 @pytest.mark.parametrize("folder", SHIPPED, ids=lambda folder: folder.name)
@@ -73,8 +75,17 @@ def test_text_stays_one_string_for_current_yaml_readers(name):
     assert f"name: '{name}'\n" in text and ModelCard(text).data.model_name == name
 
 
+@pytest.mark.parametrize("path", ["checkpoints/topological_imagenet", 'my "own"/Größe\\agent'])
+def test_readme_shows_the_path_of_the_folder(path):
+    text = readme(card_of(SHIPPED[0]), path)
+    (line,) = (line for line in text.splitlines() if line.startswith("agent = "))
+    (argument,) = ast.parse(line).body[0].value.args
+    assert argument.value == path
+    assert "checkpoints/hardened" not in text.partition("## Use")[2]
+
+
 def test_page_shows_words_of_rows_unchanged():
     card = card_of(SHIPPED[0])
     card["metrics"][0]["suite"] = "1.1 <script>alert(1)</script> `x`"
-    text = ModelCard(readme(card)).text
+    text = ModelCard(readme(card, "checkpoints/hardened/mine")).text
     assert r"suite 1.1 \<script>alert(1)\</script> \`x\`." in text

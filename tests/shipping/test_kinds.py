@@ -37,7 +37,7 @@ def test_run_is_exported_and_loads_again(tmp_path, kind, monkeypatch):
         export.export(run, "mine", out=tmp_path)
     walks = export_command._walks_of(run, [option, "env.size=16"], None)
     folder = export.export(run, "mine", out=tmp_path, walks=walks)
-    assert 'load_hardened("checkpoints/hardened/mine")' in (folder / "README.md").read_text()
+    assert f'load_hardened("{tmp_path}/mine")' in (folder / "README.md").read_text()
     loaded = mitigate.load_hardened(folder)
     assert isinstance(loaded, output)
     assert weights_sha(loaded) == weights_sha(finished(run, walks)[1])

@@ -117,8 +117,12 @@ def _read(channel, size):
 def stop(problem, reported=False):
     """Print a message and end this process at once, because the program might catch an exception.
 
-    The server gets the reason (unless ``reported``), so that the condition does not count as
-    finished. The process ends even if this function fails or is interrupted.
+    The server gets the reason, so that the condition does not count as finished. The process ends
+    even if this function fails or is interrupted.
+
+    Args:
+        problem: The reason, as a sentence.
+        reported: Whether the server already knows the reason.
     """
     try:
         try:
@@ -206,7 +210,10 @@ class Channel:
         return answer
 
     def map_memory(self, cameras, unread):
-        """Describe the cameras (and observations that only look like frames); map the memory."""
+        """Describe the cameras to the server and map the memory that it provides.
+
+        ``unread`` names observations that look like frames, but whose sensors are not cameras.
+        """
         answer = self.ask("spec", cameras=cameras, unread=unread)
         self.layout = {name: int(offset) for name, offset in answer["offsets"].items()}
         self.memory = None
@@ -274,10 +281,11 @@ def _versions():
 
 
 def _uninterrupted(failure):
-    """Wrap a method of ``Session``: one thread at a time runs it, and exceptions end the process.
+    """Wrap a method of ``Session``.
 
-    An interrupt also ends the process, because the agent might catch it and act on incomplete data.
-    The message begins with ``failure``.
+    Only one thread at a time runs the method, and an exception ends the process. An interrupt also
+    ends the process, because the agent might catch it and act on incomplete data. ``failure`` is
+    the beginning of the message.
     """
 
     def decorate(method):
@@ -366,8 +374,11 @@ class Session:
     def corrupt(self, observations, cameras, heading=None):
         """Replace the frames of ``cameras`` in a dict of observations, in the order of the keys.
 
-        Each camera is described by its name, type ("rgb" or "depth") and other options
-        (``_describe_sensor``). The heading is in radians, counter-clockwise.
+        Args:
+            observations: Arrays by name.
+            cameras: Dicts that describe the cameras: name, type ("rgb" or "depth") and other
+                options (``_describe_sensor``).
+            heading: Radians, counter-clockwise.
         """
         self._check(observations, cameras)
         channel = self.connected()
@@ -455,14 +466,20 @@ class Session:
             self.channel.ask("end", **report)
 
     def _fault(self):
-        """Return the exception, except of a normal end, that occurred in this episode, or None."""
+        """Return the exception that was raised or handled after the episode began, or None.
+
+        Exceptions that only end a loop or the program do not count.
+        """
         error = sys.exc_info()[1]
         while error is not None and _is_orderly(error) and id(error) != self.handled:
             error = error.__context__
         return None if id(error) == self.handled else error
 
     def _distances(self):
-        """Return the distances from start and end to the goals, and whether STOP was called."""
+        """Return the geodesic distances from start and end to the goals.
+
+        The result also contains whether STOP was called.
+        """
         if self.sim is None or self.episode is None:
             return {}
         stopped = _get(self.task, "is_stop_called")
@@ -529,7 +546,10 @@ def _finite_numbers(metrics, prefix=""):
 
 
 def _distance(sim, position, episode):
-    """Return the metres to the nearest goal or view point: inf if unreachable, None if unknown."""
+    """Return the geodesic distance in metres to the nearest goal or view point, or None if unknown.
+
+    The result is infinite if no goal can be reached.
+    """
     goals = _get(episode, "goals") or []
     views = [p.agent_state.position for g in goals for p in _get(g, "view_points") or []]
     ends = [list(map(float, end)) for end in views or [g.position for g in goals]]
@@ -587,7 +607,7 @@ def _call_clean(original, *args, **kwargs):
 
 def _is_clean_call():
     """Return whether this thread is inside ``_call_clean``."""
-    # an interrupt could leave a flag set, but not the stack
+    # the stack is inspected instead of a flag, because an interrupt could leave a flag set
     frame = sys._getframe(1)
     while frame is not None and frame.f_code is not _call_clean.__code__:
         frame = frame.f_back
@@ -718,7 +738,11 @@ def _keep_selected(dataset):
 def _select(episodes, key, least):
     """Return the indices of the episodes that the run needs, or None for all episodes.
 
-    ``key`` returns the name of an episode. At least ``least`` (0 or 1) episodes are kept.
+    Args:
+        episodes: All episodes.
+        key: Function that returns the name of an episode. If the server chooses episodes, it
+            receives all names, in several messages.
+        least: The minimum number of episodes to keep, 0 or 1.
     """
     channel, count = Channel(), len(episodes)
     answer = channel.ask("dataset", count=count, keys=[], least=least)
@@ -814,9 +838,14 @@ def _package(module):
 def _corrupt_acting_agent(sim, observations, agent_ids):
     """Corrupt the observations of the acting agent only.
 
-    They stay unchanged inside ``_call_clean``, and for habitat-lab, whose sensors corrupt them.
-    With several agents, ``observations`` maps their numbers to dicts. Without ``agent_ids``, the
-    acting agent was requested.
+    Observations stay unchanged inside ``_call_clean``. Observations that habitat-lab
+    requested also stay unchanged here, because habitat-lab's sensors corrupt them.
+
+    Args:
+        sim: The simulator.
+        observations: Maps sensors to observations. With several agents, it maps agent numbers to
+            such dicts.
+        agent_ids: The ids of the requested agents; None means the acting agent.
     """
     if _is_clean_call() or _is_called_by_lab(sim):
         return observations
@@ -866,7 +895,10 @@ def _describe_simulator(sim):
 
 
 def _wmnav_episode(original, env, number, *args, **kwargs):
-    """Wrap WMNav's ``Env._run_episode``, which opens a simulator per episode (no habitat-lab)."""
+    """Wrap WMNav's ``Env._run_episode``.
+
+    WMNav opens a simulator per episode, and does not use habitat-lab.
+    """
     _thread.session = session = _thread.session or Session()
     episode = env.all_episodes[number]
     words = episode["object_category"]
@@ -900,7 +932,11 @@ def _wmnav_episode(original, env, number, *args, **kwargs):
 
 
 def _make_adapter_wrapper(folder, file, path):
-    """Return a wrapper of ``forward`` that attaches adapters to ``path`` at the first call."""
+    """Return a wrapper for the method ``forward`` of an encoder's class.
+
+    At the first call of each instance, the wrapper attaches adapters to the module ``path``. The
+    weights have been loaded before this call.
+    """
 
     def forward(original, encoder, *args, **kwargs):
         if not vars(encoder).get("_mitigate_adapted"):
@@ -1045,7 +1081,10 @@ def _check_number(value, name, most=math.inf):
 
 
 def _find_cameras(observations, cameras):
-    """Return a copy of the observations and the description of each camera in them."""
+    """Return a copy of the observations and the description of each camera in them.
+
+    If an entry has the shape of a frame but no known type, the process stops.
+    """
     observations, cameras, described = dict(observations), dict(cameras or {}), []
     for name, value in observations.items():
         by_name = next((kind for kind in (COLOR, DEPTH) if str(name).startswith(kind)), None)
@@ -1096,7 +1135,10 @@ def _advise_cameras(name, value, kind):
 
 
 def _find_frame(value, name):
-    """Return the name and shape of the first frame in nested dicts and lists, else None."""
+    """Return the name and shape of the first array that has the shape of a frame, else None.
+
+    Nested dicts and lists are searched.
+    """
     if value is None or isinstance(value, (str, bytes, int, float)):
         return None
     shape = _shape(value)
@@ -1232,7 +1274,10 @@ def patch(module):
 
 
 def _describe_missing(module, missing):
-    """Return the error message for ``missing``, pairs (class, method), of ``module``."""
+    """Return the error message for methods of ``module`` that do not exist.
+
+    ``missing`` is a list of pairs (class, method).
+    """
     adapters = json.loads(os.environ.get(ADAPTERS) or "{}")
     if adapters.get("module") == module.__name__:
         classes = [n for n, kind in vars(module).items() if isinstance(kind, type)]

@@ -24,8 +24,12 @@ def report_before_after(
 ) -> None:
     """Evaluate both agents on the same episodes, print and write one table, and write pictures.
 
-    ``base_agent`` is None if training started from scratch. The subfolder ``pictures`` of the run's
-    ``folder`` shows episodes that only the trained agent solves.
+    Args:
+        config: options of the training run.
+        base_agent: the agent before training, or None if it started from scratch.
+        trained_agent: the agent after training.
+        folder: folder of the run; its subfolder ``pictures`` shows episodes that only the trained
+            agent solves.
     """
     quick = config.evaluation
     chosen = episodes(config.env, quick.split, quick.episodes)

@@ -46,8 +46,13 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
     The frames come from the scenes of ``evaluation.split``. Their number is 12 times
     ``evaluation.episodes``, but at most the number of training frames. The conditions are the
-    suite's corruptions of this sensor. ``base`` is the encoder from which training started if
-    ``init`` was set, or None. If ``trained`` has adapters, "before" means its original weights.
+    suite's corruptions of this sensor.
+
+    Args:
+        config: options of the training run.
+        base: the encoder from which training started if ``init`` was set, or None.
+        trained: the trained encoder. If it has adapters, "before" means its original weights.
+        folder: folder of the run.
     """
     assert isinstance(trained, Encoder)
     train, unseen = _frames(config, trained.sensor)
@@ -67,7 +72,10 @@ def before_after(config: TrainConfig, base: Any, trained: nn.Module, folder: Pat
 
 
 def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
-    """Return the encoder with its weights before training."""
+    """Return the encoder with its weights before training.
+
+    Raises ValueError if it cannot be rebuilt.
+    """
     encoder = build_agent(config.agent, weights=None, seed=config.seed) if base is None else base
     stage = next(iter(config.active_stages))
     identity = read_object(folder / stage / IDENTITY, "Train again in another folder.")
@@ -82,7 +90,11 @@ def _encoder_before(config: TrainConfig, base: Any, folder: Path) -> nn.Module:
 
 
 def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
-    """Return training frames, which fit the probe and give the means, and unseen frames."""
+    """Return training frames and unseen frames.
+
+    The training frames fit the probe and give the mean features. The unseen frames are used for the
+    measurement.
+    """
     recipe = next(iter(config.active_stages.values())).recipe
     frames, quick, env = recipe["frames"], config.evaluation, config.env
     source = source_of(maker(env.world), sensor, env.episodes, quick.split, recipe.get("label"))
@@ -92,7 +104,11 @@ def _frames(config: TrainConfig, sensor: str) -> tuple[Frames, Frames]:
 
 
 def _conditions(config: TrainConfig, sensor: str) -> list[Corruption]:
-    """Return clean and the suite's corruptions of ``sensor`` (all of them if it has none)."""
+    """Return the clean condition and the suite's corruptions of ``sensor``.
+
+    If the suite contains no corruption of the sensor, return all registered corruptions of the
+    sensor.
+    """
     met = conditions(config.suite.conditions, config.severity, None)
     chosen = [corruption.name for corruption in met if corruption.modality == sensor]
     chosen = chosen or list(names(sensor))
@@ -125,7 +141,11 @@ def write(scores: Scores, folder: Path, about: str) -> list[Path]:
 
 
 def rows(scores: Scores, about: str) -> list[dict[str, Any]]:
-    """Return one row per measure and condition; values are [value, low, high] (null: none)."""
+    """Return one row per measure and condition.
+
+    A row holds the values before and after training and their difference. Each value is [value,
+    lower bound, upper bound]; the bounds are null if there is no confidence interval.
+    """
     records = []
     for condition, what in _cells(scores):
         first, second = (scores[state, condition, what] for state in (BEFORE, AFTER))

@@ -51,7 +51,11 @@ GAP, HEAD = 6, 20  # height in pixels of the gaps between blocks, and of the blo
 
 
 class Score(NamedTuple):
-    """Mean errors and fractions of correct pixels, and the fraction of restored time steps."""
+    """Scores of a restorer for one sensor under one condition.
+
+    Mean errors and fractions of correct pixels are given before and after restoration. ``restored``
+    is the fraction of time steps that the restorer changed.
+    """
 
     before: Estimate
     after: Estimate
@@ -117,7 +121,10 @@ def instants(env: Any, split: str, count: int, seed: int, restorer: Restorer) ->
 def measure(
     restorer: Restorer, data: Instants, corruptions: Sequence[Corruption], seed: int
 ) -> dict[tuple[str, str], Score]:
-    """Return scores by sensor and condition, for the sensors that a corruption changes."""
+    """Return scores by sensor and condition.
+
+    A corruption is scored only for the sensors that it changes.
+    """
     scores: dict[tuple[str, str], Score] = {}
     sensors = [sensor for sensor in restorer.nets if sensor in data.clean[0]]
     pairs = [(s, c) for c in corruptions for s in sensors if c is CLEAN or s in c.modalities]
@@ -139,7 +146,10 @@ def measure(
 
 
 def _off(frames: np.ndarray, clean: np.ndarray, far: float) -> np.ndarray:
-    """Return each valid pixel's mean error over channels as a fraction of ``far``; [0] if none."""
+    """Return the error of each valid pixel as a fraction of ``far``, averaged over colour channels.
+
+    If the clean frame has no valid pixel, the result is [0].
+    """
     valid = np.isfinite(clean) & (clean > 0) if clean.dtype != np.uint8 else True
     values = np.nan_to_num(frames.astype(np.float64), posinf=0.0)
     off = np.abs(values - np.where(valid, clean, 0)).mean(-1) / far
@@ -173,9 +183,14 @@ def _text(e: Estimate, scale: float = 1.0) -> str:
 def sheet(
     restorer: Restorer, seen: Instants, met: Sequence[Corruption], seed: int
 ) -> np.ndarray | None:
-    """Plot three views of one time step, uint8 RGB: corrupted, restored and clean, or None.
+    """Plot three views of one time step in their corrupted, restored and clean versions.
 
-    There is one row per corruption. Views of mostly a nearby wall are avoided (:func:`_far`).
+    The time step with the largest :func:`_far` is plotted, to avoid views that show mostly a nearby
+    wall.
+
+    Returns:
+        A uint8 RGB picture with one row per corruption, or None if no corruption applies to the
+        sensors.
     """
     number = max(range(len(seen.clean)), key=lambda n: _far(seen.clean[n]))
     clean = seen.clean[number]
@@ -196,7 +211,10 @@ def sheet(
 
 
 def _far(frames: dict[str, np.ndarray]) -> float:
-    """Return the smallest mean depth of the plotted views; small values mean a nearby wall."""
+    """Return the smallest mean depth of the plotted views.
+
+    If it is small, a view shows mostly a nearby wall.
+    """
     depth = frames.get(DEPTH)
     return 0.0 if depth is None or depth.ndim < 4 else float(depth[[*SHOWN]].mean((1, 2, 3)).min())
 
@@ -229,7 +247,10 @@ def write(
     folder: Path,
     about: str,
 ) -> None:
-    """Measure the restorer; print and write a table, and a picture if a frame is corrupted."""
+    """Measure the restorer, print the results, and write a table and a picture into ``folder``.
+
+    There is no picture if no frame is corrupted.
+    """
     scores = measure(restorer.eval(), seen, met, seed)
     about = f"{len(seen.clean)} instants of {about}, seed {seed}, restorer {restorer.hash}"
     text = table(scores, about)

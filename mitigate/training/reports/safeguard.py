@@ -40,7 +40,10 @@ Repairer = Callable[[list[str]], list[str]]
 
 
 def corrupted(texts: Sequence[str], severity: float, split: str, seed: int = 0) -> list[Repair]:
-    """Corrupt every text with every family; ``repaired`` of the results equals ``heard``."""
+    """Corrupt every text with every family.
+
+    The results are not repaired: ``repaired`` equals ``heard``.
+    """
     repairs = []
     for family in FAMILIES:
         for index, clean in enumerate(texts):
@@ -61,7 +64,10 @@ def repaired(repairs: Sequence[Repair], repairer: Repairer) -> list[Repair]:
 
 
 def alone(rewriter: Rewriter) -> Repairer:
-    """Return a function that repairs with a language model, without classifier and gate."""
+    """Return a function that repairs instructions with a language model.
+
+    The function uses neither the classifier nor the gate.
+    """
 
     def repair(texts: list[str]) -> list[str]:
         parts = [passages(text) for text in texts]
