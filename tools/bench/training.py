@@ -20,6 +20,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from importlib import import_module
+from statistics import median_high
 from typing import Any
 from unittest import mock
 
@@ -33,6 +35,7 @@ from mitigate.training.batches import Batches
 from mitigate.training.config import read
 from mitigate.training.objective import Objective, ObjectiveSpec, accumulate
 from mitigate.training.workers import Workers
+from tools.bench.timing import clock
 
 RECIPES = (
     "da_per_episode",
@@ -127,8 +130,7 @@ def clocked() -> Iterator[dict[str, Clock]]:
     with contextlib.ExitStack() as stack:
         for part, functions in PARTS.items():
             for module, owner, name in functions:
-                __import__(module)
-                holder = sys.modules[module]
+                holder = import_module(module)
                 holder = getattr(holder, owner) if owner else holder
                 timed = clocks[part].around(getattr(holder, name))
                 stack.enter_context(mock.patch.object(holder, name, timed))
@@ -166,11 +168,11 @@ def measure_stage(recipe: Objective, name: str, stage: str, steps: int, workers:
         update(batch)
         waits.append(arrival - start)
         updates.append(time.perf_counter() - arrival)
-    alone = [_seconds(update, batch) for _ in range(steps)]
-    whole = [a + b for a, b in zip(waits, updates, strict=True)]
-    medians = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
+    alone = [clock(update, batch) for _ in range(steps)]
+    whole = [1e3 * (a + b) for a, b in zip(waits, updates, strict=True)]
+    waiting = 1e3 * median_high(waits[-steps:])
     parts = {part: 1e3 * seconds for part, seconds in _time_parts(recipe, kind, steps).items()}
-    return Stage(name, stage, kind, medians[0], medians[1], medians[2], parts)
+    return Stage(name, stage, kind, median_high(whole[-steps:]), waiting, median_high(alone), parts)
 
 
 def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
@@ -197,16 +199,6 @@ def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
         whole = time.perf_counter() - start
     parts = {part: clock.seconds / steps for part, clock in clocks.items()}
     return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
-
-
-def _seconds(call: Callable[[Any], object], argument: Any) -> float:
-    start = time.perf_counter()
-    call(argument)
-    return time.perf_counter() - start
-
-
-def _median(values: Sequence[float]) -> float:
-    return sorted(values)[len(values) // 2]
 
 
 def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:
