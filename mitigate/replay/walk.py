@@ -282,7 +282,7 @@ def _mean(drives: Sequence[np.ndarray]) -> Estimate:
     sums = np.array([block.sum() for block in blocks])
     steps = np.array([len(block) for block in blocks])
     if len(blocks) >= MIN_BLOCKS and np.ptp(sums / steps) > 0:
-        return bootstrap.ratio(sums, steps)
+        return bootstrap.prs(steps, sums)  # sum(sums) / sum(steps)
     return Estimate(float(sums.sum() / steps.sum()), np.nan, np.nan)
 
 

@@ -219,10 +219,9 @@ def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
 def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict | None:
     """Return the differences, or None if the columns have no common seed."""
     pair, at = (first, second), section.severity
-    common = section.grid.common(pair, at)
-    if not common:
+    both = section.grid.paired(pair, at)
+    if both is None:
         return None
-    both = section.grid.over(pair, common, at)
     changes = {
         metric: [both.cell(first, n, at, key) - both.cell(second, n, at, key) for n in names]
         for metric, key in METRICS.items()
