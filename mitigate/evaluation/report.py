@@ -111,10 +111,7 @@ def is_drawable(grid: Grid) -> bool:
 
 
 def _heading(section: Section, several_rules: bool) -> str:
-    """Return the heading of a section and the text below it.
-
-    The heading names the success rule if the report has several rules.
-    """
+    """Return the heading of a section and the text below it."""
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     at = f"{section.kind}, {at}" if section.kind else at
@@ -193,10 +190,7 @@ def _mean_sr(section: Section, value: Retained | None, *parts: str) -> str:
 def _by_seed(
     section: Section, key: str, title: str, text: Callable[[float], str]
 ) -> list[list[str]]:
-    """Return a table line with the value of each seed.
-
-    If no column has several seeds, return an empty list.
-    """
+    """Return a table line with the value of each seed, or no line if all columns have one seed."""
     columns = [section.by_seed.get((column, key), {}) for column in section.columns]
     if not any(len(values) > 1 for values in columns):
         return []

@@ -87,10 +87,7 @@ def _conditions(changes: AgentChanges) -> list[str]:
 
 
 def _other_measures(changes: AgentChanges) -> list[str]:
-    """Return a table of stops, changed target positions and agreement with the driver.
-
-    If an agent has continuous actions, a column with the distance between actions is added.
-    """
+    """Return a table of stops, changed target positions and agreement with the driver."""
     text = (
         "False stops: steps with STOP here but not on clean frames; missed stops: the reverse. Aim "
         "moved: share of the steps, in %, at which the point that the agent moves to is more than "
@@ -194,10 +191,6 @@ def picture(
 
 
 def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
-    """Return a picture of a frame, uint8 [H, W, 3].
-
-    For a panorama, the middle parts of its views are joined. Depth is coloured over the range of
-    the clean frame.
-    """
+    """Return a picture of a frame, uint8 [H, W, 3]; depth has the range of the clean frame."""
     flat = strip(frame) if frame.ndim == 4 else frame
     return flat if flat.shape[-1] == 3 else depth_picture(flat[..., 0], max(1e-3, clean.max()))

@@ -136,10 +136,7 @@ def _column(section: Section, column: str) -> dict[str, Any]:
 
 
 def _prs_places(section: Section) -> list[tuple[str, str]]:
-    """Return the pairs (part, metric) that have a PRS, in the order of the table.
-
-    A part is a block of corruptions, or the validation half or test half of a block.
-    """
+    """Return the pairs (part, metric) that have a PRS; a part is a block or a half of a block."""
     parts = [part for block in section.blocks for part in (block, *section.halves.get(block, ()))]
     return [(part, metric) for part in parts for metric in METRICS]
 
@@ -204,11 +201,7 @@ def _single_prs(section: Section, column: str, name: str, metric: str) -> float 
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return each column's differences from those earlier columns that can be the baseline.
-
-    The differences are paired over common episodes and common seeds. For a common seed, both
-    columns were evaluated with the same random keys of corruptions.
-    """
+    """Return each column's differences from those earlier columns that can be the baseline."""
     return {
         f"{i}-{j}": _pair(section, first, second, names)
         for j, second in enumerate(section.columns[:BASELINES])
