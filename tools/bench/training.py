@@ -104,37 +104,31 @@ class Stage:
         return self.waiting * (1 - network) / self.whole
 
 
-class Clock:
-    """A clock that adds up the time of all calls of a function, in seconds."""
+def timed(function: Callable, seconds: dict[str, float], part: str) -> Callable:
+    """Return a function that calls ``function`` and adds the time to ``seconds[part]``."""
 
-    def __init__(self) -> None:
-        self.seconds = 0.0
+    def call(*args: Any, **named: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return function(*args, **named)
+        finally:
+            seconds[part] += time.perf_counter() - start
 
-    def around(self, function: Callable) -> Callable:
-        def timed(*args: Any, **named: Any) -> Any:
-            start = time.perf_counter()
-            try:
-                return function(*args, **named)
-            finally:
-                self.seconds += time.perf_counter() - start
-
-        return timed
+    return call
 
 
 @contextlib.contextmanager
-def clocked() -> Iterator[dict[str, Clock]]:
-    """Yield one clock for each part in ``PARTS``; a clock measures the part's functions inside the
-    ``with`` block.
-    """
-    clocks = {part: Clock() for part in PARTS}
+def clocked() -> Iterator[dict[str, float]]:
+    """Yield the seconds in the functions of each part in ``PARTS``, inside the ``with`` block."""
+    seconds = dict.fromkeys(PARTS, 0.0)
     with contextlib.ExitStack() as stack:
         for part, functions in PARTS.items():
             for module, owner, name in functions:
                 holder = import_module(module)
                 holder = getattr(holder, owner) if owner else holder
-                timed = clocks[part].around(getattr(holder, name))
-                stack.enter_context(mock.patch.object(holder, name, timed))
-        yield clocks
+                call = timed(getattr(holder, name), seconds, part)
+                stack.enter_context(mock.patch.object(holder, name, call))
+        yield seconds
 
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
@@ -192,12 +186,12 @@ def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
     """Compute batches in this process; return the seconds per step of each part."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)
-    with clocked() as clocks:
+    with clocked() as seconds:
         start = time.perf_counter()
         for step in range(steps):
             batches.batch(step)
         whole = time.perf_counter() - start
-    parts = {part: clock.seconds / steps for part, clock in clocks.items()}
+    parts = {part: total / steps for part, total in seconds.items()}
     return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
 
 

@@ -99,10 +99,9 @@ def start_twice(evaluation: Evaluation) -> str:
 
 def cut_row(evaluation: Evaluation) -> str:
     """Cut off the last row, as if the machine had lost power during a write."""
-    command = evaluation.start_and_wait()
-    command.process.kill()
-    command.process.wait()
-    rows = evaluation.rows()
+    rows = kill_with_rows(evaluation)
+    if not rows:
+        return TOO_LATE
     (evaluation.folder / ROWS).write_bytes(rows[: len(rows) - evaluation.rng.randint(1, 200)])
     return ""
 
