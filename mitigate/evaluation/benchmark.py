@@ -214,7 +214,7 @@ def _conditions(
     options += [f"suite={suite}"] if isinstance(suite, str) else []
     config = read(conf.composed("evaluate", options))
     names = list(config.suite.conditions) if isinstance(suite, str) else list(suite)
-    met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
+    met = evaluation.conditions(["clean", *names], severity, None)
     if all(corruption.severity == 0 for corruption in met):
         raise ValueError(
             f"suite={suite!r} at severity {severity:g} has no effect. Name a suite or corruptions, "

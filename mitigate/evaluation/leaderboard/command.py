@@ -62,8 +62,9 @@ def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
         file=entry.rows["file"],
     )
     lines = []
+    figures = asdict(again)
     for key, stated in asdict(entry).items():
-        computed = asdict(again)[key]
+        computed = figures[key]
         pairs = {key: (stated, computed)}
         if isinstance(stated, dict):
             names = stated | computed

@@ -38,18 +38,36 @@ def section_data(section: Section) -> dict[str, Any]:
     of its clean SPL]. ``pairs["i-j"]`` holds the differences of agent i from agent j, where i > j
     and j < ``baselines``. The entry is None if the two agents have no common seed.
     """
-    grid = section.grid
+    grid, at = section.grid, section.severity
     values = [_values(section, column) for column in section.columns]
     names = [CLEAN, *section.corruptions]
     blocks = ["", *(block for block, members in section.blocks.items() for _ in members)]
     pairs = _pairs(section, names)
+    severity = f"severity {at:g}" if section.blocks else "clean"
+    title = (grid.heading, section.kind, severity, f"suite {grid.suite}")
+    intervals = f"{LEVEL:.0%}, paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples"
     return {
-        "title": _title(section),
-        "facts": _facts(section),
+        "title": ", ".join(filter(None, title)),
+        "facts": [
+            ["Split", grid.heading],
+            ["Episodes", f"{len(grid.episodes):,}"],
+            ["Success", grid.rule],
+            ["Corruption suite", grid.suite],
+            ["Severity", f"{at:g}" if section.blocks else "clean only"],
+            ["Intervals", intervals],
+        ],
         "split": grid.split,
         "rule": grid.rule,
-        "severity": section.severity,
-        "columns": [_column(section, column) for column in section.columns],
+        "severity": at,
+        "columns": [
+            {
+                "label": column,
+                "place": list(grid.columns).index(column),
+                "agents": grid.agents_at(column, at),
+                "seeds": list(grid.seeds[column, at]),
+            }
+            for column in section.columns
+        ],
         "measures": _measures(section),
         "values": values,
         "corruptions": [
@@ -57,7 +75,7 @@ def section_data(section: Section) -> dict[str, Any]:
                 "name": name,
                 "title": "Clean" if name == CLEAN else label(name),
                 "block": block,
-                "at": str(0.0 if name == CLEAN else float(section.severity)),
+                "at": str(0.0 if name == CLEAN else float(at)),
             }
             for name, block in zip(names, blocks, strict=True)
         ],
@@ -101,38 +119,6 @@ def shortened(x: float) -> float:
     short = round(x, DIGITS)
     same = f"{100 * x:.1f} {x:.2f}" == f"{100 * short:.1f} {short:.2f}"
     return short if same else x
-
-
-def _title(section: Section) -> str:
-    at = f"severity {section.severity:g}" if section.blocks else "clean"
-    parts = (section.grid.heading, section.kind, at, f"suite {section.grid.suite}")
-    return ", ".join(filter(None, parts))
-
-
-def _facts(section: Section) -> list[list[str]]:
-    grid = section.grid
-    return [
-        ["Split", grid.heading],
-        ["Episodes", f"{len(grid.episodes):,}"],
-        ["Success", grid.rule],
-        ["Corruption suite", grid.suite],
-        ["Severity", f"{section.severity:g}" if section.blocks else "clean only"],
-        [
-            "Intervals",
-            f"{LEVEL:.0%}, paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples",
-        ],
-    ]
-
-
-def _column(section: Section, column: str) -> dict[str, Any]:
-    seeds = section.grid.seeds[column, section.severity]
-    agents = section.grid.agents_at(column, section.severity)
-    return {
-        "label": column,
-        "place": list(section.grid.columns).index(column),
-        "agents": list(agents),
-        "seeds": list(seeds),
-    }
 
 
 def _prs_places(section: Section) -> list[tuple[str, str]]:
