@@ -1,4 +1,4 @@
-"""Count lines of code: ``python tools/lines.py [PATH ...] [--most N]``.
+"""Count lines of code: ``python tools/lines.py [PATH ...]``.
 
 A line of code holds at least one token that is neither a comment nor part of a docstring. Without
 paths, the tool counts the package and the recipes, per subpackage and in total. It also counts the
@@ -10,9 +10,8 @@ from __future__ import annotations
 import argparse
 import ast
 import io
-import sys
 import tokenize
-from collections import defaultdict
+from collections import Counter
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -64,36 +63,24 @@ def files(path: Path) -> list[Path]:
     return [file for file in sorted(path.rglob("*.py")) if links.isdisjoint(file.parents)]
 
 
-def totals(paths: list[Path]) -> dict[str, tuple[int, int, int]]:
-    """Return, by subpackage, the numbers of files, of code lines, and of lines with getattr or
-    hasattr.
-    """
-    sums: dict[str, list[int]] = defaultdict(lambda: [0, 0, 0])
-    for path in paths:
-        for file in files(path):
-            inside = file.relative_to(path).parts if path.is_dir() else ()
-            name = "/".join([path.name, *inside[:1]]) if len(inside) > 1 else path.name
-            code, optional = count(file.read_text(encoding="utf-8"))
-            for index, value in enumerate((1, code, optional)):
-                sums[name][index] += value
-    return {name: (values[0], values[1], values[2]) for name, values in sorted(sums.items())}
-
-
 def main(arguments: list[str] | None = None) -> None:
-    """Print the table; exit with an error if there are more lines of code than ``--most``."""
+    """Print a table with the files, code lines and lines with getattr of each subpackage."""
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("paths", nargs="*", type=Path, help="files or folders of Python code")
-    parser.add_argument("--most", type=int, help="fail above this number of lines of code")
-    options = parser.parse_args(arguments)
-    table = totals(options.paths or [ROOT / path for path in PATHS])
-    total = tuple(sum(values[index] for values in table.values()) for index in range(3))
+    table: dict[str, Counter[str]] = {}
+    for path in parser.parse_args(arguments).paths or [ROOT / path for path in PATHS]:
+        for file in files(path):
+            inside = file.relative_to(path).parts if path.is_dir() else ()
+            name = "/".join([path.name, *inside[:1]]) if len(inside) > 1 else path.name
+            code, optional = count(file.read_text(encoding="utf-8"))
+            table.setdefault(name, Counter()).update(files=1, code=code, getattr=optional)
+    table = {name: table[name] for name in sorted(table)}
+    table["total"] = sum(table.values(), Counter())
     print(f"{'package':32} {'files':>6} {'code':>7} {'getattr':>8}")
-    for name, values in [*table.items(), ("total", total)]:
-        print(f"{name:32} {values[0]:6} {values[1]:7} {values[2]:8}")
-    if options.most is not None and total[1] > options.most:
-        sys.exit(f"error: lines of code must be <= {options.most} (--most), got {total[1]}.")
+    for name, values in table.items():
+        print(f"{name:32} {values['files']:6} {values['code']:7} {values['getattr']:8}")
 
 
 if __name__ == "__main__":

@@ -192,11 +192,7 @@ def benchmark(
 def _conditions(
     agent: Any, suite: str | Sequence[str], severity: float, seed: int, options: Sequence[str]
 ) -> tuple[EvaluateConfig, list[Corruption]]:
-    """Return the config of an evaluation and the conditions of the suite; the first condition
-    is "clean".
-
-    If ``agent`` is a path of weights, the config selects the kind of agent that they belong to.
-    """
+    """Return the config of an evaluation, and the conditions of the suite with "clean" first."""
     seeding.check(seed)
     if isinstance(options, str) or not all(isinstance(one, str) for one in options or ()):
         raise ValueError(
@@ -218,7 +214,7 @@ def _conditions(
     options += [f"suite={suite}"] if isinstance(suite, str) else []
     config = read(conf.composed("evaluate", options))
     names = list(config.suite.conditions) if isinstance(suite, str) else list(suite)
-    met = evaluation.conditions(list(dict.fromkeys(["clean", *names])), severity, None)
+    met = evaluation.conditions(["clean", *names], severity, None)
     if all(corruption.severity == 0 for corruption in met):
         raise ValueError(
             f"suite={suite!r} at severity {severity:g} has no effect. Name a suite or corruptions, "
@@ -284,10 +280,7 @@ def checked_world(
 
 
 def _is_own(world: World, config: EvaluateConfig) -> bool:
-    """Return whether the class of the world differs from that in the config.
-
-    If it differs, the episode lists in the config do not apply.
-    """
+    """Return whether the class of the world differs from the class in the config."""
     node = config.env.world
     target = locate(node["_target_"])
     # the target may be a function instead of a class
@@ -303,12 +296,7 @@ def _episodes(
     listed: Sequence[Episode] | Path | str | None,
     own: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to run.
-
-    Raises:
-        ValueError: If there are no episodes. It is also raised if the world's class differs from
-            the configured class (``own``) and ``listed`` is None.
-    """
+    """Return the split and the episodes to run; ``own`` is the result of :func:`_is_own`."""
     split = split or (provenance.name_of(world) if own else config.split)
     if listed is None and own:
         raise ValueError(

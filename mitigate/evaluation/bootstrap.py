@@ -130,9 +130,8 @@ def _times_drawn(units: int, resamples: int, seed: int) -> np.ndarray:
 
 def mean(values: ArrayLike, **options: Any) -> Estimate:
     """Return the mean of ``values`` [N] with its interval."""
-    return with_interval(
-        float(np.asarray(values, float).mean()), resampled_means(values, **options)[:, 0]
-    )
+    samples = resampled_means(values, **options)[:, 0]
+    return with_interval(float(np.asarray(values, float).mean()), samples)
 
 
 def share(values: ArrayLike, **options: Any) -> Estimate:
@@ -142,10 +141,11 @@ def share(values: ArrayLike, **options: Any) -> Estimate:
     If all values are 0 or all are 1, all resamples are equal. Then Wilson's score interval is used
     instead.
     """
-    estimate, known = mean(values, **options), np.asarray(values, float)
-    units = options.get("units")
-    if not ((known == 0).all() or (known == 1).all()):
+    known = np.asarray(values, float)
+    estimate = mean(known, **options)
+    if known.min() < known.max() or known[0] not in (0, 1):
         return estimate
+    units = options.get("units")
     count = len(known) if units is None else len(np.unique(units))
     return Estimate(estimate.value, *wilson(estimate.value, count))
 
@@ -200,11 +200,6 @@ def prs(clean: ArrayLike, corrupted: ArrayLike, **options: Any) -> Estimate:
     return with_interval(value, samples)
 
 
-def ratio(parts: ArrayLike, wholes: ArrayLike, **options: Any) -> Estimate:
-    """Return the ratio sum(parts) / sum(wholes) with its interval; both arrays are [N]."""
-    return prs(wholes, parts, **options)
-
-
 def prs_difference(
     first: tuple[ArrayLike, ArrayLike], second: tuple[ArrayLike, ArrayLike], **options: Any
 ) -> Estimate:
@@ -218,7 +213,8 @@ def prs_difference(
             f"{' and '.join(map(str, sorted(counts)))} episodes."
         )
     (a, samples_a), (b, samples_b) = _prs(*first, options), _prs(*second, options)
-    return with_interval(a - b, samples_a - samples_b)
+    with np.errstate(invalid="ignore"):  # a clean value of 0 makes a PRS infinite
+        return with_interval(a - b, samples_a - samples_b)
 
 
 def _prs(

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections import defaultdict
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -21,15 +21,8 @@ from mitigate.core.names import counted
 from mitigate.core.seeding import generator
 from mitigate.core.spaces import ActionSpace
 from mitigate.corruptions.registry import modality, title
-from mitigate.evaluation.bootstrap import (
-    LEVEL,
-    RESAMPLES,
-    Estimate,
-    mean,
-    resampled_means,
-    share,
-    with_interval,
-)
+from mitigate.evaluation import bootstrap
+from mitigate.evaluation.bootstrap import LEVEL, RESAMPLES, Estimate, mean, share
 from mitigate.evaluation.rows import Row
 from mitigate.worlds.seeded import RETURN
 
@@ -202,21 +195,25 @@ class _Scores:
             name: {agent: scale * self.values(agent, name, measure) for agent in self.agents}
             for name in (CLEAN, *names)
         }
+        largest = max(np.abs(values).max() for v in by_condition.values() for values in v.values())
+        # returns between 0 and 1 need more than one decimal place
+        digits = 1 if largest >= 10 else 2
         lines = []
         if len(names) > 1:
             averaged = {
                 agent: np.mean([by_condition[name][agent] for name in names], axis=0)
                 for agent in self.agents
             }
-            lines.append(self._line(f"**{label}, mean of {len(names)} corruptions**", averaged, 0))
+            heading = f"**{label}, mean of {len(names)} corruptions**"
+            lines.append(self._line(heading, averaged, 0, digits))
         for name, values in by_condition.items():
-            lines.append(self._line(f"{label}: {title(name)}", values, scale * (scale > 1)))
-        largest = max(np.abs(values).max() for v in by_condition.values() for values in v.values())
-        # returns between 0 and 1 need more than one decimal place
-        digits = 1 if largest >= 10 else 2
-        return [replace(line, digits=digits) for line in lines]
+            most = scale * (scale > 1)
+            lines.append(self._line(f"{label}: {title(name)}", values, most, digits))
+        return lines
 
-    def _line(self, heading: str, values: Mapping[str, np.ndarray], most: float) -> Line:
+    def _line(
+        self, heading: str, values: Mapping[str, np.ndarray], most: float, digits: int
+    ) -> Line:
         """Return one line.
 
         If the measure uses a Wilson interval, ``most`` is its value for a successful episode.
@@ -225,7 +222,7 @@ class _Scores:
         first, *others = self.agents
         estimates = {agent: _mean(values[agent], most) for agent in self.agents}
         changes = {agent: _difference(values[agent] - values[first]) for agent in others}
-        return Line(heading, estimates, changes)
+        return Line(heading, estimates, changes, digits)
 
     def retention(self, names: Sequence[str]) -> list[Line]:
         """Return the lines that show how much of the return is kept: on average, and for each
@@ -269,21 +266,15 @@ class _Scores:
         the clean return of the first agent, so that an agent cannot raise its retention by doing
         worse on clean frames.
         """
-        values: dict[str, tuple[float, np.ndarray]] = {}
-        for agent in self.agents:
-            reference = self.agents[0] if measure == RETURN else agent
-            clean = self.values(reference, CLEAN, measure) - base
-            gained = np.mean([self.values(agent, name, measure) for name in names], axis=0) - base
-            draws = resampled_means(np.stack([gained, clean]))
-            with np.errstate(divide="ignore", invalid="ignore"):
-                values[agent] = float(gained.mean() / clean.mean()), draws[:, 0] / draws[:, 1]
         first, *others = self.agents
-        value, samples = values[first]
-        with np.errstate(invalid="ignore"):
-            changes = {
-                n: with_interval(values[n][0] - value, values[n][1] - samples) for n in others
-            }
-        return Line(heading, {n: with_interval(*values[n]) for n in self.agents}, changes, digits=2)
+        pairs = {}
+        for agent in self.agents:
+            clean = self.values(first if measure == RETURN else agent, CLEAN, measure)
+            corrupted = np.mean([self.values(agent, name, measure) for name in names], axis=0)
+            pairs[agent] = clean - base, corrupted - base
+        estimates = {agent: bootstrap.prs(*pair) for agent, pair in pairs.items()}
+        changes = {agent: bootstrap.prs_difference(pairs[agent], pairs[first]) for agent in others}
+        return Line(heading, estimates, changes, digits=2)
 
 
 def _mean(values: np.ndarray, most: float) -> Estimate:

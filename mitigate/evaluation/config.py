@@ -145,7 +145,7 @@ class EvaluateConfig:
     def condition_names(self) -> list[str]:
         """The names of the conditions to evaluate: "clean" and those that the options name."""
         named = self.suite.conditions if self.conditions is None else self.conditions
-        return list(dict.fromkeys(["clean", *named])) if named else []
+        return ["clean", *named] if named else []
 
 
 conf.register("evaluate", EvaluateConfig)

@@ -325,13 +325,9 @@ class Scores:
     def _scored(
         self, line: tuple[str, str, int], common: np.ndarray
     ) -> dict[float | None, np.ndarray]:
-        """Return each measure of one curve, shape [1 + resamples].
+        """Return each measure of one curve [1 + resamples]: the value of the data comes first.
 
-        The first value is that of the data. The others are those of the resamples.
-
-        Args:
-            line: column, corruption and seed of the curve.
-            common: mask of the episodes to use [N].
+        ``line`` is the column, corruption and seed; ``common`` [N] masks the episodes to use.
         """
         key = (line, common.tobytes())
         if key not in self._scores_of_curves:

@@ -146,9 +146,10 @@ def warn_of_tasks(agent: Any, chosen: Sequence[Episode], name: str, split: str) 
     """
     from mitigate.agents.agent import as_agent
 
-    tasks = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
     supported = as_agent(agent).tasks
-    supported = tasks if supported is None else supported
+    if supported is None:
+        return
+    tasks = [str(episode.info["task"]) for episode in chosen if "task" in episode.info]
     if other := [task for task in tasks if task not in supported]:
         warnings.warn(
             f"{name} can {_in_words(supported)}, not {_in_words(other)}, but {len(other)} of "

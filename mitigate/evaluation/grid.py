@@ -247,12 +247,14 @@ class Grid:
         }
         return replace(self, cells=cells)
 
-    def common(self, labels: Iterable[str], severity: float) -> list[int]:
-        """Return the seeds that all columns in ``labels`` have in common at ``severity``.
+    def paired(self, labels: Sequence[str], severity: float) -> Grid | None:
+        """Return the grid of the columns ``labels``, restricted to the seeds that all have.
 
-        For the same seed, all columns were evaluated with the same random keys of corruptions.
+        For the same seed, all columns were evaluated with the same random keys of corruptions. If
+        the columns have no common seed at ``severity``, return None.
         """
-        return sorted(set.intersection(*(set(self.seeds[label, severity]) for label in labels)))
+        common = set.intersection(*(set(self.seeds[label, severity]) for label in labels))
+        return self.over(labels, sorted(common), severity) if common else None
 
     @cached_property
     def severities(self) -> list[float]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib as mpl
@@ -88,9 +89,23 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     return write_figure(path, figure, dpi=DPI, facecolor="white")
 
 
-def text_colour(value: float) -> str:
-    """Return a readable text colour for a cell whose background colour encodes ``value``."""
-    return "white" if value < 0.6 else "black"  # a NaN cell is not coloured, so its text is black
+def draw_cells(
+    axis: Axes,
+    colours: np.ndarray,
+    texts: np.ndarray,
+    rows: Sequence[str],
+    columns: Sequence[str],
+    fontsize: int,
+) -> None:
+    """Draw the cells of a heatmap: ``texts`` [R, C] on the colours of values from 0 to 1 [R, C]."""
+    axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
+    for (i, j), text in np.ndenumerate(texts):
+        # a NaN cell is not coloured, so its text is black
+        colour = "white" if colours[i, j] < 0.6 else "black"
+        axis.text(j, i, text, ha="center", va="center", fontsize=fontsize, color=colour)
+    names = [plain(name) for name in columns]
+    axis.set_xticks(range(len(names)), names, rotation=25, ha="right", fontsize=fontsize)
+    axis.set_yticks(range(len(rows)), rows, fontsize=fontsize)
 
 
 def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
@@ -109,15 +124,8 @@ def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> 
             if not math.isnan(rate):
                 colours[i, j] = rate / best if best else 0.0
                 texts[i, j] = f"{100 * rate:.0f} / {spl:.2f}" + "*" * section.partial(column, name)
-    axis.imshow(colours, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
-    for (i, j), text in np.ndenumerate(texts):
-        colour = text_colour(colours[i, j])
-        axis.text(j, i, text, ha="center", va="center", fontsize=10, color=colour)
+    draw_cells(axis, colours, texts, rows, section.columns, fontsize=10)
     axis.axhline(1.5, color="black", linewidth=1.5)
-    axis.set_xticks(
-        range(shape[1]), map(plain, section.columns), rotation=25, ha="right", fontsize=10
-    )
-    axis.set_yticks(range(shape[0]), rows, fontsize=10)
     axis.set_title(block, fontsize=11)
 
 

@@ -215,11 +215,7 @@ def keep(
 def _report_unreadable(
     place: Path, name: str, kind: str, owner: str, unreadable: str, earlier: bool
 ) -> None:
-    """Print a message that rows of an agent or a world cannot be reused.
-
-    Raises:
-        ValueError: If ``place`` already holds rows of this agent or world.
-    """
+    """Print that rows cannot be reused; raise ValueError if ``place`` already holds such rows."""
     if earlier:
         # A version changes the hash in the rows of an agent. All rows of a folder are of one world.
         folder = " and another folder (out=...)" if kind == "world" else ""
@@ -236,10 +232,7 @@ def _report_unreadable(
 
 
 def _read(note: Path) -> dict[str, dict[str, Any]]:
-    """Read the entries of a folder's ``note``, by split.
-
-    Raises ValueError if the note is damaged.
-    """
+    """Read the entries of a folder's ``note``, by split."""
     again = f"Copy the file back, or move {note.parent} aside and evaluate again."
     known = read_object(note, again)
     for split, entry in known.items():
@@ -301,10 +294,7 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
 
 
 def _sum(episode: Episode) -> str:
-    """Return the hash of those parts of an episode that an agent and a world use.
-
-    Other parts of an episode may differ between processes.
-    """
+    """Return the hash of those parts of an episode that an agent and a world use."""
     content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
         "start": [*map(float, (*episode.start_position, *episode.start_rotation))],
@@ -316,10 +306,7 @@ def _sum(episode: Episode) -> str:
 
 
 def _spec(world: World) -> str:
-    """Return the id and arguments of the environment inside a world, or an empty string.
-
-    Worlds of the same class may differ only in these values.
-    """
+    """Return the id and arguments of the environment inside a world, or an empty string."""
     spec = _member(_member(world, "env"), "spec")
     if _member(spec, "id") is None:
         return ""

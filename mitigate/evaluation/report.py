@@ -9,17 +9,24 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
-from mitigate.core.files import atomic_text, make_folder
+from mitigate.core.files import make_folder, write_text
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, expected_corruptions
 from mitigate.evaluation.metrics import FLOOR
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Difference, Retained, Section, label, sections
+from mitigate.evaluation.sections import (
+    NO_DIFFERENCE,
+    Difference,
+    Retained,
+    Section,
+    label,
+    sections,
+)
 
-NO_DIFFERENCE = Difference(None, None, {})
 # These limits for pictures are heuristic.
 # Without limits, rows from an untrusted source could make plotting very slow.
 MOST_CORRUPTIONS = 100  # of a picture
@@ -94,8 +101,7 @@ def write(
             names.append(_numbered("severity", len(grids)))
             plots.severity_curves(section.grid, folder / names[-1])
             grids.append(section.grid)
-    with atomic_text(folder / "table.md") as file:
-        file.write(markdown(parts, pictures, intervals))
+    write_text(folder / "table.md", markdown(parts, pictures, intervals))
     return [folder / "table.md", *(folder / name for names in pictures for name in names)]
 
 
@@ -105,10 +111,7 @@ def is_drawable(grid: Grid) -> bool:
 
 
 def _heading(section: Section, several_rules: bool) -> str:
-    """Return the heading of a section and the text below it.
-
-    The heading names the success rule if the report has several rules.
-    """
+    """Return the heading of a section and the text below it."""
     grid, columns = section.grid, section.columns
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
     at = f"{section.kind}, {at}" if section.kind else at
@@ -142,7 +145,7 @@ def _table(section: Section, intervals: bool) -> str:
         lines.append([f"Clean {metric}", *cells])
     lines += _by_seed(section, "clean", "Clean SR", lambda value: f"{100 * value:.1f}")
     if changes:
-        cells = [_moved(section, change.clean) for change in changes]
+        cells = [_difference(section, change.clean) for change in changes]
         lines.append([f"Clean SR {against}", *cells])
     if section.corrupted:
         count = sum(map(section.whole, section.blocks))
@@ -150,24 +153,23 @@ def _table(section: Section, intervals: bool) -> str:
             _mean_sr(section, section.corrupted.get(column), *section.blocks) for column in columns
         ]
         lines.append([f"Mean SR of {count} corruptions", *cells])
-        if changes:
-            cells = [
-                _mean_sr(section, change.corrupted, *section.blocks, moved=True)
-                for change in changes
-            ]
-            lines.append([f"Mean SR {against}", *cells])
+    if section.corrupted and changes:
+        cells = [_change(section, change.corrupted, *section.blocks) for change in changes]
+        lines.append([f"Mean SR {against}", *cells])
     for block, names in section.blocks.items():
         for metric in METRICS:
             cells = [_prs(section, (c, block, metric)) for c in columns]
             lines.append([f"**PRS-{metric} ({block})**", *cells])
         lines += _by_seed(section, block, "PRS-SR", _rounded_prs)
         for metric in METRICS if changes else ():
-            cells = [_change(section, x.retained.get((block, metric)), block) for x in changes]
+            values = [change.retained.get((block, metric)) for change in changes]
+            cells = [_change(section, value, block, form="+.2f", scale=1) for value in values]
             lines.append([f"PRS-{metric} {against}", *cells])
         for half in section.halves.get(block, {}):
             lines.append([f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in columns)])
         for name in names:
-            lines += _with_intervals(section, name) if intervals else [_rates(section, name)]
+            rates = [label(name), *(_rate(section, c, name) for c in columns)]
+            lines += _with_intervals(section, name) if intervals else [rates]
         if _prompt_not_applicable(section, block):
             lines.append([label(PROMPT_ONLY), *["n/a"] * len(columns)])
     return markdown_table(["Corruption", *map(markdown_of, columns)], lines)
@@ -178,23 +180,17 @@ def _changes(section: Section) -> list[Difference]:
     return [section.differences.get(c, NO_DIFFERENCE) for c in section.columns]
 
 
-def _mean_sr(section: Section, value: Retained | None, *parts: str, moved: bool = False) -> str:
-    """Format a mean SR over the corruptions of ``parts``, or a difference of two such means if
-    ``moved``. Without ``parts``, it is the SR under one corruption.
-    """
+def _mean_sr(section: Section, value: Retained | None, *parts: str) -> str:
+    """Format a mean SR over the corruptions of ``parts``, or the SR under one corruption."""
     if value is None:
         return "–"
-    text = _moved(section, value.estimate) if moved else _interval(value.estimate, "SR")
-    return text + _escaped(section.marks(value, *parts))
+    return _interval(value.estimate, "SR") + _marks(section, value, *parts)
 
 
 def _by_seed(
     section: Section, key: str, title: str, text: Callable[[float], str]
 ) -> list[list[str]]:
-    """Return a table line with the value of each seed.
-
-    If no column has several seeds, return an empty list.
-    """
+    """Return a table line with the value of each seed, or no line if all columns have one seed."""
     columns = [section.by_seed.get((column, key), {}) for column in section.columns]
     if not any(len(values) > 1 for values in columns):
         return []
@@ -228,7 +224,7 @@ def _notes(section: Section) -> str:
             else "Differences in bold have intervals that exclude zero."
         )
     pairs = [(column, section.reference) for column in section.columns[1:]]
-    unpaired = [pair[0] for pair in pairs if not section.grid.common(pair, section.severity)]
+    unpaired = [pair[0] for pair in pairs if section.grid.paired(pair, section.severity) is None]
     if unpaired:
         notes.append(
             f"No seed in common with {markdown_of(section.reference)}, and so no difference: "
@@ -255,11 +251,6 @@ def _prompt_not_applicable(section: Section, block: str) -> bool:
     return block == "Instruction" and PROMPT_ONLY not in section.blocks[block]
 
 
-def _rates(section: Section, corruption: str) -> list[str]:
-    """Return the table line of a corruption, without intervals."""
-    return [label(corruption), *(_rate(section, c, corruption) for c in section.columns)]
-
-
 def _with_intervals(section: Section, corruption: str) -> list[list[str]]:
     """Return the table lines of a corruption: its SR, and the differences from the clean SR and
     from the reference column.
@@ -275,7 +266,7 @@ def _with_intervals(section: Section, corruption: str) -> list[list[str]]:
     kinds = {"clean": "clean", section.reference: markdown_of(section.reference)}
     for kind, against in kinds.items():
         if any(kind in change for change in changes):
-            cells = [_mean_sr(section, change.get(kind), moved=True) for change in changes]
+            cells = [_change(section, change.get(kind)) for change in changes]
             lines.append([f"{title} against {against}", *cells])
     return lines
 
@@ -297,7 +288,7 @@ def _prs(section: Section, place: tuple[str, str, str]) -> str:
     value = section.retained.get(place)
     if value is None:
         return "–"
-    prs, marks = value.estimate, _escaped(section.marks(value, place[1]))
+    prs, marks = value.estimate, _marks(section, value, place[1])
     if math.isnan(prs.value):
         return f"undefined{marks}"
     return f"**{prs.value:.2f}** {prs.interval('.2f')}{marks}"
@@ -307,15 +298,16 @@ def _rounded_prs(value: float) -> str:
     return "undefined" if math.isnan(value) else f"{value:.2f}"
 
 
-def _moved(section: Section, change: Estimate | None) -> str:
-    if change is None:
+def _difference(
+    section: Section, change: Estimate | None, form: str = "+.1f", scale: float = 100
+) -> str:
+    """Format a difference; it is bold if its interval excludes zero."""
+    if change is None or math.isnan(change.value):
         return "–"
-    text = _bold_if_sure(section, f"{100 * change.value:+.1f}", change)
-    return f"{text} {change.interval('+.1f', 100)}"
-
-
-def _bold_if_sure(section: Section, text: str, change: Estimate) -> str:
-    return f"**{text}**" if change.excludes_zero and not _is_few(section) else text
+    text = f"{scale * change.value:{form}}"
+    if change.excludes_zero and not _is_few(section):
+        text = f"**{text}**"
+    return f"{text} {change.interval(form, scale)}"
 
 
 def _is_few(section: Section) -> bool:
@@ -323,16 +315,15 @@ def _is_few(section: Section) -> bool:
     return len(section.grid.episodes) < FEW
 
 
-def _change(section: Section, value: Retained | None, block: str) -> str:
+def _change(section: Section, value: Retained | None, *parts: str, **options: Any) -> str:
+    """Format a difference of two means or PRS over the corruptions of ``parts``."""
     if value is None or math.isnan(value.estimate.value):
         return "–"
-    change, marks = value.estimate, _escaped(section.marks(value, block))
-    text = _bold_if_sure(section, f"{change.value:+.2f}", change)
-    return f"{text} {change.interval('+.2f')}{marks}"
+    return _difference(section, value.estimate, **options) + _marks(section, value, *parts)
 
 
-def _escaped(text: str) -> str:
-    return text.replace("*", "\\*")
+def _marks(section: Section, value: Retained, *parts: str) -> str:
+    return section.marks(value, *parts).replace("*", "\\*")
 
 
 def _numbered(stem: str, index: int) -> str:
@@ -376,16 +367,12 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
             lines.append(cells(label(name), name, rates))
     seeds = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
     lines.append(["Seeds", *seeds])
-    table = markdown_table(["Corruption", *section.columns], lines)
-    return f"{_header(section, bool(theirs))}\n\n{table}\n"
-
-
-def _header(section: Section, compared: bool) -> str:
     at = f"severity {section.severity:g}" if section.blocks else "clean only"
-    paper = " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
-    return (
+    about = (
         f"{section.grid.heading}, {at}, N = {len(section.grid.episodes)}, corruption suite "
         f"{section.grid.suite}. SR in %. Intervals, and what marks mean, are in table.md."
-        + paper
-        * compared
     )
+    if theirs:
+        about += " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
+    table = markdown_table(["Corruption", *section.columns], lines)
+    return f"{about}\n\n{table}\n"

@@ -14,7 +14,6 @@ import re
 import warnings
 from collections.abc import Iterable
 from functools import lru_cache
-from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -127,7 +126,7 @@ def read(path: Path | str) -> list[Row]:
             for number, line in enumerate(lines, 1):
                 row = _parse(line)
                 cut = row is None and len(line) <= LONGEST_LINE and not line.endswith("\n")
-                if cut and not _gzipped(path):
+                if cut and Path(path).suffix != ".gz":
                     break
                 if problem := _problem(row):
                     advice = "Delete the line and evaluate again."
@@ -148,15 +147,9 @@ def read(path: Path | str) -> list[Row]:
 
 
 def append(path: Path | str, rows: Iterable[Row]) -> None:
-    """Append ``rows`` to the file ``path`` and flush them to disk; create it if needed.
-
-    A ``.jsonl`` file is extended by a single write. A ``.gz`` file is replaced atomically.
-    """
-    path, rows = Path(path), list(rows)
+    """Append ``rows`` to a ``.jsonl`` file by a single write; create the file if needed."""
+    path = Path(path)
     text = "".join(_line(row) for row in rows)
-    if _gzipped(path):
-        write(path, chain(read(path) if path.exists() else [], rows))
-        return
     make_folder(path.parent)
     with writing(path), open_output(path, "ab+") as file:
         _repair(file)
@@ -359,7 +352,3 @@ def _repair(file: Any) -> None:
         file.truncate(size - len(last))
     elif last:
         file.write(b"\n")
-
-
-def _gzipped(path: Path | str) -> bool:
-    return Path(path).suffix == ".gz"

@@ -69,6 +69,9 @@ class Difference:
     retained: dict[tuple[str, str], Retained]
 
 
+NO_DIFFERENCE = Difference(None, None, {})
+
+
 @dataclass(frozen=True)
 class Section:
     """One table of results: a grid at one severity.
@@ -195,10 +198,9 @@ class Section:
     def compare(self, column: str, reference: str) -> Difference:
         """Return ``column`` minus ``reference``; both can be any columns."""
         pair, severity = (column, reference), self.severity
-        common = self.grid.common(pair, severity)
-        if not common:
-            return Difference(None, None, {})
-        both = self.grid.over(pair, common, severity)
+        both = self.grid.paired(pair, severity)
+        if both is None:
+            return NO_DIFFERENCE
         first, second = (both.cell(name, "clean", severity, METRICS["SR"]) for name in pair)
         change = first - second
         mask = ~np.isnan(change)
@@ -218,20 +220,15 @@ class Section:
 
         Differences that were not measured are left out.
         """
-        pair, severity = (column, self.reference), self.severity
-        found = {}
-        retention = self.grid.retention([column], (corruption,), severity, METRICS["SR"])
-        if retention:
-            (part,) = retention
+        pair, severity, key = (column, self.reference), self.severity, METRICS["SR"]
+        changes = {}
+        for part in self.grid.retention([column], (corruption,), severity, key) or ():
             change = bootstrap.mean(part.corrupted[0] - part.clean, units=part.units)
-            found["clean"] = Retained(change, part.corruptions, len(part.clean), False)
-        common = self.grid.common(pair, severity) if column != self.reference else []
-        if common:
-            both = self.grid.over(pair, common, severity)
-            parts = both.retention(pair, (corruption,), severity, METRICS["SR"])
-            if parts:
-                found[self.reference] = _mean_sr(parts)
-        return found
+            changes["clean"] = Retained(change, part.corruptions, len(part.clean), False)
+        both = self.grid.paired(pair, severity) if column != self.reference else None
+        if both and (parts := both.retention(pair, (corruption,), severity, key)):
+            changes[self.reference] = _mean_sr(parts)
+        return changes
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
         """Return the mean of a cell over its episodes, or NaN if the cell is empty."""
@@ -239,11 +236,7 @@ class Section:
 
     def partial(self, column: str, corruption: str) -> bool:
         """Return whether a cell has missing episodes."""
-        return (column, corruption) in self._incomplete
-
-    @cached_property
-    def _incomplete(self) -> frozenset[tuple[str, str]]:
-        return frozenset((gap.column, gap.corruption) for gap in self.gaps)
+        return not self.grid.measured(column, corruption, self.severity).all()
 
     def whole(self, part: str) -> int:
         """Return the number of corruptions in ``part``, which is a key of :attr:`parts`."""

@@ -100,10 +100,14 @@ def first_sight(
     first = DEPTH if {DEPTH, RGB}.intersection(corruption.modalities) == {DEPTH} else RGB
     entry = next((name for name in (first, RGB, DEPTH) if name in clean), "")
     far = float(clean[DEPTH].max()) if DEPTH in clean else 0.0
-    return entry, [_picture(np.asarray(frames[entry]), far) for frames in (clean, met) if entry]
+    return entry, [view_picture(np.asarray(obs[entry]), far) for obs in (clean, met) if entry]
 
 
-def _picture(frames: np.ndarray, far: float) -> np.ndarray:
+def view_picture(frames: np.ndarray, far: float) -> np.ndarray:
+    """Return a picture of one view or of several views side by side, uint8 [H, W, 3].
+
+    Depth is coloured up to ``far`` metres. Of a panorama, the middle parts of its views are joined.
+    """
     views = frames if frames.ndim == 4 else frames[None]
     joined = strip(views) if len(views) == VIEWS else np.concatenate(list(views), axis=1)
     return depth_picture(joined[..., 0], far) if joined.shape[-1] == 1 else joined

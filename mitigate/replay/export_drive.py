@@ -112,14 +112,7 @@ def run(config: ExportDriveConfig, out: Path) -> list[Path]:
 
 
 def _drive_paths(out: Path, names: Sequence[str], form: str) -> list[Path]:
-    """Return the output path of each episode.
-
-    The file name is the episode id. Each sequence of characters other than letters, digits, "_"
-    and "-" is replaced with "-".
-
-    Raises:
-        ValueError: If two episodes have the same path, or a path already exists.
-    """
+    """Return the output path of each episode, which is named after the episode id."""
     suffix = ".bag" if form == "bag" else ""
     safe_names = [_NOT_IN_NAMES.sub("-", name).strip("-") or "unnamed" for name in names]
     paths = [out / f"{name}{suffix}" for name in safe_names]
@@ -216,16 +209,13 @@ def messages(
 
 
 def _odometry(types: Any, header: Any, pose: np.ndarray) -> Any:
-    """Return the odometry message of a pose on the floor plan.
-
-    The yaw in ROS is the heading plus 90 degrees.
-    """
+    """Return the odometry message of a pose on the floor plan."""
 
     def make(name: str, *fields: Any) -> Any:
         return types[f"geometry_msgs/msg/{name}"](*fields)
 
     x, y, heading = map(float, pose)
-    half = (heading + np.pi / 2) / 2
+    half = (heading + np.pi / 2) / 2  # the yaw in ROS is the heading plus 90 degrees
     orientation = make("Quaternion", 0.0, 0.0, float(np.sin(half)), float(np.cos(half)))
     place = make("Pose", make("Point", x, y, 0.0), orientation)
     still = make("Vector3", 0.0, 0.0, 0.0)

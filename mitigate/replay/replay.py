@@ -24,7 +24,7 @@ from omegaconf import MISSING
 from omegaconf.errors import OmegaConfBaseException
 
 from mitigate.core import conf
-from mitigate.core.files import atomic_text, write_json
+from mitigate.core.files import atomic_text, write_json, write_text
 from mitigate.core.json_files import read_json
 from mitigate.core.locks import FolderLock
 from mitigate.core.names import short
@@ -203,10 +203,7 @@ def _name(paths: Sequence[str]) -> str:
 def _settings(
     config: ReplayConfig, paths: Sequence[str], agents: Mapping[str, Any]
 ) -> dict[str, Any]:
-    """Return all settings that determine the report, as JSON data.
-
-    If an agent has no weights, only the name of its class is included.
-    """
+    """Return all settings that determine the report, as JSON data."""
     from torch import nn
 
     from mitigate.core.checkpoint import weights_sha
@@ -310,10 +307,9 @@ def replay(
                 draw = partial(walk.walk, agent, corruption=worst, seed=seed, guards=guards)
                 path = _picture_file(out, name, worst.name)
                 pictures += _draw(drives, worst, answers, draw, path)
-    with atomic_text(out / TABLE) as table:
-        drives = next(iter(recordings.values()))
-        text = report.table(changes, severity, sum(steps), len(steps), guards, notes)
-        table.write(text + report.summaries(drives))
+    drives = next(iter(recordings.values()))
+    text = report.table(changes, severity, sum(steps), len(steps), guards, notes)
+    write_text(out / TABLE, text + report.summaries(drives))
     print(text.partition("\nFalse stops")[0])
     pictures.insert(0, report.heatmap(changes, severity, out / "changes.png"))
     print("\n".join(f"wrote {path}" for path in (out / DECISIONS, out / TABLE, *pictures)))
@@ -357,10 +353,7 @@ def _draw(
     rerun: Callable[..., Any],
     path: Path,
 ) -> list[Path]:
-    """Plot some of the decisions that a corruption changed.
-
-    All these decisions come from the drive with the most changed decisions.
-    """
+    """Plot some changed decisions, from the drive on which a corruption changed the most."""
     from mitigate.replay import report
     from mitigate.replay.walk import changed_steps
 

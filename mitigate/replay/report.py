@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 from mitigate.core.files import write_figure
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.observation import DEPTH
-from mitigate.core.pictures import depth_picture, strip
 from mitigate.corruptions import Corruption
-from mitigate.evaluation.plots import COLOURS, DPI, plain, text_colour
+from mitigate.evaluation.plots import DPI, draw_cells, plain
+from mitigate.evaluation.trajectories import view_picture
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.replay import walk
 from mitigate.replay.walk import Answers, Changes
@@ -87,10 +87,7 @@ def _conditions(changes: AgentChanges) -> list[str]:
 
 
 def _other_measures(changes: AgentChanges) -> list[str]:
-    """Return a table of stops, changed target positions and agreement with the driver.
-
-    If an agent has continuous actions, a column with the distance between actions is added.
-    """
+    """Return a table of stops, changed target positions and agreement with the driver."""
     text = (
         "False stops: steps with STOP here but not on clean frames; missed stops: the reverse. Aim "
         "moved: share of the steps, in %, at which the point that the agent moves to is more than "
@@ -136,20 +133,15 @@ def heatmap(changes: AgentChanges, severity: float, path: Path) -> Path:
     agents = list(changes)
     names = [name for name in _conditions(changes) if name != "clean"]
     values = np.full((len(names), len(agents)), np.nan)
-    for (i, j), _ in np.ndenumerate(values):
-        if names[i] in changes[agents[j]]:
-            values[i, j] = changes[agents[j]][names[i]].changed.value
+    texts = np.full(values.shape, "", object)
+    for i, j in np.ndindex(values.shape):
+        if change := changes[agents[j]].get(names[i]):
+            values[i, j] = change.changed.value
+            texts[i, j] = f"{100 * change.changed.value:.0f}"
     size = (2.6 + 1.3 * len(agents), 1.6 + 0.33 * len(names))
     figure = Figure(figsize=size, layout="constrained")
     axes = figure.subplots()
-    axes.imshow(1 - values, cmap=COLOURS, vmin=0, vmax=1, aspect="auto")
-    for (i, j), value in np.ndenumerate(values):
-        if np.isnan(value):
-            continue
-        colour = text_colour(1 - value)
-        axes.text(j, i, f"{100 * value:.0f}", ha="center", va="center", color=colour, fontsize=9)
-    axes.set_xticks(range(len(agents)), [*map(plain, agents)], rotation=25, ha="right", fontsize=9)
-    axes.set_yticks(range(len(names)), names, fontsize=9)
+    draw_cells(axes, 1 - values, texts, names, agents, fontsize=9)
     axes.set_title(f"changed decisions, %, severity {severity:g}", fontsize=10)
     return write_figure(path, figure, dpi=DPI, facecolor="white")
 
@@ -178,9 +170,10 @@ def picture(
     for axis in axes:
         axis.axis("off")
     for axis, (step, seen) in zip(axes, sorted(corrupted.seen.items()), strict=False):
-        before = _view(frames[step], frames[step])
+        far = max(1e-3, frames[step].max())  # both pictures of depth have the range of clean frames
+        before = view_picture(frames[step], far)
         gap = np.full((len(before), max(1, len(before) // 40), 3), 255, np.uint8)
-        views = (before, gap, _view(seen[modality], frames[step]))
+        views = (before, gap, view_picture(seen[modality], far))
         axis.imshow(np.concatenate(views, 1), interpolation="nearest")
         old, new = (walk.named_action(a.actions[step]) for a in (clean, corrupted))
         text = f"step {step}, {recording.times[step]:.1f} s: {old} -> {new}"
@@ -191,13 +184,3 @@ def picture(
     title = f"{recording.name}: {modality} clean, and under {corruption.name}{legend}"
     figure.suptitle(plain(title), fontsize=10)
     return write_figure(path, figure, dpi=DPI, facecolor="white")
-
-
-def _view(frame: np.ndarray, clean: np.ndarray) -> np.ndarray:
-    """Return a picture of a frame, uint8 [H, W, 3].
-
-    For a panorama, the middle parts of its views are joined. Depth is coloured over the range of
-    the clean frame.
-    """
-    flat = strip(frame) if frame.ndim == 4 else frame
-    return flat if flat.shape[-1] == 3 else depth_picture(flat[..., 0], max(1e-3, clean.max()))

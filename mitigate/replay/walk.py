@@ -124,13 +124,7 @@ def walk(
 
 
 def _decision(answer: Any, agent: Agent) -> int | np.ndarray:
-    """Return the answer of an agent as an action.
-
-    A discrete action is a whole number, and a continuous action is an array float [A].
-
-    Raises:
-        ValueError: If the answer is neither.
-    """
+    """Return the answer of an agent as a whole number, or as an array float [A] if continuous."""
     if isinstance(answer, (list, tuple)) or read(answer, "shape"):
         values = np.asarray(answer)
         if values.dtype.kind == "f" and values.size and np.isfinite(values).all():
@@ -253,14 +247,10 @@ def compare(
 
 
 def _share(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the fraction of steps whose value is True, with a 95 % interval.
+    """Estimate the fraction of steps at which a drive of ``drives``, bool [T], is True.
 
-    The bootstrap resamples blocks of ``BLOCK_STEPS`` steps. With fewer than ``MIN_BLOCKS`` blocks,
-    or if all blocks have equal means, Wilson's score interval is used instead; each block counts as
-    one observation.
-
-    Args:
-        drives: For each drive, one value per step, bool [T].
+    Where :func:`_mean` has no interval, Wilson's score interval is used; each block counts as one
+    observation.
     """
     estimate = _mean(drives)
     if not np.isnan(estimate.low):
@@ -270,19 +260,16 @@ def _share(drives: Sequence[np.ndarray]) -> Estimate:
 
 
 def _mean(drives: Sequence[np.ndarray]) -> Estimate:
-    """Estimate the mean over all steps; the bootstrap resamples blocks of steps.
+    """Estimate the mean over all steps of the drives [T]; the bootstrap resamples blocks of steps.
 
     The interval is NaN if there are fewer than ``MIN_BLOCKS`` blocks, or if all blocks have equal
     means.
-
-    Args:
-        drives: For each drive, one value per step, float [T] or bool [T].
     """
     blocks = [block for drive in drives for block in _blocks(drive)]
     sums = np.array([block.sum() for block in blocks])
     steps = np.array([len(block) for block in blocks])
     if len(blocks) >= MIN_BLOCKS and np.ptp(sums / steps) > 0:
-        return bootstrap.ratio(sums, steps)
+        return bootstrap.prs(steps, sums)  # sum(sums) / sum(steps)
     return Estimate(float(sums.sum() / steps.sum()), np.nan, np.nan)
 
 

@@ -351,7 +351,7 @@ def test_table_command_prints_without_writing_files(tmp_path, capsys, monkeypatc
 @pytest.mark.slow
 def test_table_command_joins_files_and_folders(tmp_path, capsys):
     rows.append(tmp_path / "runs/base/rows.jsonl", column(8, ALL))
-    rows.append(tmp_path / "hardened.jsonl.gz", column(7, ALL, **HARD))
+    rows.write(tmp_path / "hardened.jsonl.gz", column(7, ALL, **HARD))
     inputs = [str(tmp_path / "runs"), str(tmp_path / "hardened.jsonl.gz")]
     assert table.main([*inputs, "--out", str(tmp_path / "out")]) == 0
     printed = capsys.readouterr().out

@@ -5,7 +5,6 @@ libraries.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import partial
 from statistics import fmean
@@ -72,21 +71,12 @@ def measure(seconds: float) -> dict[str, dict[str, Cost]]:
         others: dict[str, dict[str, float]] = {name: {} for name in names}
         for library, calls in peers(rgb, depth, SEVERITY).items():
             for name, call in calls.items():
-                others[name][library] = steady(partial(_ignore_number, call), seconds)
-        costs[label] = {
-            name: cost(
-                name,
-                rgb if record(name).modality == "rgb" else depth,
-                seconds,
-                others[name],
-            )
-            for name in names
-        }
+                others[name][library] = steady(lambda _, call=call: call(), seconds)
+        costs[label] = {}
+        for name in names:
+            frame = rgb if record(name).modality == "rgb" else depth
+            costs[label][name] = cost(name, frame, seconds, others[name])
     return costs
-
-
-def _ignore_number(call: Callable[[], object], _: int) -> object:
-    return call()
 
 
 def cost(name: str, frame: np.ndarray, seconds: float, others: dict[str, float]) -> Cost:

@@ -2,7 +2,7 @@
 
     python -m tools.bench.tensors --seconds 0.3
 
-This command prints only this part of the benchmark and uses one thread.
+This command prints only the tables of this part of the benchmark and uses one thread.
 """
 
 from __future__ import annotations
@@ -114,13 +114,13 @@ def _kornia(views: np.ndarray, device: str) -> Calls:
 
 def main() -> None:
     """Run from the command line."""
-    from tools.bench.report import tensor_lines
+    from tools.bench.report import tensor_tables
 
     parser = argparse.ArgumentParser(prog="tools.bench.tensors", description=__doc__)
     parser.add_argument("--seconds", type=float, default=0.3, help="per measurement (default 0.3)")
     options = parser.parse_args()
     torch.set_num_threads(1)
-    print("\n".join(tensor_lines(measure(options.seconds))))
+    print(tensor_tables(measure(options.seconds)))
 
 
 if __name__ == "__main__":

@@ -8,12 +8,14 @@ from __future__ import annotations
 
 import os
 import platform
+import re
 import statistics
 import time
 from collections.abc import Callable
 from datetime import date
 from importlib import metadata
 from pathlib import Path
+from typing import Any
 
 # number of different inputs that the timed calls use in turn
 CYCLE = 8
@@ -29,7 +31,7 @@ def steady(call: Callable[[int], object], seconds: float) -> float:
     rounds = 0
     while rounds < LEAST or time.perf_counter() < end:
         for i in range(CYCLE):
-            fastest[i] = min(fastest[i], _clock(call, i))
+            fastest[i] = min(fastest[i], clock(call, i))
         rounds += 1
     return statistics.fmean(fastest)
 
@@ -40,24 +42,22 @@ def fresh(call: Callable[[int], object], seconds: float) -> float:
     end = time.perf_counter() + seconds
     times: list[float] = []
     while len(times) < LEAST or time.perf_counter() < end:
-        times.append(_clock(call, len(times) + 1))
+        times.append(clock(call, len(times) + 1))
     return statistics.median(times)
 
 
-def _clock(call: Callable[[int], object], i: int) -> float:
+def clock(call: Callable[[Any], object], argument: Any) -> float:
+    """Return the milliseconds of one call."""
     start = time.perf_counter()
-    call(i)
+    call(argument)
     return 1e3 * (time.perf_counter() - start)
 
 
 def machine() -> str:
     """Return the processor, cores, load, date and versions of this measurement."""
-    names = [
-        line.split(":")[1].strip()
-        for line in _lines("/proc/cpuinfo")
-        if line.startswith("model name")
-    ]
-    processor = names[0] if names else platform.processor() or platform.machine()
+    info = Path("/proc/cpuinfo")
+    name = re.search(r"^model name\s*: (.*)$", info.read_text() if info.exists() else "", re.M)
+    processor = name[1].strip() if name else platform.processor() or platform.machine()
     versions = {package: version(package) for package in PACKAGES}
     software = ", ".join(f"{package} {number}" for package, number in versions.items() if number)
     return (
@@ -72,10 +72,3 @@ def version(package: str) -> str | None:
         return metadata.version(package)
     except metadata.PackageNotFoundError:
         return None
-
-
-def _lines(path: str) -> list[str]:
-    try:
-        return Path(path).read_text().splitlines()
-    except OSError:
-        return []

@@ -20,6 +20,8 @@ import sys
 import time
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import asdict, dataclass
+from importlib import import_module
+from statistics import median_high
 from typing import Any
 from unittest import mock
 
@@ -33,6 +35,7 @@ from mitigate.training.batches import Batches
 from mitigate.training.config import read
 from mitigate.training.objective import Objective, ObjectiveSpec, accumulate
 from mitigate.training.workers import Workers
+from tools.bench.timing import clock
 
 RECIPES = (
     "da_per_episode",
@@ -101,38 +104,31 @@ class Stage:
         return self.waiting * (1 - network) / self.whole
 
 
-class Clock:
-    """A clock that adds up the time of all calls of a function, in seconds."""
+def timed(function: Callable, seconds: dict[str, float], part: str) -> Callable:
+    """Return a function that calls ``function`` and adds the time to ``seconds[part]``."""
 
-    def __init__(self) -> None:
-        self.seconds = 0.0
+    def call(*args: Any, **named: Any) -> Any:
+        start = time.perf_counter()
+        try:
+            return function(*args, **named)
+        finally:
+            seconds[part] += time.perf_counter() - start
 
-    def around(self, function: Callable) -> Callable:
-        def timed(*args: Any, **named: Any) -> Any:
-            start = time.perf_counter()
-            try:
-                return function(*args, **named)
-            finally:
-                self.seconds += time.perf_counter() - start
-
-        return timed
+    return call
 
 
 @contextlib.contextmanager
-def clocked() -> Iterator[dict[str, Clock]]:
-    """Yield one clock for each part in ``PARTS``; a clock measures the part's functions inside the
-    ``with`` block.
-    """
-    clocks = {part: Clock() for part in PARTS}
+def clocked() -> Iterator[dict[str, float]]:
+    """Yield the seconds in the functions of each part in ``PARTS``, inside the ``with`` block."""
+    seconds = dict.fromkeys(PARTS, 0.0)
     with contextlib.ExitStack() as stack:
         for part, functions in PARTS.items():
             for module, owner, name in functions:
-                __import__(module)
-                holder = sys.modules[module]
+                holder = import_module(module)
                 holder = getattr(holder, owner) if owner else holder
-                timed = clocks[part].around(getattr(holder, name))
-                stack.enter_context(mock.patch.object(holder, name, timed))
-        yield clocks
+                call = timed(getattr(holder, name), seconds, part)
+                stack.enter_context(mock.patch.object(holder, name, call))
+        yield seconds
 
 
 def measure(name: str, steps: int, options: Sequence[str] = ()) -> list[Stage]:
@@ -166,11 +162,11 @@ def measure_stage(recipe: Objective, name: str, stage: str, steps: int, workers:
         update(batch)
         waits.append(arrival - start)
         updates.append(time.perf_counter() - arrival)
-    alone = [_seconds(update, batch) for _ in range(steps)]
-    whole = [a + b for a, b in zip(waits, updates, strict=True)]
-    medians = [1e3 * _median(values[-steps:]) for values in (whole, waits, alone)]
+    alone = [clock(update, batch) for _ in range(steps)]
+    whole = [1e3 * (a + b) for a, b in zip(waits, updates, strict=True)]
+    waiting = 1e3 * median_high(waits[-steps:])
     parts = {part: 1e3 * seconds for part, seconds in _time_parts(recipe, kind, steps).items()}
-    return Stage(name, stage, kind, medians[0], medians[1], medians[2], parts)
+    return Stage(name, stage, kind, median_high(whole[-steps:]), waiting, median_high(alone), parts)
 
 
 def _make_update(recipe: Objective, kind: str, device: torch.device) -> Callable[[dict], None]:
@@ -190,23 +186,13 @@ def _time_parts(recipe: Objective, kind: str, steps: int) -> dict[str, float]:
     """Compute batches in this process; return the seconds per step of each part."""
     batches = Batches(recipe, None, steps, kind, torch.device("cpu"))
     batches.batch(0)
-    with clocked() as clocks:
+    with clocked() as seconds:
         start = time.perf_counter()
         for step in range(steps):
             batches.batch(step)
         whole = time.perf_counter() - start
-    parts = {part: clock.seconds / steps for part, clock in clocks.items()}
+    parts = {part: total / steps for part, total in seconds.items()}
     return {**parts, OTHER: max(0.0, whole / steps - sum(parts.values()))}
-
-
-def _seconds(call: Callable[[Any], object], argument: Any) -> float:
-    start = time.perf_counter()
-    call(argument)
-    return time.perf_counter() - start
-
-
-def _median(values: Sequence[float]) -> float:
-    return sorted(values)[len(values) // 2]
 
 
 def measured(recipes: Sequence[str], steps: int, caps: bool) -> list[Stage]:

@@ -12,7 +12,13 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from tools.faults.disk import filled, small_disk
-from tools.faults.processes import Command, descendants, workers
+from tools.faults.processes import (
+    ASCII_OUTPUT,
+    JUMPING_CLOCK,
+    Command,
+    descendants,
+    workers,
+)
 from tools.faults.report import UNBROKEN
 from tools.faults.training import NOTICE_TIME, STATUS, TRIES, check_one_rejected
 
@@ -86,12 +92,6 @@ def pause_worker(evaluation: Evaluation) -> str:
     return ""
 
 
-def jump_clock(evaluation: Evaluation) -> str:
-    """Let the clock jump by up to a day, about once per second."""
-    clock = {"PYTHONPATH": str(Path(__file__).parent / "clock")}
-    return evaluation.start(clock).problem(0)
-
-
 def start_twice(evaluation: Evaluation) -> str:
     """Start two evaluations in the same folder; one of them must be rejected."""
     return check_one_rejected([evaluation.start(), evaluation.start()])
@@ -99,10 +99,9 @@ def start_twice(evaluation: Evaluation) -> str:
 
 def cut_row(evaluation: Evaluation) -> str:
     """Cut off the last row, as if the machine had lost power during a write."""
-    command = evaluation.start_and_wait()
-    command.process.kill()
-    command.process.wait()
-    rows = evaluation.rows()
+    rows = kill_with_rows(evaluation)
+    if not rows:
+        return TOO_LATE
     (evaluation.folder / ROWS).write_bytes(rows[: len(rows) - evaluation.rng.randint(1, 200)])
     return ""
 
@@ -165,21 +164,6 @@ def remove_folder(evaluation: Evaluation) -> str:
     return problem
 
 
-def close_stdout(evaluation: Evaluation) -> str:
-    """Run the evaluation with stdout closed."""
-    return evaluation.start(redirect=">&-").problem(0)
-
-
-def close_reader(evaluation: Evaluation) -> str:
-    """Pipe the output into ``head``, which ends after the first line."""
-    return evaluation.start(redirect="| head -n 1").problem(0)
-
-
-def print_in_ascii(evaluation: Evaluation) -> str:
-    """Run the evaluation with an output encoding that lacks some characters."""
-    return evaluation.start({"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}).problem(0)
-
-
 def kill_on_cluster(
     evaluation: Evaluation, package: str, options: Words, word: bytes, message: str
 ) -> str:
@@ -227,14 +211,10 @@ def fill_disk(evaluation: Evaluation) -> str:
             problem = command.problem(1)
             reported = "No space left" in command.output()
             problem = problem or ("" if reported else command.last_lines())
-        return problem or evaluation.start().problem(0) or copy_folder(evaluation)
-
-
-def copy_folder(evaluation: Evaluation) -> str:
-    """Copy the folder before its disk is unmounted; return a problem if it contains no rows."""
-    rows = evaluation.rows()
-    shutil.copytree(evaluation.folder, evaluation.folder.with_name("kept"))
-    return "" if rows else "no rows"
+        problem = problem or evaluation.start().problem(0)
+        if not problem:  # the folder is copied before its disk is unmounted
+            shutil.copytree(evaluation.folder, evaluation.folder.with_name("kept"))
+        return problem
 
 
 FAULTS: dict[str, Callable[[Evaluation], str]] = {
@@ -245,14 +225,14 @@ FAULTS: dict[str, Callable[[Evaluation], str]] = {
     "worker stands still": pause_worker,
     "two in one folder": start_twice,
     "last row cut": cut_row,
-    "clock jumps": jump_clock,
+    "clock jumps": lambda e: e.start(JUMPING_CLOCK).problem(0),
     "full disk": fill_disk,
     "folder removed": remove_folder,
     "damaged line": damage_line,
     "link instead of a file": plant_link,
-    "closed stdout": close_stdout,
-    "closed reader of stdout": close_reader,
-    "output in ASCII": print_in_ascii,
+    "closed stdout": lambda e: e.start(redirect=">&-").problem(0),
+    "closed reader of stdout": lambda e: e.start(redirect="| head -n 1").problem(0),
+    "output in ASCII": lambda e: e.start(ASCII_OUTPUT).problem(0),
     "Ray worker killed": kill_ray_worker,
     "SLURM job killed": kill_slurm_job,
 }

@@ -15,6 +15,10 @@ from mitigate.core.output import open_output
 
 ROOT = Path(__file__).resolve().parents[2]
 TIMEOUT = 600.0  # seconds after which a command is assumed to hang
+# environment variables for a clock that jumps by up to a day, about once per second
+JUMPING_CLOCK = {"PYTHONPATH": str(Path(__file__).parent / "clock")}
+# environment variables for an output encoding that lacks some characters
+ASCII_OUTPUT = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
 
 
 class Command:

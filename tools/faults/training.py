@@ -21,7 +21,7 @@ from pathlib import Path
 from mitigate.core import checksums
 from mitigate.training import states
 from tools.faults.disk import filled, small_disk
-from tools.faults.processes import TIMEOUT, Command, workers
+from tools.faults.processes import ASCII_OUTPUT, JUMPING_CLOCK, TIMEOUT, Command, workers
 from tools.faults.report import UNBROKEN
 
 SMOKE = ("debug=smoke", "trainer.steps=4", "evaluation.enabled=false")
@@ -149,9 +149,9 @@ def newest_checkpoints(folder: Path) -> dict[str, int]:
     return steps
 
 
-def interrupt(training: Training, number: int) -> str:
+def interrupt(training: Training, number: int, environment: dict[str, str] | None = None) -> str:
     """Send a signal at a random moment."""
-    return training.send_signal(training.start_and_wait(), number)
+    return training.send_signal(training.start_and_wait(environment), number)
 
 
 def interrupt_write(training: Training, number: int) -> str:
@@ -248,12 +248,6 @@ def pause_workers(training: Training) -> str:
     return problem or ("" if pids else "not run: it has no workers")
 
 
-def jump_clock(training: Training) -> str:
-    """Let the clock jump by up to a day, about once per second."""
-    clock = {"PYTHONPATH": str(Path(__file__).parent / "clock")}
-    return training.send_signal(training.start_and_wait(clock), signal.SIGTERM)
-
-
 def fill_disk(training: Training) -> str:
     """Fill the disk; training must end with an error message and keep finished checkpoints."""
     disk = training.folder.parent
@@ -311,12 +305,6 @@ def close_stdout(training: Training) -> str:
     return training.send_signal(command, signal.SIGTERM)
 
 
-def print_in_ascii(training: Training) -> str:
-    """Train for a random time with an output encoding that is limited to ASCII, and stop."""
-    environment = {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
-    return training.send_signal(training.start_and_wait(environment), signal.SIGTERM)
-
-
 FAULTS: dict[str, Callable[[Training], str]] = {
     "SIGKILL": lambda training: interrupt(training, signal.SIGKILL),
     "SIGTERM": lambda training: interrupt(training, signal.SIGTERM),
@@ -328,12 +316,12 @@ FAULTS: dict[str, Callable[[Training], str]] = {
     "two in one folder": start_twice,
     "worker killed": kill_worker,
     "worker stands still": pause_workers,
-    "clock jumps": jump_clock,
+    "clock jumps": lambda training: interrupt(training, signal.SIGTERM, JUMPING_CLOCK),
     "full disk": fill_disk,
     "folder removed": remove_folder,
     "link instead of a file": plant_link,
     "closed stdout": close_stdout,
-    "output in ASCII": print_in_ascii,
+    "output in ASCII": lambda training: interrupt(training, signal.SIGTERM, ASCII_OUTPUT),
 }
 SAME = "ends the same"
 

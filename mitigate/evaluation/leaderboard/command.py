@@ -62,8 +62,9 @@ def differences(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[str]:
         file=entry.rows["file"],
     )
     lines = []
+    figures = asdict(again)
     for key, stated in asdict(entry).items():
-        computed = asdict(again)[key]
+        computed = figures[key]
         pairs = {key: (stated, computed)}
         if isinstance(stated, dict):
             names = stated | computed
@@ -115,11 +116,7 @@ def _mean_sr(entry: LeaderboardEntry) -> float:
 
 
 def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
-    """Return the rows of the entry's agents, seeds and conditions.
-
-    Raises:
-        ValueError: If there are no rows of the entry's agents.
-    """
+    """Return the rows of the entry's agents, seeds and conditions."""
     agents = {(one["agent"], one["seed"]) for one in entry.agents}
     matching = [row for row in rows if (row["agent"], row["seed"]) in agents]
     if not matching:
@@ -132,10 +129,7 @@ def _rows_behind(entry: LeaderboardEntry, rows: Iterable[Row]) -> list[Row]:
 
 
 def _files(paths: Sequence[Path | str]) -> list[Path]:
-    """Return the entry files in ``paths``.
-
-    If ``paths`` is empty, return the files in ``docs/leaderboard``.
-    """
+    """Return the entry files in ``paths``, by default in ``docs/leaderboard``."""
     folders = [Path(path) for path in paths] or [find(FOLDER)]
     files = [f for p in folders for f in (sorted(p.glob("*.json")) if p.is_dir() else [p])]
     if not files:

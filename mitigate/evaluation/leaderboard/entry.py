@@ -17,7 +17,7 @@ from pydantic import AfterValidator, ConfigDict, Field, TypeAdapter, ValidationE
 from typing_extensions import TypedDict
 
 from mitigate.core import output
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_text
 from mitigate.core.json_files import read_json
 from mitigate.core.names import counted, short
 from mitigate.evaluation.bootstrap import NO_INTERVAL
@@ -149,8 +149,8 @@ class LeaderboardEntry:
         """
         text = json.dumps(asdict(self), indent=1, allow_nan=False)
         _validated(_ADAPTER, text, f"{path}: ")
-        with atomic_text(path) as file:  # the substitution puts each list of numbers on one line
-            file.write(_NUMBERS.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n")
+        # the substitution puts each list of numbers on one line
+        write_text(path, _NUMBERS.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n")
         return Path(path)
 
     def __str__(self) -> str:
@@ -196,10 +196,7 @@ _ADAPTER = TypeAdapter(LeaderboardEntry)
 
 
 def _validated(adapter: TypeAdapter, text: str, where: str, key: str = "it") -> Any:
-    """Return the value that a JSON text contains.
-
-    If the value is invalid, raise a ValueError that names the key.
-    """
+    """Return the value of a JSON text; raise a ValueError that names the key if it is invalid."""
     try:
         return adapter.validate_json(text)
     except ValidationError as error:

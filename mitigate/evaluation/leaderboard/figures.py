@@ -100,11 +100,7 @@ def rows_sha(rows: Iterable[Row]) -> str:
 
 
 def _chosen(rows: Iterable[Row], name: str, severity: float, split: str | None) -> list[Row]:
-    """Return the clean rows of the agent ``name`` and its rows at ``severity``.
-
-    Raises:
-        ValueError: If the agent has no rows at ``severity``.
-    """
+    """Return the clean rows of the agent ``name`` and its rows at ``severity``."""
     rows = list(rows)
     if name not in (names := {row["name"] for row in rows}):
         raise ValueError(unknown("agent in these rows", name, names))

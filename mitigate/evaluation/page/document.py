@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from mitigate.core.files import atomic_text
+from mitigate.core.files import write_text
 from mitigate.core.names import counted
 from mitigate.corruptions import SUITE_VERSION
 from mitigate.evaluation.page.model import (
@@ -77,8 +77,7 @@ def check_out(out: Path | str) -> Path:
 def write(text: str, out: Path | str) -> Path:
     """Write a page to ``out``, atomically. Raises as :func:`check_out`."""
     path = check_out(out)
-    with atomic_text(path) as file:
-        file.write(text)
+    write_text(path, text)
     return path
 
 

@@ -38,18 +38,36 @@ def section_data(section: Section) -> dict[str, Any]:
     of its clean SPL]. ``pairs["i-j"]`` holds the differences of agent i from agent j, where i > j
     and j < ``baselines``. The entry is None if the two agents have no common seed.
     """
-    grid = section.grid
+    grid, at = section.grid, section.severity
     values = [_values(section, column) for column in section.columns]
     names = [CLEAN, *section.corruptions]
     blocks = ["", *(block for block, members in section.blocks.items() for _ in members)]
     pairs = _pairs(section, names)
+    severity = f"severity {at:g}" if section.blocks else "clean"
+    title = (grid.heading, section.kind, severity, f"suite {grid.suite}")
+    intervals = f"{LEVEL:.0%}, paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples"
     return {
-        "title": _title(section),
-        "facts": _facts(section),
+        "title": ", ".join(filter(None, title)),
+        "facts": [
+            ["Split", grid.heading],
+            ["Episodes", f"{len(grid.episodes):,}"],
+            ["Success", grid.rule],
+            ["Corruption suite", grid.suite],
+            ["Severity", f"{at:g}" if section.blocks else "clean only"],
+            ["Intervals", intervals],
+        ],
         "split": grid.split,
         "rule": grid.rule,
-        "severity": section.severity,
-        "columns": [_column(section, column) for column in section.columns],
+        "severity": at,
+        "columns": [
+            {
+                "label": column,
+                "place": list(grid.columns).index(column),
+                "agents": grid.agents_at(column, at),
+                "seeds": list(grid.seeds[column, at]),
+            }
+            for column in section.columns
+        ],
         "measures": _measures(section),
         "values": values,
         "corruptions": [
@@ -57,7 +75,7 @@ def section_data(section: Section) -> dict[str, Any]:
                 "name": name,
                 "title": "Clean" if name == CLEAN else label(name),
                 "block": block,
-                "at": str(0.0 if name == CLEAN else float(section.severity)),
+                "at": str(0.0 if name == CLEAN else float(at)),
             }
             for name, block in zip(names, blocks, strict=True)
         ],
@@ -103,43 +121,8 @@ def shortened(x: float) -> float:
     return short if same else x
 
 
-def _title(section: Section) -> str:
-    at = f"severity {section.severity:g}" if section.blocks else "clean"
-    parts = (section.grid.heading, section.kind, at, f"suite {section.grid.suite}")
-    return ", ".join(filter(None, parts))
-
-
-def _facts(section: Section) -> list[list[str]]:
-    grid = section.grid
-    return [
-        ["Split", grid.heading],
-        ["Episodes", f"{len(grid.episodes):,}"],
-        ["Success", grid.rule],
-        ["Corruption suite", grid.suite],
-        ["Severity", f"{section.severity:g}" if section.blocks else "clean only"],
-        [
-            "Intervals",
-            f"{LEVEL:.0%}, paired bootstrap over {grid.resampled}, {RESAMPLES:,} resamples",
-        ],
-    ]
-
-
-def _column(section: Section, column: str) -> dict[str, Any]:
-    seeds = section.grid.seeds[column, section.severity]
-    agents = section.grid.agents_at(column, section.severity)
-    return {
-        "label": column,
-        "place": list(section.grid.columns).index(column),
-        "agents": list(agents),
-        "seeds": list(seeds),
-    }
-
-
 def _prs_places(section: Section) -> list[tuple[str, str]]:
-    """Return the pairs (part, metric) that have a PRS, in the order of the table.
-
-    A part is a block of corruptions, or the validation half or test half of a block.
-    """
+    """Return the pairs (part, metric) that have a PRS; a part is a block or a half of a block."""
     parts = [part for block in section.blocks for part in (block, *section.halves.get(block, ()))]
     return [(part, metric) for part in parts for metric in METRICS]
 
@@ -204,11 +187,7 @@ def _single_prs(section: Section, column: str, name: str, metric: str) -> float 
 
 
 def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
-    """Return each column's differences from those earlier columns that can be the baseline.
-
-    The differences are paired over common episodes and common seeds. For a common seed, both
-    columns were evaluated with the same random keys of corruptions.
-    """
+    """Return each column's differences from those earlier columns that can be the baseline."""
     return {
         f"{i}-{j}": _pair(section, first, second, names)
         for j, second in enumerate(section.columns[:BASELINES])
@@ -219,10 +198,9 @@ def _pairs(section: Section, names: Sequence[str]) -> dict[str, Any]:
 def _pair(section: Section, first: str, second: str, names: Sequence[str]) -> dict | None:
     """Return the differences, or None if the columns have no common seed."""
     pair, at = (first, second), section.severity
-    common = section.grid.common(pair, at)
-    if not common:
+    both = section.grid.paired(pair, at)
+    if both is None:
         return None
-    both = section.grid.over(pair, common, at)
     changes = {
         metric: [both.cell(first, n, at, key) - both.cell(second, n, at, key) for n in names]
         for metric, key in METRICS.items()

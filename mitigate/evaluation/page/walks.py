@@ -149,11 +149,7 @@ def walk_again(
 
 
 def _rows_of(rows: Sequence[Row], hashes: Mapping[str, str]) -> list[Row]:
-    """Return the rows of the agents in ``hashes`` (by name).
-
-    Raises:
-        ValueError: If there are rows with the name of an agent, but none of them has its hash.
-    """
+    """Return the rows of the agents, whose names and hashes are in ``hashes``."""
     for name, agent_hash in hashes.items():
         others = sorted({row["agent"] for row in rows if row["name"] == name})
         if others and agent_hash not in others:
