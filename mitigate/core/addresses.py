@@ -83,9 +83,10 @@ def is_plain(choice: object) -> bool:
 def check_arguments(arguments: Iterable[str]) -> None:
     """Check the addresses in command-line arguments before Hydra parses and prints them.
 
-    The arguments are split without a parser, whose error messages would contain secrets.
-    :func:`check_choice` checks every part of a value of ``safeguard=``. In other arguments that
-    seem to contain a URL with a secret, it checks the parts that look like addresses.
+    A parser would print an invalid argument, with its secrets, in an error message. Therefore the
+    arguments are split into parts without a parser. :func:`check_choice` checks every part of a
+    value of ``safeguard=``. In all other arguments that seem to contain a URL with a secret, it
+    checks the parts that look like addresses.
     """
     is_value = False  # whether the previous arguments are ``safeguard`` or ``safeguard =``
     for word in arguments:

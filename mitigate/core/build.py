@@ -23,10 +23,17 @@ COLLECT = "builtins.dict"  # a _target_ that only returns the built arguments
 
 
 def build(node: Mapping[str, Any], **arguments: Any) -> Any:
-    """Return the object that ``node`` describes: ``_target_`` and its arguments.
+    """Return the object that ``node`` describes.
 
-    The constructor receives nested lists and mappings as plain lists and dicts, and an entry with
-    ``_partial_: true`` as a :class:`Maker`. Its ValueError or FileNotFoundError is raised again.
+    The constructor receives nested lists and mappings as plain lists and dicts. The constructor
+    receives an entry with ``_partial_: true`` as a :class:`Maker`.
+
+    Args:
+        node: a mapping with ``_target_`` and the arguments of the target.
+        arguments: additional keyword arguments.
+
+    Raises:
+        ValueError, FileNotFoundError: If the constructor raises ValueError or FileNotFoundError.
     """
     config = plain(node)
     makers = {k: Maker(v) for k, v in config.items() if isinstance(v, dict) and v.get(PARTIAL)}
@@ -54,9 +61,10 @@ def arguments_of(node: Mapping[str, Any]) -> dict[str, Any]:
 def argument_names(kind: Any) -> list[str]:
     """Return the names of the arguments that a config may set for ``kind``.
 
-    They include the arguments of ``kind.sources`` (``mitigate.training.objective``) instead of the
-    sources themselves.
+    A class with ``sources`` (``mitigate.training.objective``) also accepts the arguments of its
+    source classes. A config cannot set the source objects themselves.
     """
+    # other classes and functions have no ``sources``
     sources: Mapping[str, Any] = getattr(kind, "sources", {})
     names = [name for name in signature(kind).parameters if name not in sources]
     for source in sources.values():
@@ -79,7 +87,10 @@ def _check_arguments(node: Mapping[str, Any], names: Iterable[str]) -> None:
 
 
 class Maker:
-    """Picklable function that constructs a new object from a config at each call."""
+    """Function object that constructs a new object from a config at each call.
+
+    A Maker can be pickled, so that worker processes can construct their own objects.
+    """
 
     def __init__(self, node: Mapping[str, Any]) -> None:
         self.node = {name: value for name, value in node.items() if name != PARTIAL}
@@ -99,7 +110,11 @@ def plain(node: Any) -> dict[str, Any]:
 
 
 def locate(target: str) -> Any:
-    """Import and return the object ``module.Name``; raise ValueError if there is no such object."""
+    """Import and return the object that ``target`` names (``module.Name``).
+
+    Raises:
+        ValueError: If there is no such object.
+    """
     try:
         return get_object(target)
     except ImportError as error:
@@ -107,7 +122,11 @@ def locate(target: str) -> Any:
 
 
 def imported(name: str | None, option: str) -> Callable[..., Any]:
-    """Return the callable that an option names as ``module:callable``, or raise ValueError."""
+    """Import and return the callable that an option names as ``module:callable``.
+
+    Raises:
+        ValueError: If the module cannot be imported, or has no such callable.
+    """
     module_name, _, attribute = (name or "").partition(":")
     if not (module_name and attribute):
         raise ValueError(

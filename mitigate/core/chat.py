@@ -39,7 +39,7 @@ class _Refused(Exception):
     """Raised for an answer with an HTTP status other than success."""
 
     def __init__(self, status: int, reason: str) -> None:
-        super().__init__(f"HTTP {status} {short(reason)}")
+        super().__init__(f"HTTP {status} {short(_without_key(reason))}")
         self.status = status
 
 
@@ -76,9 +76,12 @@ class ChatClient:
     def ask(
         self, messages: Sequence[Mapping[str, Any]], longest: int, ends: float | None = None
     ) -> str:
-        """Return the answer to ``messages`` (OpenAI's format), of at most ``longest`` characters.
+        """Return the answer to ``messages``.
 
-        ``ends`` is the value of ``time.monotonic()`` at which requests end, or None.
+        Args:
+            messages: the conversation in OpenAI's format.
+            longest: maximum length of the answer, in characters.
+            ends: value of ``time.monotonic()`` at which requests end; None sets no limit.
 
         Raises:
             NoAnswer: If all attempts failed, a failure was permanent, or the time limit has passed.
@@ -98,7 +101,7 @@ class ChatClient:
                 if error.status not in RETRIED:
                     break
             except (OSError, ValueError, RecursionError, urllib3.exceptions.HTTPError) as error:
-                problem = f"{type(error).__name__}: {short(str(error), 200)}"
+                problem = f"{type(error).__name__}: {short(_without_key(str(error)), 200)}"
             wait = self.pause * 2**attempt
             if attempt == self.retries or (ends is not None and time.monotonic() + wait > ends):
                 break
@@ -115,16 +118,17 @@ class ChatClient:
 
 
 def post(url: str, body: bytes, headers: dict[str, str], seconds: float, most: int) -> bytes:
-    """Send ``body`` to ``url`` and return the answer of at most ``most`` bytes.
+    """Send ``body`` to ``url`` and return the answer.
 
-    ``seconds`` limits the total time. The request runs in a thread, because socket timeouts do not
-    limit name resolution, and each address of a host has its own timeout. A thread that exceeds the
-    limit is abandoned; it ends when its socket times out.
+    ``seconds`` limits the total time, including name resolution, connecting and reading. The
+    request runs in a thread, because socket timeouts do not limit name resolution, and each address
+    of a host has its own timeout. A thread that exceeds the limit is abandoned; it ends when its
+    socket times out.
 
     Raises:
         TimeoutError: If no complete answer arrived in time.
-        ValueError: If the answer is too long.
-        _Refused: If the HTTP status is not 2xx.
+        ValueError: If the answer has more than ``most`` bytes.
+        _Refused: If the HTTP status is not 2xx. Redirects are not followed.
     """
     answers: SimpleQueue[bytes | Exception] = SimpleQueue()
 
@@ -174,13 +178,27 @@ def _exchange(url: str, body: bytes, headers: dict[str, str], seconds: float, mo
     raise TimeoutError(f"no complete answer within {seconds:g} s")
 
 
+def _without_key(text: str) -> str:
+    """Replace the API key in ``text``, because a server or a library may repeat the key.
+
+    A key with white space, such as a final newline, is escaped in messages. So each part between
+    white space is replaced. Parts of fewer than four characters are too short to be secret.
+    """
+    for part in os.environ.get(KEY, "").split():
+        if len(part) >= 4:
+            text = text.replace(part, "[key]")
+    return text
+
+
 def _content(reply: Any) -> str:
     """Return the text of the first choice; raise ValueError if the reply has an unexpected form."""
     try:
         content = reply["choices"][0]["message"]["content"]
     except (KeyError, IndexError, TypeError) as error:
-        raise ValueError(f"no choices[0].message.content in {json.dumps(reply)[:120]}") from error
+        raise ValueError(
+            f"no choices[0].message.content in {_without_key(json.dumps(reply))[:120]}"
+        ) from error
     if not isinstance(content, str):
-        raise ValueError(f"the answer is not text: {content!r:.120}")
+        raise ValueError(f"the answer is not text: {_without_key(repr(content))[:120]}")
     content.encode("utf-8")  # a single surrogate is not valid text
     return content.strip()

@@ -28,7 +28,11 @@ ADAPTER = ".adapter."
 
 
 def weights_file(path: str | Path) -> Path:
-    """Return the safetensors file at ``path`` or in this folder, or raise FileNotFoundError."""
+    """Return the safetensors file that ``path`` names directly or by its folder.
+
+    Raises:
+        FileNotFoundError: If there is no safetensors file at ``path``.
+    """
     path = Path(path)
     file = path if path.suffix == ".safetensors" else path / WEIGHTS
     if path.is_file() and path != file:
@@ -52,7 +56,11 @@ def weights_file(path: str | Path) -> Path:
 
 
 def save_weights(module: nn.Module, folder: str | Path) -> Path:
-    """Write the state dict of ``module`` and a manifest; return the safetensors file."""
+    """Write the tensors of ``module.state_dict()`` and a manifest into ``folder``.
+
+    Returns:
+        The safetensors file.
+    """
     with folders.write_folder(folder, "weights") as draft:
         write_tensors(module, draft / WEIGHTS)
     return Path(folder) / WEIGHTS
@@ -121,9 +129,10 @@ def check_finite(module: nn.Module, what: str) -> None:
 
 
 def load_part(module: nn.Module, name: str, path: str | Path) -> None:
-    """Load the part ``name`` of the weights at ``path`` into ``module`` (:func:`load_weights`).
+    """Load only the part ``name`` of the weights at ``path`` into ``module``.
 
-    Tensors that ``module`` lacks, such as a layer for a sensor that it does not read, are skipped.
+    Tensors that ``module`` does not have are skipped. An example is a layer for a sensor that the
+    module does not read. The checks and errors are those of :func:`load_weights`.
     """
     file = weights_file(path)
     prefix = f"{name}."
@@ -138,6 +147,7 @@ def load_part(module: nn.Module, name: str, path: str | Path) -> None:
 
 
 def _fill(module: nn.Module, tensors: dict[str, torch.Tensor], file: Path) -> None:
+    """Load the tensors of ``file`` into ``module``; raise ValueError if they do not match."""
     borrowed = _borrowed(module)
     state = {k: v for k, v in module.state_dict().items() if isinstance(v, torch.Tensor)}
     expected = {k: v for k, v in {**state, **borrowed}.items() if k not in borrowed or k in tensors}
@@ -168,7 +178,7 @@ def _fits(value: torch.Tensor, expected: torch.Tensor) -> bool:
 
 
 def _borrowed(module: nn.Module) -> dict[str, torch.Tensor]:
-    """Return the public tensors of all modules (:func:`borrow`)."""
+    """Return the public tensors, which are not part of state dicts (:func:`borrow`)."""
     return {
         f"{prefix}.{name}" if prefix else name: value
         for prefix, part in module.named_modules()
@@ -187,8 +197,8 @@ def load_tensors(file: Path) -> dict[str, torch.Tensor]:
     if pointer := lfs_problem(file):
         raise ValueError(f"The weights {file} cannot be read: {file.name} {pointer}.")
     try:
-        # safe_open compares the header with the size of the file first, because the sha256 of a
-        # sparse file of several terabytes would take hours
+        # safe_open compares the sizes of tensors in the header with the size of the file.
+        # Without this check, the sha256 of a sparse file of several terabytes would take hours.
         with safe_open(file, "pt"):
             problem = folders.problem(file)
         if not problem:
@@ -228,9 +238,13 @@ class OwnFormat(Protocol):
 
 
 def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) -> None:
-    """Write ``agent`` and the text ``config`` of ``config.yaml``, if any, into ``folder``.
+    """Write the weights of ``agent`` and its settings into ``folder``.
 
-    An agent of :class:`OwnFormat` writes its weights itself.
+    Args:
+        agent: the agent. If the agent has a method ``save`` (:class:`OwnFormat`), this method
+            writes the weights; otherwise :func:`save_weights` does.
+        folder: the folder.
+        config: text of ``config.yaml``, or None to write no such file.
     """
     if isinstance(agent, OwnFormat):
         agent.save(folder)
@@ -244,7 +258,10 @@ def save_agent(agent: nn.Module, folder: str | Path, config: str | None = None) 
 
 
 def load_agent(agent: nn.Module, path: str | Path) -> None:
-    """Load what :func:`save_agent` wrote; raise the same errors as :func:`load_weights`."""
+    """Load into ``agent`` the weights at ``path``, which :func:`save_agent` wrote.
+
+    Raises the same errors as :func:`load_weights`.
+    """
     if isinstance(agent, OwnFormat):
         agent.load(path)
     else:
@@ -254,7 +271,9 @@ def load_agent(agent: nn.Module, path: str | Path) -> None:
 def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
     """Return 12 hex digits of the sha256 over the names, dtypes, shapes and bytes of all tensors.
 
-    Tensors whose name contains the text ``leave_out`` are excluded.
+    Args:
+        module: the module.
+        leave_out: tensors are excluded if their name contains this text.
     """
     sha = hashlib.sha256()
     for name, value in sorted(module.state_dict().items()):
@@ -266,10 +285,12 @@ def weights_sha(module: nn.Module, leave_out: str | None = None) -> str:
 
 
 def borrow(module: nn.Module, prefixes: tuple[str, ...], source: str, name: str) -> None:
-    """Exclude unchanged public tensors of ``module`` from its state dicts and checkpoints.
+    """Exclude public tensors of ``module`` from its state dicts while they are unchanged.
 
-    A state dict contains the sha256 of the public file instead. When it is loaded, the tensors get
-    their public values; with a different public file, ValueError is raised.
+    Public weights are therefore never copied into a checkpoint. The checkpoint contains the other
+    tensors, such as adapters, and the sha256 of the public file. When the checkpoint is loaded, the
+    excluded tensors get their public values. Loading a state dict that was made with a different
+    public file raises ValueError.
 
     Args:
         module: the module.

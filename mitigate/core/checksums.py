@@ -22,7 +22,7 @@ _LINE = re.compile(r"([0-9a-f]{64})  (.+)")
 
 
 def sidecar(path: Path) -> Path:
-    """Return the path of the sidecar for ``path``."""
+    """Return the path of the sidecar for ``path``, whether or not it exists."""
     return path.with_name(path.name + SUFFIX)
 
 
@@ -53,9 +53,14 @@ def _sums_before(path: Path) -> list[str]:
 
 
 def problem(path: Path) -> str:
-    """Return a predicate such as "does not have the sha256 ...", or "" if ``path`` is intact.
+    """Compare ``path`` with its sidecar and describe the problem.
 
-    A file without a sidecar counts as intact. Raises PermissionError if the file cannot be read.
+    Returns:
+        A predicate such as "does not have the sha256 ...", or "" if the file is intact or has no
+        sidecar.
+
+    Raises:
+        PermissionError: If the user has no permission to read the file; it may be intact.
     """
     note = sidecar(path)
     if not note.is_file():
@@ -69,13 +74,19 @@ def problem(path: Path) -> str:
 
 
 def delete(path: Path) -> None:
-    """Delete ``path`` and, first, its sidecar, because a file without a sidecar is valid."""
+    """Delete ``path`` and its sidecar.
+
+    The sidecar is deleted first, because a file without a sidecar counts as valid.
+    """
     sidecar(path).unlink(missing_ok=True)
     path.unlink(missing_ok=True)
 
 
 def delete_orphans(folder: Path, pattern: str) -> None:
-    """Delete sidecars in ``folder`` whose file, which matches ``pattern``, no longer exists."""
+    """Delete sidecars in ``folder`` whose file no longer exists.
+
+    The glob ``pattern`` matches the files that may have sidecars.
+    """
     for note in folder.glob(pattern + SUFFIX):
         if not note.with_suffix("").is_file():
             note.unlink(missing_ok=True)

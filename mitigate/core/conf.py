@@ -43,7 +43,8 @@ TYPES: dict[str, type] = {}  # the dataclass of each registered conf/<name>.yaml
 # for each conf/<name>.yaml, maps a config group to the group's files that the command rejects
 REJECTED: dict[str, Mapping[str, Sequence[str]]] = {}
 FULL = "HYDRA_FULL_ERROR"  # environment variable that makes Hydra show whole tracebacks
-# main sets this variable together with FULL, so child programs know that the user did not
+# main sets this variable together with FULL.
+# Child programs then know that the user did not set FULL.
 OURS = "MITIGATE_FULL_ERROR"
 # line that Hydra prints (hydra.core.utils, JobReturn.return_value)
 HYDRA_LINE = "Error executing job with overrides"
@@ -67,8 +68,10 @@ def register(
     Args:
         primary: name of the config.
         kind: dataclass that declares the type of each option.
-        schema: the defaults list of the file contains ``<schema>_schema``; by default ``primary``.
-        rejected: maps config groups to the names of files that the command rejects.
+        schema: name of the schema without the suffix ``_schema``; the defaults list of the file
+            contains ``<schema>_schema``. The default is ``primary``.
+        rejected: maps config groups to the names of files that the command rejects. The help of the
+            command does not list these files.
     """
     TYPES[primary] = kind
     REJECTED[primary] = rejected or {}
@@ -78,8 +81,11 @@ def register(
 def typed(cfg: DictConfig, primary: str) -> Any:
     """Convert composed options to the dataclass of ``conf/<primary>.yaml``.
 
-    Other entries become attributes of the object. Raises ValueError if an entry refers to a missing
-    entry, or a mandatory entry is not set.
+    Entries that the dataclass does not declare become attributes of the object. Nodes without a
+    type become dicts.
+
+    Raises:
+        ValueError: If an entry refers to a missing entry, or a mandatory entry is not set.
     """
     try:
         return OmegaConf.to_object(cfg)
@@ -101,18 +107,21 @@ def main(
 ) -> None:
     """Run the Hydra program of a command and explain its errors.
 
-    With ``--help``, it only prints every option and the docstring of ``program``'s module.
+    With ``--help``, it only prints every option and the first lines of ``program``'s module
+    docstring.
 
     After a ValueError, an OSError, an error in a config or a request for too much memory, it prints
     one paragraph and exits with status 1. After Ctrl-C (status 130) and SIGTERM (status 143), it
     prints the command that resumes the work.
 
     Args:
-        program: result of :func:`hydra_program`.
+        program: a ``hydra.main`` function that uses the config ``conf/<primary>.yaml``
+            (:func:`hydra_program`).
         primary: name of the config.
-        check: function that checks the command-line arguments before ``program`` runs.
-        behind: command-line arguments that Hydra does not parse, such as those after ``--``. They
-            are appended to the printed command.
+        check: function that is called before ``program`` and checks the command-line arguments.
+            Addresses are checked earlier (``core/addresses.py``).
+        behind: command-line arguments that were removed before Hydra parses the rest, such as those
+            after ``--``. They are appended to the printed command.
         again: text before the printed command that states what the command does.
     """
     if {"--help", "-h"} & set(sys.argv[1:]):
@@ -162,7 +171,8 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
     """Check the addresses in config files before Hydra prints them or saves the config of a sweep.
 
     The check takes a tenth of a second. It therefore runs only if the user names a config folder,
-    starts a sweep or prints a config.
+    starts a sweep or prints a config; ``words`` are the command-line arguments. Raises the same
+    errors as :func:`mitigate.core.addresses.check_arguments`.
     """
     if not any(word.startswith("-") or "hydra." in word for word in words):
         return
@@ -181,7 +191,11 @@ def _check_files(primary: str, words: Sequence[str]) -> None:
 
 
 class _WithoutHydraLine:
-    """Output stream that drops the line that Hydra prints before an error."""
+    """Output stream that drops the line that Hydra prints before an error.
+
+    The line is not needed: :func:`main` explains a user's mistake, and other errors have a
+    traceback.
+    """
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
@@ -239,7 +253,8 @@ def load_config(primary: str, words: Sequence[str] = (), with_hydra: bool = Fals
 
     Args:
         primary: name of the config.
-        words: Hydra overrides, and optionally the option ``--config-dir``.
+        words: Hydra overrides, and optionally the option ``--config-dir`` with a folder of more
+            configs.
         with_hydra: whether to add Hydra's own settings as ``hydra``.
 
     Raises:
@@ -262,7 +277,11 @@ def load_config(primary: str, words: Sequence[str] = (), with_hydra: bool = Fals
 
 
 def notices(primary: str, options: Sequence[str]) -> list[str]:
-    """Return warnings about added entries (``+columns.mine=[...]``) that Hydra does not give."""
+    """Return warnings about the entries that ``options`` add, such as ``+columns.mine=[...]``.
+
+    Hydra itself does not warn when it replaces an existing list or mapping, or adds an entry that
+    no program reads.
+    """
     added = {
         option[1:].partition("=")[0]: option.partition("=")[2][:1] in "[{"
         for option in options
@@ -318,8 +337,8 @@ def _recipes() -> str:
 def options_text(primary: str) -> str:
     """Describe every option of ``conf/<primary>.yaml`` by its comment.
 
-    Options that choose a file in ``conf/`` come first. The file contains options that recipes set
-    as comments.
+    Options that choose a file in ``conf/`` come first, with their allowed values. Options that
+    recipes set are also listed; the file contains them as comments.
     """
     text, _, _ = (CONF / f"{primary}.yaml").read_text(encoding="utf-8").partition("\nhydra:")
     lines = [re.sub(r"^# (\w+: .*#)", r"\1", line) for line in text.splitlines()]
@@ -332,7 +351,11 @@ def options_text(primary: str) -> str:
 
 
 def _choices(group: str, primary: str) -> str:
-    """Return the names of a group's files; agents that cannot run episodes are listed apart."""
+    """Return the names of the config files in a group.
+
+    The group ``agent`` lists agents that can run episodes. For training, the other agents are
+    listed separately, because they have their own recipes.
+    """
     rejected = REJECTED[primary].get(group, ())
     files = [path for path in sorted((CONF / group).glob("*.yaml")) if path.stem not in rejected]
     if group != "agent":
@@ -345,9 +368,10 @@ def _choices(group: str, primary: str) -> str:
 
 
 def walks(file: Path) -> bool:
-    """Return whether the agent of a file in ``conf/agent`` can run episodes.
+    """Return whether the agent that ``file`` (in ``conf/agent``) defines can run episodes.
 
-    Such a file also sets entries outside the group ``agent``, such as ``weights`` and ``env``.
+    The file of such an agent begins with ``WHOLE``, because it also sets entries outside the group
+    ``agent``, such as ``weights`` and ``env``.
     """
     return file.read_text(encoding="utf-8").startswith(WHOLE)
 
@@ -391,7 +415,10 @@ def _unknown_key(key: str, cfg: DictConfig, primary: str) -> str:
 
 
 def _arguments(node: DictConfig) -> list[str]:
-    """Return the arguments that ``node`` does not set, if its ``_target_`` is of this project."""
+    """Return the arguments of the ``_target_`` of ``node`` that ``node`` does not set.
+
+    Only targets of this project are imported; for other targets the result is empty.
+    """
     target = str(node.get("_target_", ""))
     if not target.startswith(f"{PACKAGE.name}."):
         return []

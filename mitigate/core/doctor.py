@@ -28,7 +28,13 @@ ROOM = 5.0  # free GB on the disk for the environment, runs and caches (heuristi
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print the report, and return 0 if training can run on this machine, else 1."""
+    """Print the report.
+
+    The only option is ``--help``; any other option exits with status 2.
+
+    Returns:
+        0 if training can run on this machine, else 1.
+    """
     parser = argparse.ArgumentParser(prog="mitigate doctor", description=__doc__)
     parser.parse_args(arguments)
     problems = [*_machine(), *_packages(), *_renderer(), *_files()]
@@ -68,7 +74,10 @@ def _flags() -> set[str]:
 
 
 def processor(flags: set[str]) -> str:
-    """Describe which vector instructions, such as AVX2, a processor with ``flags`` supports."""
+    """Describe which vector instructions, such as AVX2, a processor with ``flags`` supports.
+
+    Without native bf16, torch emulates bf16, which is several times slower than fp32.
+    """
     if not flags:
         return "unknown (no flags in /proc/cpuinfo)"
     has = [name for name, needed in LEVELS.items() if needed <= flags]
@@ -76,7 +85,10 @@ def processor(flags: set[str]) -> str:
 
 
 def compiler() -> str | None:
-    """Return the path of the compiler CXX or of another C++ compiler, or None."""
+    """Return the path of a C++ compiler, or None.
+
+    If the environment variable CXX is set, only the compiler that it names is accepted.
+    """
     named = os.environ.get("CXX", "").split()[:1]
     return next((path for name in named or COMPILERS if (path := shutil.which(name))), None)
 
@@ -99,7 +111,10 @@ def _packages() -> list[str]:
 
 
 def _requirements() -> dict[str, list[str]]:
-    """Map each extra of the installed mitigate, and "" (no extra), to its packages."""
+    """Map each extra of the installed mitigate to its packages.
+
+    The key "" has the packages that every installation requires.
+    """
     extras: defaultdict[str, list[str]] = defaultdict(list)
     for requirement in requires("mitigate") or ():
         name, _, marker = requirement.partition(";")
@@ -142,7 +157,7 @@ def _renderer() -> list[str]:
 
 
 def _software_frame() -> tuple[int, int]:
-    """Render an empty offscreen frame with the software renderer, and return its size."""
+    """Render an empty offscreen frame with the software renderer; return its size in pixels."""
     from panda3d import core
 
     core.load_prc_file_data("", "load-display p3tinydisplay\nnotify-level-display error")

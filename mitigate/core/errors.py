@@ -26,9 +26,11 @@ _INSTALLED = {"site-packages", "dist-packages"}
 
 
 def error_message(error: ValueError | OSError) -> str:
-    """Return a paragraph that explains an error, with control characters escaped.
+    """Return a paragraph that explains an error.
 
-    It names the file and line of the user's code, or the file of a system error.
+    For an error in the user's code, the paragraph names the file and line. For a system error, the
+    paragraph names the file and, if the disk is full, says what to do. Control characters are
+    escaped.
     """
     if not isinstance(error, OSError) or error.strerror is None:
         place = own_place(error)
@@ -43,9 +45,10 @@ def error_message(error: ValueError | OSError) -> str:
 
 
 def command(name: str) -> Callable[[Main], Main]:
-    """Return a decorator for the main function of the command ``name``.
+    """Return a decorator that makes the main function of a command explain errors.
 
-    After a ValueError or OSError, it prints one paragraph and returns the exit status 2.
+    For a ValueError or OSError of the main function, the decorated function prints one paragraph
+    instead of a traceback, and returns the exit status 2. The paragraph begins with ``name``.
     """
 
     def decorate(main: Main) -> Main:
@@ -65,9 +68,10 @@ def command(name: str) -> Callable[[Main], Main]:
 
 
 def own_place(error: BaseException) -> str:
-    """Return the file, line and function of the user's code that raised ``error``, or "".
+    """Return the file, line and function of the user's code that raised ``error``.
 
-    A library counts as part of the code that called it.
+    A library that the user's code called is treated as the user's code. The result is empty if this
+    project, or a library that this project called, raised the error.
     """
     place = ""
     for frame in traceback.extract_tb(error.__traceback__):

@@ -43,7 +43,15 @@ WEIGHTS_VARIABLE = "MITIGATE_WEIGHTS"
 
 
 def find(path: str | Path) -> Path:
-    """Return the first existing path of :func:`places`, or ``path`` itself if none exists.
+    """Return the path of a file or folder of the project.
+
+    Configs name shipped weights and episodes as ``checkpoints/base`` and ``mitigate/worlds/...``.
+
+    Args:
+        path: a path, relative to the current folder or to a checkout; ``~`` is the home folder.
+
+    Returns:
+        The first existing path of :func:`places`, or ``path`` itself if none exists.
 
     Raises:
         FileNotFoundError: If the path names shipped weights (``checkpoints/...``) that do not
@@ -74,8 +82,8 @@ def weights_below(folder: Path) -> list[str]:
 def places(path: str | Path) -> list[Path]:
     """Return the candidates for ``path``, in the order in which they are tried.
 
-    They are in the current folder (``~`` is the home folder), the package mitigate-weights, the
-    checkout, and the folder that ``MITIGATE_WEIGHTS`` names.
+    The candidates are in the current folder, the package mitigate-weights, the checkout, and the
+    folder that ``MITIGATE_WEIGHTS`` names.
     """
     path = Path(os.path.expanduser(path))  # "~" stays unchanged if the user is unknown
     if path.parts[:1] != (WEIGHTS,):
@@ -89,9 +97,10 @@ def places(path: str | Path) -> list[Path]:
 
 
 def open_text(path: Path | str) -> io.TextIOWrapper:
-    """Open ``path``, which may be gzipped, for reading as UTF-8; skip a byte order mark.
+    """Open ``path`` for reading as UTF-8; skip a byte order mark.
 
-    Reading raises BadGzipFile if a gzip file is damaged or unpacks to too many bytes (``RATIO``).
+    A gzip file is recognised by its first two bytes, not by its name. Reading raises BadGzipFile if
+    the gzip file is damaged or truncated, or if it unpacks to too many bytes (``RATIO``).
 
     Raises:
         FileNotFoundError: If the file does not exist; the message lists the nearest names.
@@ -116,7 +125,10 @@ class _Unpacked(gzip.GzipFile):
         self._unpacked = 0
 
     def read(self, size: int | None = -1) -> bytes:
-        """Read like a file object, but stop one byte after the limit."""
+        """Read like a file object, but stop at a limit if ``size`` is not set.
+
+        Reading stops one byte after the limit, which is enough to detect a file that is too large.
+        """
         count = self._limit + 1 - self._unpacked if size is None or size < 0 else size
         return self._checked(super().read, count)
 
@@ -162,9 +174,15 @@ def read_bounded(path: Path | str, most: int) -> bytes:
 
 
 def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]:
-    """Return the last ``count`` non-empty lines in the last ``TAIL_BYTES`` of a program's output.
+    """Return the last non-empty lines of a program's output, for a message.
 
-    Control characters are escaped, and lines are shortened to ``width`` characters and " ... ".
+    Only the last ``TAIL_BYTES`` are read. A longer line is shortened in its middle, and control
+    characters are escaped.
+
+    Args:
+        file: seekable file, open for reading.
+        count: maximum number of lines.
+        width: maximum number of characters per line. In a shortened line, " ... " is not counted.
     """
     size = file.seek(0, os.SEEK_END)
     file.seek(max(0, size - TAIL_BYTES))
@@ -178,7 +196,10 @@ def last_lines(file: BinaryIO, count: int, width: int = LINE_WIDTH) -> list[str]
 
 
 def make_folder(folder: Path | str) -> Path:
-    """Create ``folder`` and its parents unless it exists, and return it."""
+    """Create ``folder`` and its parents unless it exists, and return it.
+
+    Raises the same errors as :func:`mitigate.core.output.writing` and ``check``.
+    """
     with output.writing(folder):
         output.make_checked(folder)
     return Path(folder)
@@ -196,9 +217,10 @@ def draft_path(path: Path) -> Path:
 
 @contextmanager
 def _draft(path: Path) -> Iterator[Path]:
-    """Yield an empty temporary file that is flushed and renamed to ``path`` after the block.
+    """Yield an empty temporary file that is renamed to ``path`` after the block.
 
-    Its permissions follow the umask. If the block raises an error, the file is deleted.
+    The temporary file is in the same folder, which is created if needed. The file is flushed to
+    disk, and its permissions follow the umask. If the block raises an error, the file is deleted.
     """
     temporary = draft_path(path)
     with output.writing(path):
@@ -226,7 +248,8 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
     """Yield a UTF-8 text file that becomes ``path`` only if the block ends without an error.
 
     If the name ends in ``.gz``, the text is gzipped without time stamp and file name, so equal
-    texts give equal bytes. Raises OSError if the file cannot be written.
+    texts give equal bytes. Raises OSError, as :func:`mitigate.core.output.writing` does, if the
+    file cannot be written.
     """
     path = Path(path)
     with _draft(path) as temporary, open(temporary, "wb") as raw:
@@ -243,7 +266,14 @@ def atomic_text(path: Path | str) -> Iterator[TextIO]:
 
 
 def put_folder(draft: Path, target: Path, old: Path) -> None:
-    """Rename ``target``, if it exists, to ``old``, and ``draft`` to ``target``, or neither."""
+    """Rename ``draft`` to ``target``; an existing ``target`` is first renamed to ``old``.
+
+    If renaming ``draft`` fails, ``old`` is renamed back to ``target``. All three paths must be on
+    the same disk.
+
+    Raises:
+        OSError: If a path cannot be renamed.
+    """
     if target.exists():
         target.rename(old)
     try:
@@ -255,7 +285,13 @@ def put_folder(draft: Path, target: Path, old: Path) -> None:
 
 
 def sha256(path: Path | str) -> str:
-    """Return the sha256 of a file in hex; raise UnsafePathError for a FIFO or a device."""
+    """Return the sha256 of a file as hex digits.
+
+    Raises:
+        FileNotFoundError: If the file does not exist.
+        UnsafePathError: If the path is a FIFO, a socket or a device, since reading it could block
+            forever.
+    """
     output.is_regular(path)
     digest = hashlib.sha256()
     with open(path, "rb") as file:
@@ -265,7 +301,13 @@ def sha256(path: Path | str) -> str:
 
 
 def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
-    """Write ``path`` atomically: call ``write`` with a temporary file, flush it, and rename it."""
+    """Write ``path`` atomically: call ``write`` with a temporary file, flush it, and rename it.
+
+    If ``write`` raises an error, an existing file at ``path`` stays unchanged.
+
+    Raises:
+        OSError: If the file cannot be written; :func:`mitigate.core.output.writing` explains why.
+    """
     with _draft(path) as temporary:
         write(temporary)
     folder = os.open(path.parent, os.O_RDONLY)
@@ -279,7 +321,8 @@ def write_atomically(path: Path, write: Callable[[Path], Any]) -> Path:
 def write_bytes(path: Path | str, data: bytes) -> None:
     """Write ``data`` to ``path`` atomically, and create its folder if needed.
 
-    Raises OSError if the file cannot be written.
+    Raises:
+        OSError: If the file cannot be written; :func:`mitigate.core.output.writing` explains why.
     """
     with _draft(Path(path)) as temporary, output.writing(path):
         temporary.write_bytes(data)
@@ -291,17 +334,20 @@ def write_text(path: Path | str, text: str) -> None:
 
 
 def write_json(path: Path | str, value: Any, indent: int | None = None, **options: Any) -> None:
-    """Write ``value`` as JSON and a final newline to ``path`` atomically, never gzipped.
+    """Write ``value`` as JSON and a final newline to ``path`` atomically.
 
-    ``options`` are other arguments of ``json.dumps``.
+    ``options`` are other arguments of ``json.dumps``. A path in ``.gz`` is not gzipped.
     """
     write_bytes(path, (json.dumps(value, indent=indent, **options) + "\n").encode())
 
 
 def write_figure(path: Path | str, figure: Any, **options: Any) -> Path:
-    """Write a matplotlib ``figure`` atomically; the suffix of ``path`` determines the format.
+    """Write a matplotlib ``figure`` to ``path`` atomically.
 
-    ``options`` are other arguments of ``savefig``, such as ``dpi``.
+    Args:
+        path: The path of the picture; its suffix determines the format.
+        figure: A ``matplotlib.figure.Figure``.
+        options: Other arguments of ``savefig``, such as ``dpi``.
     """
     path = Path(path)
     picture = io.BytesIO()

@@ -10,8 +10,9 @@ Every folder that this project ships or trains has the same layout::
 A folder in the format of another library keeps the names of that library, such as
 ``adapter_config.json`` of PEFT.
 
-During an update, the manifest lists both the new files and the files that they replace. A reader
-therefore gets either all old files or all new files, or rejects the folder.
+When a folder is updated, files are replaced one by one. During the update, the manifest lists both
+the new files and the files that they replace. A reader therefore gets either all old files or all
+new files, or rejects the folder.
 """
 
 from __future__ import annotations
@@ -70,9 +71,10 @@ class Manifest(NamedTuple):
 
 @contextmanager
 def write_folder(folder: str | Path, kind: str) -> Iterator[Path]:
-    """Yield an empty temporary folder, whose files replace those of the manifest in ``folder``.
+    """Yield an empty temporary folder; its files replace those in ``folder`` after the block.
 
-    Nothing is replaced if the block raises an error. Files that no manifest lists are kept.
+    Nothing is replaced if the block raises an error. Files of the earlier manifest that are not in
+    the temporary folder are deleted. Files that no manifest lists are kept.
 
     Raises:
         OSError: If the folder cannot be written.
@@ -148,7 +150,11 @@ def _replace(draft: Path, folder: Path, kind: str) -> None:
 
 
 def seal(folder: str | Path, kind: str) -> None:
-    """Write the manifest of a complete temporary folder, before it is renamed."""
+    """Write the manifest of the files in ``folder``.
+
+    Use this only for a complete temporary folder that no other process changes before it is
+    renamed.
+    """
     _write_manifest(Path(folder), Manifest(kind, _entries(Path(folder)), {}))
 
 
@@ -242,7 +248,7 @@ def check(
     Args:
         folder: the folder.
         optional: names that may be missing.
-        again: advice at the end of each message.
+        again: advice at the end of each message: how to replace a damaged folder.
 
     Raises:
         FileNotFoundError: If a file is missing.
@@ -279,14 +285,19 @@ def _compare(folder: Path, files: dict[str, Entry], optional: Iterable[str], aga
 
 
 def _matches(file: Path, entry: Entry) -> bool:
-    """Return whether a file matches its entry."""
+    """Return whether a file matches its entry; the file is read only if its size is right."""
     return entry.size == file.stat().st_size and sha256(file) == entry.sha256
 
 
 def problem(file: Path) -> str:
-    """Return a predicate such as "does not have the sha256 ...", or "" if ``file`` is intact.
+    """Compare ``file`` with the manifest of its folder.
 
-    A file that no manifest lists counts as intact. Raises PermissionError if it cannot be read.
+    Returns:
+        A predicate such as "does not have the sha256 ...". It is "" if the file is intact, or if no
+        manifest lists it.
+
+    Raises:
+        PermissionError: If the user has no permission to read the file; it may be intact.
     """
     try:
         manifest = read_manifest(file.parent)
@@ -300,10 +311,12 @@ def problem(file: Path) -> str:
 
 
 def read_checked(file: Path, again: str) -> dict[str, Any]:
-    """Return the object in an untrusted JSON file, after a comparison with the folder's manifest.
+    """Return the object in an untrusted JSON file, after comparing the file with its manifest.
 
     Raises:
-        ValueError: If the file is damaged. The message ends with the advice ``again``.
+        ValueError: If the file does not match the manifest of its folder, is damaged, or does not
+            hold a JSON object. The message ends with the advice ``again``.
+        PermissionError: If the user has no permission to read the file; it may be intact.
     """
     if damage := problem(file):
         raise ValueError(f"{file} is truncated or damaged: it {damage}. {again}")

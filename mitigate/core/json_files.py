@@ -47,7 +47,12 @@ def read_json(path: Path, again: str, most: int = LARGEST_JSON) -> Any:
 
 
 def read_object(path: Path, again: str, most: int = LARGEST_JSON) -> dict[str, Any]:
-    """Read a JSON object like :func:`read_json`; raise ValueError for another kind of value."""
+    """Return the JSON object in ``path``; it is read with :func:`read_json`.
+
+    Raises:
+        ValueError: If the file is damaged or holds a different kind of value, such as null or a
+            list. The message names the file and ends with the text ``again``.
+    """
     value = read_json(path, again, most)
     if not isinstance(value, dict):
         raise ValueError(f"{path} must hold a JSON object, got {short(value)}. {again}")
@@ -78,8 +83,9 @@ _FINITE = json.JSONDecoder(parse_constant=_no_number, parse_float=_finite)
 def json_members(path: Path | str, streamed: str) -> Iterator[tuple[str, Any]]:
     """Yield the pairs (key, value) of the JSON object in ``path``; keep only one value in memory.
 
-    For the key ``streamed``, an iterator over the items of a list is yielded instead of the list.
-    Raises ValueError unless the file contains exactly one JSON object.
+    If the value of the key ``streamed`` is a list, an iterator over its items is yielded instead of
+    the list. Raises ValueError if the file is not text, is malformed or truncated, does not contain
+    a JSON object, or contains anything after the object.
     """
     with open_text(path) as file:
         json_file = _JsonFile(file, path)
@@ -125,6 +131,7 @@ class _JsonFile:
             self.expect(",", f"',' or '{bracket}'")
 
     def expect(self, character: str, name: str) -> None:
+        """Skip the next character; raise ValueError if it is not ``character``."""
         if not self.accept(character):
             self._fail(f"expected {name}")
 
@@ -139,6 +146,7 @@ class _JsonFile:
         return accepted
 
     def end(self) -> None:
+        """Raise ValueError if the rest of the file contains anything except white space."""
         self.accept("")
         if self._at < len(self._text):
             self._fail("expected the end of the file")
@@ -161,9 +169,10 @@ class _JsonFile:
                 self._fail("too many levels")
 
     def _more(self) -> bool:
-        """Replace the parsed part of the buffer by more text; return False at the end of the file.
+        """Discard the parsed part of the buffer, and append more text from the file.
 
-        The new part is as long as the rest or longer, so a long value needs few reads.
+        The appended part is as long as the rest or longer, so a long value needs few reads.
+        Returns False at the end of the file.
         """
         self._before += self._at
         self._text = self._text[self._at :]

@@ -23,8 +23,9 @@ from mitigate.core.output import writing
 NAME = ".lock"
 # Names of unfinished files, as mitigate/core/files.py writes them.
 _DRAFT = re.compile(r"\..+\.(\d+)\.tmp")
-# Locks of this process. A record lock does not prevent the same process from locking again, and is
-# lost when the process closes any file descriptor of the locked file.
+# These are the locks of this process.
+# A record lock does not prevent the same process from locking again.
+# The process loses a lock when it closes any file descriptor of the locked file.
 _locks: dict[Path, IO[str]] = {}
 
 
@@ -32,13 +33,15 @@ class FolderLock:
     """Context manager that creates ``folder`` and locks it while a process writes to it.
 
     The lock is a record lock of the system (``fcntl``) on a file in the folder. The system releases
-    it when the process ends, even if the process is killed. Worker processes do not inherit it. It
-    excludes processes on other machines if the file system supports this. On a file system without
-    locks, nothing is locked.
+    the lock when the process ends, even if the process is killed. Worker processes do not inherit
+    the lock. The lock also excludes processes on other machines if the file system supports this.
+    On a file system without locks, nothing is locked.
 
-    Every write below a locked folder, and the end of the block, check that the folder and the lock
-    file are still the same (``core/output.py``). If the block raises an error before it has written
-    anything, the folders that the lock created are deleted again.
+    While a folder is locked, every write below the folder checks that the folder and the lock file
+    are still the same (``core/output.py``). The same check is made at the end of the block.
+
+    If the block raises an error before it has written anything, the folders that the lock created
+    are deleted again.
 
     Args:
         folder: the folder.
@@ -137,9 +140,12 @@ class FolderLock:
 def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
     """Delete unfinished files in ``folder`` whose processes have ended, and return their paths.
 
-    The subfolders ``within`` are also searched, unless they have their own lock. Call this only
-    while this process holds the lock: a file with the id of this process is then left from an
-    earlier process that had the same id, for example before a container restarted.
+    The subfolders ``within`` are also searched, unless they have their own lock. Deeper folders are
+    not searched.
+
+    Call this only while this process holds the lock. An unfinished file with the id of this
+    process is then left from an earlier process that had the same id, for example before a
+    container restarted.
     """
     inside = [folder / name for name in within]
     inside = [p for p in inside if not (p.is_symlink() or (p / NAME).exists())]
@@ -150,7 +156,9 @@ def delete_leftovers(folder: Path, within: Iterable[str] = ()) -> list[Path]:
 def delete_abandoned(drafts: Iterable[Path], ours: bool = False) -> list[Path]:
     """Delete those ``drafts`` whose processes have ended, and return their paths.
 
-    If ``ours`` is true, drafts of this process are also deleted.
+    Args:
+        drafts: Paths that may be unfinished files of ``mitigate/core/files.py``.
+        ours: Also delete drafts of this process.
     """
     abandoned = []
     for path in drafts:

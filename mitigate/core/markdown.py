@@ -19,9 +19,12 @@ def plain_text(markdown: str) -> str:
 
 
 def markdown_table(head: Sequence[str], rows: Iterable[Iterable[object]], words: int = 1) -> str:
-    """Return a Markdown table; cells are not escaped.
+    """Return a Markdown table.
 
-    The first ``words`` columns are left-aligned, and the others right-aligned.
+    Args:
+        head: titles of the columns.
+        rows: cells of each row, which are written without escaping.
+        words: number of leading columns that are left-aligned; the other columns are right-aligned.
     """
     sides = ["---" if column < words else "---:" for column in range(len(head))]
     lines = (map(str, cells) for cells in (head, sides, *rows))

@@ -45,7 +45,10 @@ class Memory:
 
 
 def give_back() -> None:
-    """Return freed memory to the system, of which glibc keeps more and more if array sizes vary."""
+    """Return freed memory to the system; this takes a few milliseconds.
+
+    glibc keeps freed memory for later use. If array sizes vary, glibc keeps more and more memory.
+    """
     with suppress(AttributeError, OSError, TypeError):  # the C library may not be glibc
         ctypes.CDLL(None).malloc_trim(0)
 

@@ -13,9 +13,14 @@ LONGEST_MESSAGE = 16000  # maximum length of a command's message, in characters 
 
 
 def unknown(what: str, name: object, allowed: Iterable[str]) -> str:
-    """Return the error paragraph for an unknown ``name`` of a ``what``, such as "corruption".
+    """Return the error paragraph for an unknown ``name``.
 
-    It suggests the nearest of the ``allowed`` names, and lists all of them; a set is sorted.
+    The paragraph suggests the nearest allowed name, and lists all allowed names.
+
+    Args:
+        what: kind of thing, such as "corruption".
+        name: the unknown name.
+        allowed: the names that exist; a set is sorted.
     """
     allowed = list(allowed) if isinstance(allowed, (list, tuple, Mapping)) else sorted(allowed)
     near = difflib.get_close_matches(str(name)[:LONGEST_NAME], allowed, n=1)
@@ -30,7 +35,10 @@ def counted(count: int, what: str) -> str:
 
 
 def short(value: object, most: int = 60) -> str:
-    """Return an untrusted ``value`` as printable text of about ``most`` characters on one line."""
+    """Return an untrusted ``value`` as printable text on one line.
+
+    The text has at most about ``most`` characters.
+    """
     text = ascii(value[: most + 1] if isinstance(value, str) else value)
     return text if len(text) <= most + 2 else f"{text[:most]}..."
 
@@ -50,18 +58,21 @@ def file_name(text: str) -> str:
 
 
 def printable(message: str) -> str:
-    """Return ``message``, cut to ``LONGEST_MESSAGE``, without control characters except newlines.
+    """Return ``message`` without control characters except line breaks, for output on a terminal.
 
-    Names from files, which a message may quote, can contain terminal escape sequences.
+    A message may quote names from files, which can contain terminal escape sequences. A message
+    longer than ``LONGEST_MESSAGE`` characters is cut.
     """
     lines = message[:LONGEST_MESSAGE].split("\n")
     return "\n".join(escaped(line, LONGEST_MESSAGE) for line in lines)
 
 
 def name_of(weights: str) -> str:
-    """Return a display name for weights: the name of a run, or the kind of a shipped agent.
+    """Return a display name for the weights at a path.
 
-    ``checkpoints/frontier/base`` is "frontier", and ``.../teacher`` is "frontier_teacher".
+    For the folder ``agent`` of a run, the display name is the name of the run. For shipped weights,
+    it is the kind of agent: ``checkpoints/frontier/base`` is named "frontier", and ``.../teacher``
+    is named "frontier_teacher".
     """
     path = Path(weights.removesuffix(".safetensors"))
     while path.name in ("model", "agent", "run"):

@@ -46,20 +46,24 @@ class Sensor:
     """Describes one entry of an observation."""
 
     kind: str  # "rgb", "depth", "pose" or "text"
-    shape: tuple[int, ...]  # the first axis counts views if there are several
-    dtype: str  # name in numpy
+    shape: tuple[int, ...]  # shape of the array; the first axis counts views if there are several
+    dtype: str  # numpy name of the dtype
     unit: str = ""  # "m" for depth
     hfov: float | None = None  # horizontal field of view in degrees
-    yaws: tuple[float, ...] = (0.0,)  # directions of views in degrees to the right of the heading
+    # directions of the views, in degrees to the right of the heading
+    yaws: tuple[float, ...] = (0.0,)
     low: float = -math.inf  # least valid value
     high: float = math.inf  # greatest valid value
     missing: float | None = None  # value that means "no reading"
 
 
 def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
-    """Return the standard sensors (see the docstring of this module) with ``size`` pixels.
+    """Return the standard sensors, which this module's docstring describes.
 
-    With ``views=1``, a single forward camera has frames ``[H, W, c]`` without an axis for views.
+    Args:
+        size: height and width of a view in pixels.
+        views: number of views. 1 means a single forward camera, whose frames ``[H, W, c]`` have no
+            axis for views.
     """
     yaws = tuple(VIEW_STEP_DEGREES * k for k in range(views))
     shape = (views, size, size) if views > 1 else (size, size)
@@ -73,7 +77,10 @@ def cameras(size: int, views: int = VIEWS) -> dict[str, Sensor]:
 def sensor_lines(sensors: Mapping[str, Sensor], read: Any = None) -> tuple[str, ...]:
     """Return one line per sensor of a world that an agent reads.
 
-    ``read`` are the names that the agent reads; if no sensor has one of them, all are listed.
+    Args:
+        sensors: the sensors that the world provides.
+        read: the names of the sensors that the agent reads. If the world has none of them, all
+            sensors of the world are listed.
     """
     names = read if isinstance(read, Sequence) and {*map(str, read)} & {*sensors} else sensors
     lines = []
@@ -114,6 +121,7 @@ class Observation(Mapping[str, Any]):
 
     @property
     def clean(self) -> Observation:
+        """The observation before the corruption."""
         return self if self._clean is None else self._clean
 
     def __getitem__(self, name: str) -> Any:

@@ -27,9 +27,15 @@ def asks_help(arguments: Sequence[str]) -> bool:
 def paths_and_options(
     arguments: Sequence[str], paths: Sequence[str], known: Collection[str]
 ) -> tuple[list[str], dict[str, str]]:
-    """Return the paths and the ``key=value`` options (by name) of a command line.
+    """Return the paths and the ``key=value`` options of a command line.
 
-    ``paths`` are the names of the required paths, and ``known`` those of the allowed options.
+    Args:
+        arguments: all command-line arguments.
+        paths: names of the required paths, for messages.
+        known: names of the allowed options.
+
+    Returns:
+        The paths, and the options by name, as text.
 
     Raises:
         ValueError: If the number of paths is wrong, an option is unknown or set twice, or an
@@ -62,7 +68,10 @@ def paths_and_options(
 
 
 def check_paths(paths: Sequence[object], options: str) -> None:
-    """Raise ValueError for a path like ``out=x``; ``options`` shows the right form."""
+    """Raise ValueError for a path like ``out=x``, which is meant as an option.
+
+    Commands whose options begin with dashes call this; ``options`` shows their form in the message.
+    """
     for path in map(str, paths):
         if path.partition("=")[0].isidentifier() and "=" in path and not Path(path).exists():
             raise ValueError(f"There is no file {path}. Write options here as {options}.")
@@ -76,9 +85,10 @@ def paths_and_overrides(arguments: Iterable[str]) -> tuple[list[str], list[str]]
 
 
 def values(options: Sequence[str], key: str) -> list[str]:
-    """Return the values that ``options`` last assign to ``key``, without quotes and escapes.
+    """Return the values that ``options`` assign to ``key``, without quotes and escapes.
 
-    A sweep (``key=a,b``) has several values. The list is empty if Hydra cannot parse the options.
+    If ``key`` is set several times, the last value counts. A sweep (``key=a,b``) has several
+    values. The list is empty if ``key`` is not set or Hydra cannot parse the options.
     """
     from hydra.core.override_parser.overrides_parser import OverridesParser  # an optional package
     from hydra.core.override_parser.types import QuotedString
@@ -98,13 +108,17 @@ def values(options: Sequence[str], key: str) -> list[str]:
 
 
 def config_folder(options: Sequence[str]) -> Path | None:
-    """Return the folder that ``--config-dir`` names, or None."""
+    """Return the user's folder of configs if ``options`` name such a folder, else None."""
     match = re.search(r"(?:^|\n)(?:--config-dir|-cd)[=\n]([^\n]+)", "\n".join(options))
     return Path(match[1]) if match else None
 
 
 def without_config_folder(options: Sequence[str]) -> tuple[list[str], list[str]]:
-    """Return the arguments that belong to ``--config-dir``, and the remaining arguments."""
+    """Separate the option ``--config-dir``, which names a folder of configs, from other options.
+
+    Returns:
+        The command-line arguments that set the folder, and the remaining arguments.
+    """
     folder_words: list[str] = []
     rest: list[str] = []
     for word in options:
@@ -130,7 +144,10 @@ def check_dashes(options: Sequence[str]) -> None:
 
 
 def flags_first(words: Sequence[str]) -> list[str]:
-    """Move flags to the front, because Hydra rejects a flag between two overrides."""
+    """Move ``--multirun`` and ``--config-dir`` to the front of the command-line arguments.
+
+    The parser of Hydra rejects a flag that stands between two overrides.
+    """
     flags = [word for word in words if word in MULTIRUN]
     folder, others = without_config_folder([word for word in words if word not in MULTIRUN])
     return [*flags[:1], *folder, *others]

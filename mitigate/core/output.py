@@ -39,12 +39,16 @@ class FolderLostError(OSError):
 class Root:
     """An output folder that this process uses."""
 
-    folder: Path  # as the user wrote it; it may be a link
+    folder: Path  # the path as the user wrote it; it may be a link
     places: tuple[Path, ...]  # absolute paths of the folder: as written, and with links resolved
-    descriptor: int  # of the folder; while it is open, the inode is not reused
-    lock: tuple[Path, os.stat_result] | None = None  # path and status of the lock file
-    expected: list[Path] = field(default_factory=list)  # must exist when the command ends
-    seen: set[Path] = field(default_factory=set)  # subfolders that must not disappear any more
+    # open file descriptor of the folder; while it is open, the inode is not reused
+    descriptor: int
+    # path and status of the lock file, or None without a lock
+    lock: tuple[Path, os.stat_result] | None = None
+    # files and folders that must exist when the command ends
+    expected: list[Path] = field(default_factory=list)
+    # subfolders that an earlier check found; they must not disappear
+    seen: set[Path] = field(default_factory=set)
 
     def inner(self, path: Path) -> Path | None:
         """Return the absolute ``path`` relative to the folder, or None if it lies outside."""
@@ -59,7 +63,12 @@ class Root:
             raise lost(self.lock[0])
 
     def check_inside(self, inner: Path) -> None:
-        """Check each folder along the relative path ``inner``: neither a link, nor lost."""
+        """Check each folder along ``inner``, a path relative to the output folder.
+
+        Raises:
+            UnsafePathError: If one of these folders is a link or is not a folder.
+            FolderLostError: If a folder that was checked earlier is missing now.
+        """
         place = self.places[0]
         for part in inner.parts:
             place = place / part
@@ -107,9 +116,10 @@ def lost(*paths: Path) -> FolderLostError:
 
 
 def register(folder: Path | str, lock: IO[str] | None = None) -> Root:
-    """Watch an existing ``folder`` and its ``lock`` until :func:`unregister`.
+    """Watch an existing ``folder`` until :func:`unregister`.
 
-    Every write below it checks that both are unchanged, and that no folder on the path is a link.
+    While the folder is watched, every write below it checks that the folder and its ``lock`` are
+    unchanged, and that no subfolder on the path is a link.
     """
     folder = Path(folder)
     places = (Path(os.path.abspath(folder)), folder.resolve())
@@ -129,7 +139,10 @@ def unregister(root: Root) -> None:
 
 @contextmanager
 def writing(path: Path | str) -> Iterator[None]:
-    """Explain system errors (OSError) of a block that writes ``path``; they keep their type."""
+    """Explain system errors that occur while the block writes the file or folder ``path``.
+
+    The error keeps its type. Its message states that the path cannot be written, and what to do.
+    """
     try:
         yield
     except OSError as error:
@@ -146,7 +159,7 @@ def output_folder(folder: Path | str, *expected: str) -> Iterator[Root]:
     """Create ``folder`` and watch it while the block runs.
 
     Args:
-        folder: the folder; it may be a link.
+        folder: the folder that the user named; it may be a link.
         expected: names of files that must be in the folder when the block ends.
 
     Raises:
@@ -182,7 +195,7 @@ def make_checked(folder: Path | str) -> None:
 
 
 def forget(folder: Path | str) -> None:
-    """Declare that ``folder`` will be deleted, so its absence is no error."""
+    """Declare that ``folder`` will be deleted, so that its absence is not reported as an error."""
     folder = Path(os.path.abspath(folder))
     for root in _roots:
         root.seen = {path for path in root.seen if not path.is_relative_to(folder)}
@@ -214,7 +227,8 @@ def is_regular(path: Path | str) -> bool:
     """Return whether the file ``path`` exists; links are followed.
 
     Raises:
-        UnsafePathError: If ``path`` is a FIFO, a socket or a device.
+        UnsafePathError: If ``path`` is a FIFO, a socket or a device, since reading it could block
+            forever.
     """
     try:
         mode = os.stat(path).st_mode
@@ -238,7 +252,12 @@ def _check_folder(folder: Path) -> None:
 
 
 def open_output(path: Path | str, mode: str = "w", **options: Any) -> IO[Any]:
-    """Open a regular file in an existing folder for writing; the arguments are those of ``open``.
+    """Open a regular file for writing.
+
+    Args:
+        path: Path of the file; its folder must exist.
+        mode: A mode of ``open``: "w", "a", "x" or "r+", with "b" and "+".
+        options: Other arguments of ``open``, such as ``encoding``.
 
     Raises:
         UnsafePathError: If ``path`` is a symbolic link, a folder, a FIFO, a socket or a device, has

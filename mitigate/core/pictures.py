@@ -15,7 +15,14 @@ NO_READING = (255, 255, 255)  # colour of invalid depth
 
 
 def side_by_side(views: np.ndarray) -> np.ndarray:
-    """Join views, uint8 [V, H, W, 3] or depth in metres [V, H, W, 1], to uint8 [H, V * W, 3]."""
+    """Join views side by side.
+
+    Args:
+        views: uint8 [V, H, W, 3], or depth in metres [V, H, W, 1], which is shown in grey.
+
+    Returns:
+        uint8 [H, V * W, 3].
+    """
     if views.shape[-1] == 1:
         grey = np.nan_to_num(views, posinf=0.0) / max(1e-6, float(np.nanmax(views)))
         views = np.repeat((255 * grey.clip(0, 1)).astype(np.uint8), 3, axis=-1)
@@ -31,7 +38,10 @@ def strip(views: np.ndarray) -> np.ndarray:
 
 
 def picture(observation: Mapping[str, Any] | None) -> np.ndarray | None:
-    """Return a picture, uint8 [H, W, 3], of an observation's RGB or else depth frame, or None."""
+    """Return a picture of an observation, uint8 [H, W, 3], or None if it has no frames.
+
+    The picture shows the RGB frame, or the depth frame if there is no RGB frame.
+    """
     entries = observation or {}
     frame = next((np.asarray(entries[name]) for name in (RGB, DEPTH) if name in entries), None)
     if frame is None:

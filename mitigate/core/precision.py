@@ -1,9 +1,11 @@
 """Choose the number format in which networks compute, once per run.
 
-The choice depends only on the device and not on timing, so that the same command trains the same
-weights on a busy machine. The trainer stores its choice in the checkpoint, and computes only inside
-:func:`computing`. Weights stay float32, and evaluations compute in float32, so that rows from
-different machines can be compared.
+The choice depends only on the device. The choice is not based on timing, because on a busy machine
+the same command could then choose a different format and train different weights.
+
+The trainer stores its choice in the checkpoint. The trainer runs all computations inside
+:func:`computing`: forward passes, rollouts, teachers and feature caches. Weights stay float32, and
+evaluations compute in float32, so that rows from different machines can be compared.
 """
 
 from __future__ import annotations
@@ -22,7 +24,8 @@ CHOICES = ("auto", "fp32", "bf16")
 CAP = "ONEDNN_MAX_CPU_ISA"  # environment variable that limits the instructions that oneDNN uses
 # values of ONEDNN_MAX_CPU_ISA with which oneDNN may use bf16 instructions
 _NATIVE = re.compile("BF16|FP16|AMX|AVX10|DEFAULT|ALL")
-# result of probe() where stage costs were measured: on 2 cores of an AMD EPYC, limited to AVX2
+# result of probe() in milliseconds on the machine where stage costs were measured
+# That machine has 2 cores of an AMD EPYC, limited to AVX2.
 REFERENCE = 12.0
 
 
@@ -37,6 +40,9 @@ def choose(precision: str, device: torch.device) -> str:
 
     "auto" means bf16 only if the device computes bf16 natively, else fp32. Emulated bf16 is 3 to 10
     times slower than fp32 (measured with AVX2).
+
+    Raises:
+        ValueError: If ``precision`` is not in ``CHOICES``.
     """
     check(precision)
     if precision != "auto":
@@ -47,9 +53,10 @@ def choose(precision: str, device: torch.device) -> str:
 
 
 def device_of(name: str) -> torch.device:
-    """Return the device for a ``name`` such as "cuda:1"; "auto" means CUDA if available.
+    """Return the device for a ``name`` such as "cpu" or "cuda:1"; "auto" means CUDA if available.
 
-    Raises ValueError if the device is not available.
+    Raises:
+        ValueError: If the device is not available.
     """
     if name == "auto":
         return torch.device("cuda" if torch.cuda.is_available() else "cpu")
@@ -75,7 +82,10 @@ def device_of(name: str) -> torch.device:
 
 
 def to_device(value: Any, device: torch.device) -> Any:
-    """Move all objects with a method ``to``, also in dicts, lists and tuples, to ``device``."""
+    """Move tensors, and other objects with a method ``to``, to ``device``.
+
+    The contents of dicts, lists and tuples are moved too. Other values are returned unchanged.
+    """
     if hasattr(value, "to"):  # users' agents may define their own class of batches
         return value.to(device)
     if isinstance(value, dict):
@@ -104,9 +114,10 @@ def native() -> bool:
 
 @lru_cache(maxsize=1)
 def probe(rounds: int = 7) -> float:
-    """Measure this machine: the milliseconds of the fastest of ``rounds`` small fp32 steps.
+    """Measure the speed of this machine: the milliseconds that a small fp32 training step takes.
 
-    A step has convolutions and a matrix product. The measurement takes a tenth of a second.
+    The step has convolutions and a matrix product. The time of the fastest of ``rounds`` runs is
+    returned. The measurement takes a tenth of a second and runs once per process.
     """
     with torch.random.fork_rng(devices=[]):
         x = torch.randn(48, 32, 32, 32)

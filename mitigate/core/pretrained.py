@@ -25,7 +25,7 @@ def load_network(auto: Any, place: str, precision: str, **options: Any) -> Any:
     """Return the network at ``place``, built by a class such as ``AutoModelForCausalLM``.
 
     Args:
-        auto: class of the library transformers that loads the network.
+        auto: the Auto class of the library transformers that loads the network.
         place: a local folder, or the id of a model on the Hugging Face Hub.
         precision: precision of the weights: "fp32", "bf16", "int8" (bitsandbytes LLM.int8) or
             "nf4" (bitsandbytes, 4-bit NormalFloat, computed in bf16).
@@ -74,7 +74,13 @@ def local_folder(base: str) -> str:
 
 @contextmanager
 def explained(base: str, precision: str, install: str) -> Iterator[None]:
-    """Explain errors of transformers; ``install`` is the command for missing packages."""
+    """Convert errors of transformers to errors with a one-paragraph message.
+
+    Args:
+        base: name of the model.
+        precision: precision of its weights.
+        install: command that installs missing packages.
+    """
     try:
         yield
     except ImportError as error:
@@ -92,7 +98,10 @@ def explained(base: str, precision: str, install: str) -> Iterator[None]:
 
 
 def files_sha256(place: str, pattern: str = "*.safetensors") -> str:
-    """Return one sha256 of all weight files in a folder, sorted by name, or of a hub id itself."""
+    """Return one sha256 over the contents of all weight files in a folder, sorted by name.
+
+    For a hub id, return the sha256 of the id itself.
+    """
     files = sorted(Path(place).glob(pattern))
     sha = hashlib.sha256()
     for file in files:

@@ -24,7 +24,10 @@ class Progress:
         title: name of the job.
         total: number of units.
         unit: name of a unit, in the singular.
-        start: number of units that were done before, from 0 to ``total``.
+        start: number of units that were done before.
+
+    Raises:
+        ValueError: If ``start`` is not between 0 and ``total``.
     """
 
     def __init__(self, title: str, total: int, *, unit: str = "step", start: int = 0) -> None:
@@ -107,8 +110,9 @@ class Progress:
     def _pace(self) -> float | None:
         """Return the mean seconds per unit, or None while the mean is unknown.
 
-        The mean excludes the first units, which compile code and open files. It is unknown until
-        another 1 % of all units is done, because each worker compiles code.
+        The mean excludes the first units, because their time includes compiling code and opening
+        files. The mean is unknown until another 1 % of all units is done, because each worker
+        compiles code during its first units.
         """
         least = max(1, (self.total - self.start) // 100)
         if self._first is None or self.done - self._first[0] < least:
@@ -133,7 +137,7 @@ def say(text: str) -> None:
 
 
 def duration(seconds: float) -> str:
-    """Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min`` or ``unknown time``."""
+    """Format a duration: ``8 s``, ``3 min 10 s``, ``1 h 05 min``; infinity is ``unknown time``."""
     if math.isinf(seconds):
         return "unknown time"
     whole = round(seconds)

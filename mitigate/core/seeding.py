@@ -35,7 +35,7 @@ def generator(*key: Key) -> np.random.Generator:
 
 
 def pick(options: Sequence[Item], rng: np.random.Generator) -> Item:
-    """Return a random one of ``options``."""
+    """Return one of ``options``, each with the same probability."""
     return options[int(rng.integers(len(options)))]
 
 

@@ -22,16 +22,20 @@ LARGEST = 1 << 16  # maximum size of a file in bytes (heuristic); the config of 
 DEEPEST = 16  # maximum nesting of lists and mappings (heuristic; the config of a run has 8)
 GREATEST = 1 << 53  # largest allowed integer; not every larger one is exact as a float (IEEE 754)
 UNRESOLVED = ("${", "???")  # OmegaConf resolves values with ${ and treats ??? as missing
+_SHOWN = 60  # maximum length of a key or value in a message, in characters
 _WARNING = "Settings that come with weights are plain data: do not use this folder."
 
 
 def read(file: Path) -> dict[str, Any]:
     """Return the YAML mapping in ``file``.
 
+    Allowed values are None, bools, finite numbers and strings, and lists and dicts (with str keys)
+    that contain such values.
+
     Raises:
-        ValueError: If the file contains anything but None, bools, finite numbers, strings, lists
-            and dicts with str keys; a repeated key or an OmegaConf interpolation; more than
-            ``LARGEST`` bytes; or more than ``DEEPEST`` levels.
+        ValueError: If the file contains a value of another type, a repeated key or an OmegaConf
+            interpolation, is larger than ``LARGEST`` bytes, or is nested deeper than ``DEEPEST``
+            levels.
     """
     try:
         settings = yaml.load(read_bounded(file, LARGEST).decode("utf-8"), _PlainLoader)
@@ -103,7 +107,10 @@ def unknown(file: Path | str, key: str, allowed: Collection[str]) -> str:
 
 
 class _PlainLoader(yaml.SafeLoader):
-    """YAML loader that rejects anchors, tags, deep nesting and repeated keys before expansion."""
+    """YAML loader that rejects anchors, tags, deep nesting and repeated keys.
+
+    They are rejected before they are expanded, because a short file may describe a huge value.
+    """
 
     _depth = 0
 
@@ -129,7 +136,10 @@ class _PlainLoader(yaml.SafeLoader):
 
 
 def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
-    """Yield every nested value with its dotted key, and invalid keys as values in a tuple."""
+    """Yield every nested value with its dotted key.
+
+    An invalid key is also yielded as a value, in a tuple, which :func:`_problem` reports.
+    """
     if isinstance(value, dict):
         for name, item in value.items():
             inner = f"{key}.{name}" if key else str(name)
@@ -144,7 +154,10 @@ def _entries(value: Any, key: str = "") -> Iterator[tuple[str, Any]]:
 
 
 def _problem(value: Any) -> str:
-    """Return why ``value`` itself (not its items) is not plain data, or ""."""
+    """Return the reason why ``value`` is not plain data, or "" if it is plain data.
+
+    The items of a container are not checked.
+    """
     if isinstance(value, tuple):
         return "is not a plain key"
     if isinstance(value, str):
@@ -160,4 +173,4 @@ def _problem(value: Any) -> str:
 
 
 def _short(value: Any) -> str:
-    return names.escaped(str(value), 60)
+    return names.escaped(str(value), _SHOWN)

@@ -1,6 +1,7 @@
 """Handle SIGINT (Ctrl-C) and SIGTERM (sent by ``timeout``, SLURM and containers).
 
-When a signal ends a command, the command prints how to resume, and exits with status 130 or 143.
+When a signal ends a command, the command prints how to resume. Its exit status is 130 or 143, as
+shells expect.
 """
 
 from __future__ import annotations
@@ -34,9 +35,10 @@ class SignalDelay:
     """Signal handler that is installed while a block delays signals."""
 
     def __init__(self) -> None:
-        self.number: int | None = None  # of the first signal that was received
+        # number of the first signal, or None if no signal was received
+        self.number: int | None = None
         self.again = False  # whether a second signal was received
-        # the previous handlers; those that also delay signals receive each signal, too
+        # The previous signal handlers. If they also delay signals, each signal is passed to them.
         self.outer = {number: signal.getsignal(number) for number in ENDING}
 
     def __call__(self, number: int, frame: FrameType | None) -> None:
@@ -63,9 +65,12 @@ class SignalDelay:
 def delay_signals(on: bool = True) -> Iterator[SignalDelay]:
     """Delay the first signal during the block, so that current work can be finished and saved.
 
-    The signal sets the attribute ``number`` of the yielded object, and of those of enclosing
-    blocks. A second signal ends the command immediately. If ``on`` is false, or outside the main
-    thread, nothing is delayed.
+    The signal sets the attribute ``number`` of the yielded object, and of the objects that
+    enclosing blocks yielded. A second signal ends the command immediately. Only the main thread can
+    delay signals; in other threads this has no effect.
+
+    Args:
+        on: False delays nothing.
     """
     handler = SignalDelay()
     if not on or threading.current_thread() is not threading.main_thread():
@@ -110,7 +115,11 @@ def start_worker(process: BaseProcess) -> None:
 
 
 def leave_to_parent() -> None:
-    """Ignore SIGINT and SIGTERM in a worker, which the parent ends after the current work."""
+    """Ignore SIGINT and SIGTERM in a worker.
+
+    The terminal sends these signals to all processes of a command. The parent finishes the current
+    work and ends the workers.
+    """
     for number in ENDING:
         signal.signal(number, signal.SIG_IGN)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, ENDING)

@@ -19,7 +19,11 @@ class ActionSpace:
     """Base class of action spaces."""
 
     def check(self, action: Any) -> Any:
-        """Convert ``action`` to the world's format; raise ValueError if it is not in the space."""
+        """Check ``action`` and convert it to the format that the world accepts.
+
+        Raises:
+            ValueError: If the action is not in the space.
+        """
         raise NotImplementedError
 
     def sample(self, rng: np.random.Generator) -> Any:
@@ -75,7 +79,10 @@ class Box(ActionSpace):
 
 @dataclass(frozen=True, eq=False)
 class MultiDiscrete(ActionSpace):
-    """An array of integers from 0 to ``counts - 1``."""
+    """An array of integers.
+
+    Each integer is at least 0 and less than the entry of ``counts`` at its position.
+    """
 
     counts: np.ndarray
 
@@ -119,7 +126,11 @@ class Composite(ActionSpace):
 
 
 def from_gymnasium(space: Any) -> ActionSpace:
-    """Convert a space of gymnasium or gym; raise ValueError for an unsupported kind."""
+    """Return the action space that corresponds to ``space`` of gymnasium or gym.
+
+    Raises:
+        ValueError: If the kind of space is not supported, for example text or a graph.
+    """
     kind = type(space).__name__
     if kind == "Discrete":
         # spaces of gym before 0.22 have no start

@@ -64,7 +64,10 @@ def lost(what: str, attempts: int, done: int, total: int) -> WorkersDied:
 
 
 def cores() -> int:
-    """Return the number of usable cores, or PYTHON_CPU_COUNT, as in Python 3.13 and later."""
+    """Return the number of processor cores that this process may use.
+
+    The environment variable PYTHON_CPU_COUNT overrides this number, as in Python 3.13 and later.
+    """
     override = os.environ.get("PYTHON_CPU_COUNT", "")
     if override.isdigit() and int(override) > 0:
         return int(override)
@@ -72,10 +75,16 @@ def cores() -> int:
 
 
 def count(requested: int | None, jobs: int, worth: int) -> int:
-    """Return the number of processes to start: ``requested``, or at most one per core.
+    """Return the number of processes to start.
 
-    ``worth`` is the number of jobs that a process must have to be faster than its start. Raises
-    ValueError if ``requested`` is less than 1.
+    Args:
+        requested: number of processes that the user asked for. None means at most one per core.
+        jobs: number of jobs.
+        worth: minimum number of jobs per process; with fewer jobs, starting a process takes longer
+            than it saves.
+
+    Raises:
+        ValueError: If ``requested`` is less than 1.
     """
     if requested is not None and requested < 1:
         raise ValueError(f"workers must be >= 1 or null (one per core), got {requested}.")
@@ -89,10 +98,14 @@ def results(
 
     The numbers count the jobs of all groups. The jobs of a group run in order in one process: in
     the current process if ``workers`` is 1, otherwise in a worker. While waiting for workers, the
-    generator yields None at least every ``SECOND``. Errors of jobs are raised again.
+    generator yields None at least every ``SECOND``.
+
+    If a worker dies, a new process runs its unfinished jobs. Only one worker per call is replaced;
+    the death of a second worker is an error.
 
     Raises:
-        WorkersDied: If a second worker died; the first is replaced.
+        WorkersDied: If a second worker died.
+        Exception: A job raised an error, which is raised again here.
     """
     work = numbered(groups)
     workers = min(workers, len(work))
@@ -245,12 +258,15 @@ class _Crew:
 def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> bytes:
     """Pickle ``thing`` for other processes.
 
-    If ``shared`` is true, tensors are passed in shared memory, and only one process may unpickle
-    the object, once.
+    Args:
+        thing: the object.
+        what: name of the object in the error message.
+        instead: what to do if the object cannot be pickled; this is the end of the error message.
+        shared: whether to pass tensors in shared memory. Only one process may unpickle such an
+            object, and only once.
 
     Raises:
-        ValueError: If ``thing``, which the message calls ``what``, cannot be pickled. The message
-            ends with the advice ``instead``.
+        ValueError: If ``thing`` cannot be pickled.
     """
     try:
         return bytes(ForkingPickler.dumps(thing)) if shared else pickle.dumps(thing)
@@ -263,9 +279,10 @@ def packed(thing: Any, what: str, instead: str, *, shared: bool = False) -> byte
 
 
 def context(preload: str) -> Any:
-    """Return the multiprocessing context of workers: a fork server that has imported ``preload``.
+    """Return the multiprocessing context that starts workers.
 
-    On systems without fork servers, each worker is a new interpreter.
+    It uses a fork server that has imported ``preload``, so workers start fast. On systems without
+    fork servers, each worker is a new interpreter.
     """
     if "forkserver" not in multiprocessing.get_all_start_methods():
         return multiprocessing.get_context("spawn")
@@ -294,7 +311,12 @@ def _serve(pipe: Connection, copy: bytes) -> None:
 
 
 def _unpacked(copy: bytes) -> Any:
-    """Unpickle a task; raise ValueError if its class is defined in a script's main block."""
+    """Unpickle a task.
+
+    Raises:
+        ValueError: If the class of the task is defined under ``if __name__ == "__main__":``, which
+            workers do not run.
+    """
     try:
         return pickle.loads(copy)
     except AttributeError as error:
@@ -306,8 +328,8 @@ def _unpacked(copy: bytes) -> Any:
 def portable(error: Exception) -> tuple[Exception, Exception]:
     """Return a version of ``error`` that can be pickled, and a cause with the worker's traceback.
 
-    A ValueError of the user's code gets the file and line. An error that cannot be pickled becomes
-    a RuntimeError with the same message.
+    If the user's code raised a ValueError, the file and line are appended to its message. An error
+    that cannot be pickled is replaced with a RuntimeError with the same message.
     """
     cause = RuntimeError(f"in a worker process:\n{traceback.format_exc()}")
     error = ValueError(error_message(error)) if type(error) is ValueError else error

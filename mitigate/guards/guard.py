@@ -34,8 +34,8 @@ class EpisodeStart:
     """The information that a guard receives when an episode begins."""
 
     key: Key  # seed and episode id, for random numbers
-    instruction: str  # after corruption
-    system_prompt: str | None = None  # the agent's system prompt after corruption
+    instruction: str  # the instruction after corruption
+    system_prompt: str | None = None  # the agent's system prompt after corruption, or None
 
 
 class Guard:
@@ -68,31 +68,39 @@ class Guard:
         return [self.begin(episode) for episode in episodes]
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the observation that the agent receives, of which only frames may differ.
+        """Return the observation that the agent receives.
 
-        The arrays in ``observation`` must not be changed in place.
+        Only frames may differ from ``observation``. The arrays in ``observation`` must not be
+        changed in place.
         """
         return observation
 
     def for_episode(self) -> Guard:
-        """Return the guard for one episode; a guard that remembers frames returns a new guard.
+        """Return the guard for one episode.
 
-        The method ``observe`` of such a guard is called at every step, even if the agent does not
-        read the frames.
+        A guard that remembers earlier frames must override this method, and return a new guard that
+        remembers nothing yet. The method ``observe`` of such a guard is called at every step, even
+        if the agent does not read the frames.
         """
         return self
 
     def attach(self, agent: Any) -> AbstractContextManager:
-        """Return a context that adapts ``agent`` for one episode and then undoes all changes."""
+        """Return a context manager that adapts ``agent`` for one episode.
+
+        When the context ends, the changes to the agent must be undone.
+        """
         return nullcontext()
 
     def restart(self) -> None:
         """Forget all earlier episodes. Continual guards are restarted before each condition."""
 
     def calibrate(self, agent: Any, world: World, episode: Callable[[int], Episode]) -> None:
-        """Measure properties of the agent in a world without corruptions, before the evaluation.
+        """Measure properties of the agent that the guard needs; called before the evaluation.
 
-        ``episode`` returns the training episode with a given number.
+        Args:
+            agent: the agent.
+            world: a world, without corruptions.
+            episode: function that returns a training episode, given its number.
         """
 
     def check_agent(self, agent: Any) -> None:
@@ -101,7 +109,7 @@ class Guard:
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
         """Return the guard to send to the worker processes that run these episodes.
 
-        A guard with a large model computes all its answers here, so that workers need no model.
+        A guard with a large model can compute all its answers here, so that workers need no model.
         """
         return self
 
@@ -156,11 +164,13 @@ class Guards(Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The sensors whose frames at least one guard reads or changes."""
         names = (name for guard in self._overriding("observe") for name in guard.frames)
         return tuple(dict.fromkeys(names))
 
     @property
     def adapts(self) -> bool:
+        """Whether at least one guard changes the agent."""
         return bool(self._overriding("attach"))
 
     def begin(self, episode: EpisodeStart) -> str:
@@ -178,6 +188,7 @@ class Guards(Guard):
 
     @property
     def remembers(self) -> bool:
+        """Whether a guard remembers earlier frames of the episode."""
         return bool(self._overriding("for_episode"))
 
     def for_episode(self) -> Guards:
@@ -187,6 +198,7 @@ class Guards(Guard):
 
     @property
     def continual(self) -> bool:  # type: ignore[override]
+        """Whether at least one guard uses state from earlier episodes."""
         return any(guard.continual for guard in self.guards)
 
     @contextmanager
@@ -218,14 +230,16 @@ class Guards(Guard):
     def fingerprint(self) -> str:
         """Return the fingerprints of all guards, joined by "+".
 
-        The text starts with "none" if no guard changes the instruction.
+        If no guard changes the instruction, the text starts with "none". If there are no guards at
+        all, the text is only "none".
         """
         words = [] if self._overriding("begin") else ["none"]
         return "+".join([*words, *(guard.fingerprint() for guard in self.guards)])
 
     def frames_hash(self) -> str | None:
-        """Return the fingerprints of the guards that change frames, without ``RESTORER``, or None
-        if no guard changes frames.
+        """Return the fingerprints of all guards that change frames, joined by "+".
+
+        The prefix of a restorer's fingerprint is removed. If no guard changes frames, return None.
         """
         fingerprints = [guard.fingerprint() for guard in self._overriding("observe")]
         return "+".join(part.removeprefix(RESTORER) for part in fingerprints) or None
@@ -244,9 +258,10 @@ NO_GUARDS = Guards()
 
 
 class Guarded(WorldWrapper):
-    """World wrapper in which guards change the frames; ``observation.clean`` does not change.
+    """World wrapper in which guards change the frames.
 
-    A guard runs only when the agent reads a frame, unless a guard remembers frames.
+    The guard runs only when the agent reads a frame, so frames that are not read cost nothing. A
+    guard that remembers frames receives all of them. ``observation.clean`` does not change.
     """
 
     def __init__(self, world: World, guards: Guards) -> None:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from mitigate.guards.adaptation import choices as adaptations
 from mitigate.guards.frames import choices as restorers
@@ -21,7 +21,12 @@ NONE = (None, "none")
 
 
 class TextGuard(Guard):
-    """A guard that applies a safeguard (``safeguard=``) to instructions."""
+    """A guard that applies a safeguard (``safeguard=``) to instructions.
+
+    Args:
+        safeguard: the safeguard that repairs instructions.
+        label: part of a table's column name (:class:`Guard`).
+    """
 
     def __init__(self, safeguard: Safeguard, label: str) -> None:
         self.safeguard = safeguard
@@ -35,6 +40,7 @@ class TextGuard(Guard):
         return [decision.text for decision in decisions]
 
     def prepared(self, episodes: Sequence[EpisodeStart]) -> Guard:
+        """Compute all answers here, so that workers need no copy of the language model."""
         texts = [episode.instruction for episode in episodes]
         answers = dict(zip(texts, self.begin_all(episodes), strict=True))
         return AnsweredText(answers, self.label, self.fingerprint())
@@ -44,7 +50,10 @@ class TextGuard(Guard):
 
 
 class AnsweredText(Guard):
-    """The answers of a :class:`TextGuard` for worker processes; other texts stay unchanged."""
+    """A guard for worker processes that contains the precomputed answers of a :class:`TextGuard`.
+
+    Texts without a precomputed answer stay unchanged.
+    """
 
     def __init__(self, answers: dict[str, str], label: str, fingerprint: str) -> None:
         self.answers = answers
@@ -116,7 +125,11 @@ def open_restorer(choice: str | None, sensors: Collection[str] = SENSORS) -> Gua
 
 
 def open_adaptations(choice: str | Guard | None) -> list[Guard]:
-    """Return the guards that ``adapt=`` names; raise ValueError for an unknown name."""
+    """Return the guards that ``adapt=`` names.
+
+    Raises:
+        ValueError: If a method or a reset in ``choice`` does not exist.
+    """
     if isinstance(choice, Guard):
         return [choice]
     if choice in NONE:
@@ -125,7 +138,9 @@ def open_adaptations(choice: str | Guard | None) -> list[Guard]:
     from mitigate.guards.adaptation.recentre import Recentre
     from mitigate.guards.adaptation.tent import Tent
 
-    kinds: dict[str, type[Any]] = {kind.kind: kind for kind in (Norm, Tent, Recentre)}
+    kinds: dict[str, type[Norm | Tent | Recentre]] = {
+        kind.kind: kind for kind in (Norm, Tent, Recentre)
+    }
     return [kinds[method](reset=reset) for method, reset in adaptations.parsed(str(choice))]
 
 

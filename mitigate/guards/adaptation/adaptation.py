@@ -26,8 +26,8 @@ class Adaptation(Guard):
 
     Args:
         reset: with "episode", each episode starts from the agent's original weights. With "never",
-            only the first episode of each condition does, and later episodes continue from the
-            adapted tensors.
+            an episode starts from the adapted tensors of the previous episode; only the first
+            episode of each condition starts from the original weights.
 
     Attributes:
         kind: name of the method in fingerprints and columns.
@@ -51,6 +51,7 @@ class Adaptation(Guard):
         self._adapted = None
 
     def settings(self) -> dict[str, Any]:
+        """Return the settings that determine the adaptation."""
         return {"reset": self.reset}
 
     def fingerprint(self) -> str:
@@ -59,11 +60,11 @@ class Adaptation(Guard):
 
     def tensors(self, agent: Any) -> list[Tensor]:
         """Return the tensors that the adaptation changes during an episode, in a fixed order."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} defines no tensors(agent)")
 
     def adapting(self, agent: Any) -> AbstractContextManager[None]:
         """Return a context in which the agent adapts."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} defines no adapting(agent)")
 
     @contextmanager
     def attach(self, agent: Any) -> Iterator[None]:

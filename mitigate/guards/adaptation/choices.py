@@ -13,7 +13,11 @@ RESETS = (EPISODE, NEVER)
 
 
 def parsed(choice: str) -> list[tuple[str, str]]:
-    """Return the pairs (method, reset) that ``choice`` lists; raise ValueError for unknown ones."""
+    """Return the pairs (method, reset) that ``choice`` lists.
+
+    Raises:
+        ValueError: If a method or a value of reset is unknown.
+    """
     parts = []
     for part in str(choice).split("+"):
         method, _, reset = part.partition(":")

@@ -32,14 +32,16 @@ class Recentre(Adaptation):
     """Shift the features of some modules to their clean mean.
 
     Args:
-        modules: names of the modules of the agent, or of a policy's network, whose outputs are
-            shifted. The default is the agent's image encoders, or a policy's last convolution.
+        modules: names of the modules whose outputs are shifted. The modules belong to the agent, or
+            to the network of a policy. The default is the agent's image encoders, or the last
+            convolution of a policy.
         prior: number of observations that the clean mean counts as when it is averaged with the
             observations of the episode. A larger value shifts the first frames less.
         reset: see :class:`Adaptation`.
 
     Attributes:
-        means: the clean mean [C] of each module's output, in order, from :meth:`calibrate`.
+        means: the clean mean [C] of each module's output, in order. :meth:`calibrate` sets these
+            means.
 
     Raises:
         ValueError: If ``prior`` or ``reset`` is invalid.
@@ -74,7 +76,13 @@ class Recentre(Adaptation):
             )
 
     def calibrate(self, agent: Any, world: Any, episode: Callable[[int], Episode]) -> None:
-        """Run clean episodes with the agent to measure the means, unless they are already known."""
+        """Run clean episodes with the agent to measure the means, unless they are already known.
+
+        Args:
+            agent: the agent.
+            world: a world.
+            episode: function that returns a training episode, given its number.
+        """
         modules = _modules(agent, self.modules)
         if self.means:
             return
@@ -140,7 +148,13 @@ class Recentre(Adaptation):
 
 
 def _modules(agent: Any, names: Sequence[str] | None) -> list[nn.Module]:
-    """Return the modules with these names; None means the default of :class:`Recentre`."""
+    """Return the modules with these names.
+
+    If ``names`` is None, return the image encoders of the agent.
+
+    Raises:
+        ValueError: If a module does not exist, or the agent declares no encoders.
+    """
     root: Any = agent.network if isinstance(agent, Policy) else agent
     if names is None and isinstance(agent, Policy):
         names = [last_convolution(agent)]

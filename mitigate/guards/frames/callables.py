@@ -1,8 +1,12 @@
 """Use a user's callable as a restorer, with ``restore=module:callable``.
 
-A class is instantiated once per process, without arguments. If the object is a
-:class:`~mitigate.guards.guard.Guard`, it is used as the guard. Otherwise, it is called with the
-frames of each time step. ``docs/restoration.md`` has an example. This module does not need torch.
+The callable may be a network for depth completion or denoising, or a filter. This module does
+not need torch.
+
+If the callable is a class, it is instantiated once per process, without arguments. Any other object
+is used directly. If the resulting object is a :class:`~mitigate.guards.guard.Guard`, it is used as
+the guard. Otherwise, the object is called with the frames of each time step.
+``docs/restoration.md`` has an example.
 
 Importing the module runs its code, so the option is read only from the user's command line or
 config, and never from a downloaded folder.
@@ -41,10 +45,13 @@ class FramesCallable(Guard):
     [H, W, 1] or [V, H, W, 1]. The callable returns a dict of the frames that it changed. A result
     must not depend on earlier calls.
 
-    A callable may have an attribute ``frames``, which names its sensors (by default both), and an
-    attribute ``version``. The fingerprint covers the callable's name, its version, and the source
-    file of its module. A pickled guard contains only ``choice``, so each process imports the module
-    again.
+    Args:
+        choice: ``module:callable`` or ``module:callable@VERSION``. A pickled guard contains only
+            this text, so each process imports the module again.
+        named: the parts of ``choice``.
+        call: the callable. The callable may have an attribute ``frames``, which names its sensors
+            (by default both), and an attribute ``version``.
+        module: the module of the callable. The module's source file is part of the fingerprint.
     """
 
     def __init__(
@@ -80,6 +87,10 @@ class FramesCallable(Guard):
         return open_callable, (self.choice,)
 
     def fingerprint(self) -> str:
+        """Return a hash of the callable's name, the source file of its module, and ``version``.
+
+        The source file is read once, when the module is loaded.
+        """
         return self._fingerprint
 
     def observe(self, observation: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -98,6 +109,10 @@ class FramesCallable(Guard):
         return {**observation, **changed} if changed else observation
 
     def _check(self, results: Any, frames: Mapping[str, np.ndarray]) -> None:
+        """Raise ValueError if ``results`` has an entry that is not in ``frames``.
+
+        A result whose shape or dtype differs from the frame's is also an error.
+        """
         if not isinstance(results, Mapping):
             self._reject(f"returned a {type(results).__name__}, not a dict")
         for name, frame in results.items():
@@ -114,7 +129,11 @@ class FramesCallable(Guard):
 
 
 def open_callable(choice: str) -> Guard:
-    """Build the guard for ``restore=module:callable``; raise ValueError if that is impossible."""
+    """Build the guard for ``restore=module:callable``.
+
+    Raises:
+        ValueError: If the module or the callable does not exist, or the object cannot be called.
+    """
     named = callable_of(choice)
     assert named is not None, f"{choice} is no module:callable"
     try:

@@ -34,7 +34,11 @@ def parted(choice: str) -> tuple[str, str | None]:
 
 
 def callable_of(choice: str) -> CallableChoice | None:
-    """Return the parts of ``module:callable``, or None if ``choice`` names a folder."""
+    """Return the parts of ``module:callable``, or None if ``choice`` names a folder.
+
+    ``choice`` names a folder if this path exists, or if it has the form ``FOLDER:SENSOR``, as in
+    ``FOLDER:rgb``.
+    """
     match = _CALLABLE.fullmatch(choice)
     if match is None or match[2] in SENSORS or Path(choice).exists():
         return None
@@ -42,7 +46,11 @@ def callable_of(choice: str) -> CallableChoice | None:
 
 
 def label(choice: str) -> str:
-    """Return the text that ``choice`` adds to a column name."""
+    """Return the text that ``choice`` adds to a column name.
+
+    For a folder, the text contains the folder's name and the sensor. For a callable, it contains
+    the names of the module and the callable, and the version.
+    """
     named = callable_of(str(choice))
     if named is not None:
         text = f"{named.module.rpartition('.')[2]}.{named.name}"

@@ -87,8 +87,9 @@ def problem(settings: dict[str, Any]) -> str:
 def fill(restorer: Restorer, folder: str | Path) -> None:
     """Load the weights in ``folder`` into ``restorer``.
 
-    Raises the errors of :func:`card`, and ValueError if the card has other settings, or if a
-    checksum is missing or does not match the weights.
+    The settings of ``restorer`` must equal those in the card. Raises the errors of :func:`card`.
+    Raises ValueError if the settings differ, or if a checksum is missing or does not match the
+    weights.
     """
     content = card(folder)
     for name, value in restorer.settings().items():

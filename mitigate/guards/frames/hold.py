@@ -20,10 +20,11 @@ LIMIT = 10
 
 
 class HoldLast(Guard):
-    """Repeat the last view of a camera in place of an empty one, at most ``limit`` times in a row.
+    """Repeat the last view of a camera in place of an empty one.
 
     An RGB view is empty if all its values are 0. A depth view is empty if it has no finite reading
-    above 0. Each view of a panorama is treated separately.
+    above 0. Each view of a panorama is treated separately. A view is repeated at most ``limit``
+    times in a row; after that, the agent receives the empty view.
     """
 
     label = HOLD

@@ -47,8 +47,13 @@ class Restorer(nn.Module, Guard):
         far: float = Z_MAX,
     ) -> None:
         super().__init__()
-        sizes = {"width": width, "depth_width": depth_width, "size": size}
-        self._settings: dict[str, Any] = {"sensors": list(sensors), **sizes, "far": float(far)}
+        self._settings: dict[str, Any] = {
+            "sensors": list(sensors),
+            "width": width,
+            "depth_width": depth_width,
+            "size": size,
+            "far": float(far),
+        }
         if problem := folders.problem(self._settings):
             raise ValueError(f"agent.{problem}.")
         widths = {RGB: width, DEPTH: depth_width}
@@ -64,10 +69,14 @@ class Restorer(nn.Module, Guard):
         return dict(self.nets.items())  # type: ignore[arg-type]
 
     def settings(self) -> dict[str, Any]:
+        """Return the constructor arguments."""
         return dict(self._settings)
 
     def only(self, sensor: str) -> Restorer:
-        """Remove the networks of all other sensors in place, and return self."""
+        """Remove the networks of all other sensors in place, and return self.
+
+        Raises ValueError for a sensor that this restorer does not support.
+        """
         if sensor not in self.nets:
             raise ValueError(
                 f"This restorer is for {', '.join(self.nets)}, not for {sensor}. Remove "
@@ -85,13 +94,21 @@ class Restorer(nn.Module, Guard):
 
     @property
     def frames(self) -> tuple[str, ...]:  # type: ignore[override]
+        """The sensors that this restorer restores."""
         return tuple(self.nets)
 
     def fingerprint(self) -> str:
+        """Return :attr:`hash` with the prefix that is used in rows."""
         return RESTORER + self.hash
 
     def observe(self, observation: Mapping[str, Any]) -> dict[str, Any]:
-        """Return ``observation`` with each frame restored by :meth:`restore`."""
+        """Return ``observation`` with those frames restored that the gate classifies as corrupted.
+
+        Other entries, and frames that are classified as clean, are returned as the same objects.
+
+        Raises:
+            TypeError, ValueError: If a frame has the wrong dtype or shape.
+        """
         restored = dict(observation)
         for sensor in self.nets:
             if sensor in restored:
@@ -121,10 +138,11 @@ class Restorer(nn.Module, Guard):
         return result.numpy().reshape(frame.shape).astype(frame.dtype) if changed else frame
 
     def doubt(self, sensor: str, frame: np.ndarray) -> float:
-        """Return the gate's logit for a frame minus its threshold (:meth:`SensorRestorer.doubt`).
+        """Return the gate's logit for a frame minus the gate's threshold.
 
         If the value is above 0, :meth:`restore` restores the frame, unless this would change most
-        depth pixels too much.
+        depth pixels too much. The value is -inf for depth that has no valid pixels or too many
+        pixels beyond ``far``.
         """
         return self._net(sensor).doubt(torch.from_numpy(self._views(sensor, frame)))
 
@@ -134,7 +152,10 @@ class Restorer(nn.Module, Guard):
         return self.nets[sensor]  # type: ignore[return-value]
 
     def _views(self, sensor: str, frame: np.ndarray) -> np.ndarray:
-        """Return ``frame`` as a contiguous, writable array [V, H, W, c]."""
+        """Return ``frame`` as a contiguous, writable array [V, H, W, c].
+
+        Raises TypeError or ValueError if the frame is invalid.
+        """
         if not isinstance(frame, np.ndarray):
             raise TypeError(
                 f"A {sensor} frame must be a numpy array, not {type(frame).__name__}: give a torch "

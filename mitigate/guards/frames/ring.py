@@ -46,7 +46,10 @@ def neighbours(size: int) -> tuple[Tensor, Tensor]:
 
 
 def is_ring(views: int, height: int, width: int) -> bool:
-    """Return whether frames form a panorama of 12 square views, whose geometry is known."""
+    """Return whether frames form a panorama of 12 square views.
+
+    Views can be compared only in such a panorama, because its geometry is known.
+    """
     return views == VIEWS and height == width
 
 
@@ -78,7 +81,11 @@ def compared(values: Tensor, valid: Tensor, depth: bool) -> tuple[Tensor, Tensor
 
 
 def _turned(values: Tensor, weights: Tensor) -> Iterator[tuple[Tensor, Tensor, Tensor]]:
-    """Yield each neighbour's values and weights, resampled into the view, and its ``ahead``."""
+    """Yield each neighbour's values and weights, resampled into the view, and its depth scale.
+
+    The values have shape [P * 12, c, s, s], and the weights [P * 12, 1 or c, s, s]. The depth scale
+    [s, s] is the array ``ahead`` that :func:`neighbours` returns.
+    """
     grid, ahead = (part.to(values.device) for part in neighbours(values.shape[-1]))
     parts = [values.shape[1], weights.shape[1]]
     ring = torch.cat([values, weights], 1).unflatten(0, (-1, VIEWS))
@@ -95,12 +102,14 @@ def from_neighbours(values: Tensor, trust: Tensor, depth: bool) -> tuple[Tensor,
     """Return the weighted mean of the values that other views show at every pixel.
 
     Args:
-        values: float [P * 12, c, s, s]: colours, or depth along the axis of each view.
+        values: float [P * 12, c, s, s]. The values are colours, or depth along the axis of each
+            view in any unit.
         trust: the weights in [0, 1], with shape [P * 12, 1 or c, s, s].
         depth: whether ``values`` is depth.
 
     Returns:
-        The mean, and its confidence in [0, 1) with the shape of ``trust``.
+        The mean [P * 12, c, s, s] and its confidence in [0, 1). The confidence has the shape of
+        ``trust``.
     """
     total = torch.zeros_like(values)
     weight = torch.zeros_like(trust)

@@ -33,7 +33,8 @@ TOLERANCE = 0.02  # a pixel is correct if its error is below this fraction of th
 # Clean pixels rarely differ from the other views by more than this fraction of the range.
 # On 20 panoramas of val_seen, 98.6 % (RGB) and 99.2 % (depth) differed by less.
 MARGIN = {RGB: 0.2, DEPTH: 0.02}
-# initial weight of the distance from the other views' range in the trust logit (heuristic)
+# A pixel is trusted less if it lies outside the range of values in the other views.
+# This is the initial weight of its distance from that range in the trust logit (heuristic).
 ALONE = 2.0
 LOST = -3.0  # initial logit of "lost", which gives a probability of 5 % (heuristic)
 # bound on the magnitude of the trust logit, so that its gradient never vanishes (heuristic)
@@ -59,7 +60,8 @@ class SensorRestorer(nn.Module):
     Args:
         sensor: "rgb" or "depth".
         width: number of channels of the U-Net's finest feature maps.
-        size: shorter side in pixels to which larger frames are reduced for the network.
+        size: shorter side in pixels of the frames that the network processes. Larger frames are
+            reduced to this size.
         far: depth in metres that is scaled to 1.
 
     Attributes:
@@ -83,9 +85,11 @@ class SensorRestorer(nn.Module):
         return 255.0 if self.sensor == RGB else self.far
 
     def scaled(self, frames: Tensor) -> tuple[Tensor, Tensor]:
-        """Scale frames [n, H, W, c] to values [n, c, H, W] in [0, 1] and a mask of valid pixels.
+        """Scale frames [n, H, W, c] of the sensor to values [n, c, H, W] in [0, 1].
 
-        Depth is valid if it is finite and above 0.
+        Returns:
+            The values, and a mask [n, 1, H, W] of valid pixels. Depth is valid if it is finite and
+            above 0.
         """
         x = frames.permute(0, 3, 1, 2).float()
         if self.sensor == RGB:
@@ -103,7 +107,8 @@ class SensorRestorer(nn.Module):
         size = self.working(*x.shape[-2:])
         if size == tuple(x.shape[-2:]):
             return x, valid
-        weight = _resized(valid, size)  # invalid pixels must not darken their neighbours
+        # invalid pixels have no weight, so that they do not darken their neighbours
+        weight = _resized(valid, size)
         return _resized(x * valid, size) / weight.clamp(min=1e-3), (weight > 0.5).float()
 
     def forward(self, frames: Tensor, views: int) -> Tensor:
@@ -119,8 +124,10 @@ class SensorRestorer(nn.Module):
         """Encode frames at the working size, and detect corruption.
 
         Returns:
-            The feature maps of the U-Net; how many ``MARGIN`` each pixel is too far outside the
-            range of the other views, float [n, c, h, w]; and the gate's logit per time step.
+            Three values. The first one contains the feature maps of the U-Net. The second one is
+            how far each pixel is outside the range of the other views, float [n, c, h, w]. It is 0
+            for distances up to ``MARGIN``, and grows by 1 for each further ``MARGIN``. The third
+            one is the logit of the gate for each time step.
         """
         inputs, outside = self.seen(x, valid, views)
         maps = self.net.encode(inputs, views)
@@ -129,8 +136,12 @@ class SensorRestorer(nn.Module):
     def seen(self, x: Tensor, valid: Tensor, views: int) -> tuple[Tensor, Tensor]:
         """Return the input of the U-Net, and how far pixels are outside the other views' range.
 
-        The channels are the frame, the mask of valid pixels (only for depth), the differences from
-        the smallest and largest value in other views, and the mask of pixels that these views see.
+        The input consists of the following channels:
+
+        - the frame;
+        - the mask of valid pixels (only for depth);
+        - the differences from the smallest and the largest value in the other views;
+        - the mask of the pixels for which another view has a valid pixel.
         """
         inputs = [x * 2 - 1, valid] if self.sensor == DEPTH else [x * 2 - 1]
         if not ring.is_ring(views, *x.shape[-2:]):
@@ -197,8 +208,9 @@ class SensorRestorer(nn.Module):
     def knows(self, frames: Tensor, valid: Tensor) -> bool:
         """Return whether frames [V, H, W, c] are within the range of the training data.
 
-        RGB frames always are. Depth frames must have valid pixels, of which at most a fraction
-        :data:`BEYOND` is beyond ``far``; otherwise a warning is shown.
+        RGB frames are always within the range. Depth frames must have valid pixels, and no
+        more than a fraction :data:`BEYOND` of them may be beyond ``far``. If a larger fraction is
+        beyond ``far``, a warning is shown.
         """
         if self.sensor == RGB or not bool(valid.any()):
             return self.sensor == RGB

@@ -1,4 +1,7 @@
-"""Parse the values of ``safeguard=`` (a name, a folder or an endpoint), and label and hash them."""
+"""Parse the values of ``safeguard=``, and compute their labels and hashes.
+
+A value is a name, a folder or an endpoint.
+"""
 
 from __future__ import annotations
 
@@ -78,9 +81,10 @@ def kind(folder: str | Path) -> str | None:
 
 
 def label(choice: str) -> str:
-    """Return the label of a safeguard in column names.
+    """Return the label that identifies a safeguard in column names.
 
-    It is a name, the name of a folder with a hash, or the host and the model of an endpoint.
+    The label is the safeguard's name, the name of its folder with a hash, or the host and the model
+    of an endpoint.
     """
     choice = current(choice)
     if is_endpoint(choice):
@@ -95,7 +99,10 @@ def label(choice: str) -> str:
 
 
 def identity(choice: str) -> str:
-    """Return a safeguard's label, followed by a hash of its version and weights, if any."""
+    """Return a safeguard's label, followed by a hash of its version and weights.
+
+    The weights of an endpoint are unknown, so they are not hashed. "none" has no hash.
+    """
     if choice == "none":
         return choice
     choice = current(choice)

@@ -38,7 +38,10 @@ _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
 def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
-    """Return the counts of a clause's hashed terms: words, pairs, letters, signs and marks."""
+    """Return the counts of a clause's hashed terms.
+
+    Terms are words, pairs of words, groups of letters, punctuation, and marks of hidden text.
+    """
     lower = said.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
@@ -78,23 +81,24 @@ def _word_terms(word: str) -> tuple[int, ...]:
 class Clause:
     """A clause of an instruction with its features."""
 
-    piece: Piece
-    sentence: int  # index of the sentence
+    piece: Piece  # position of the clause in the text
+    sentence: int  # index of the sentence that contains the clause
     words: int  # number of words
-    letters: int  # a Chinese, Japanese or Korean character counts as three
+    letters: int  # number of letters; a Chinese, Japanese or Korean character counts as three
     script: str  # "latin", "other", or "" if the clause has no letters
-    product: float  # sum of the products of TF-IDF values and attack weights
-    square: float  # sum of squared TF-IDF values
-    style: float  # log odds of an unusual style
+    product: float  # sum of the products of the clause's TF-IDF values and the attack weights
+    square: float  # sum of the clause's squared TF-IDF values
+    style: float  # log odds that the clause is in an unusual style
 
 
 class Classifier:
     """The trained weights, and methods that score texts with them.
 
     Args:
-        config: the common words, and the biases of the two regressions.
-        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each [SIZE],
-            and the weights of the networks (:class:`Segmenter`), except during training.
+        config: The list of common words, and the biases of the two regressions.
+        arrays: ``idf``, the attack weights ``alone`` and the style weights ``style``, each of shape
+            [SIZE]. The weights of the networks (:class:`Segmenter`) are also included, except while
+            a classifier is trained.
     """
 
     def __init__(self, config: dict[str, Any], arrays: dict[str, np.ndarray]) -> None:
@@ -109,6 +113,7 @@ class Classifier:
             self.arrays |= self.segmenter.arrays
 
     def clauses(self, text: str) -> list[Clause]:
+        """Split a text into clauses, and return them with their features."""
         results = []
         for number, sentence in enumerate(sentence_pieces(text)):
             for piece in clause_pieces(text, sentence):
@@ -136,14 +141,18 @@ class Classifier:
         return float(self.log_odds(product, sum(clause.square for clause in clauses)))
 
     def log_odds(self, product: Any, square: Any) -> np.ndarray:
-        """Return the log odds for sums of ``product`` and ``square``, or 0 for an empty text."""
+        """Return the log odds of an attack, or 0 for an empty text.
+
+        ``product`` and ``square`` are sums of these attributes over the clauses of the text.
+        """
         odds = product / np.sqrt(np.maximum(square, EMPTY)) + self.bias
         return np.where(np.asarray(square) > EMPTY, odds, 0.0)
 
     def attack(self, text: str, clauses: Sequence[Clause], bonus: float) -> tuple[float, int, int]:
-        """Return the log odds that a text contains an attack, and its first and last clause.
+        """Return the log odds that a text contains an attack, and the position of the attack.
 
-        A larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
+        The position consists of the indices of the first and the last clause of the attack. A
+        larger ``bonus`` favours longer attacks (:meth:`Segmenter.attack`).
         """
         return self.segmenter.attack(features(text, clauses, self), bonus)
 

@@ -50,7 +50,10 @@ ENGLISH, HIDDEN = 0.6, 0.45
 
 @dataclass(frozen=True)
 class Decoded:
-    """A text with decoded words; ``marks`` names how they were hidden, such as "leet"."""
+    """A text after its hidden words were decoded.
+
+    ``marks`` names the methods by which words were hidden, such as "code" or "leet".
+    """
 
     text: str
     marks: frozenset[str]
@@ -81,9 +84,11 @@ def decode(text: str, known: Set[str]) -> Decoded:
 
 
 def visible(text: str) -> str:
-    """Return ``text`` without invisible characters, except joiners that some scripts need.
+    """Return ``text`` without invisible characters.
 
-    Characters after a right-to-left override are reversed, as they are displayed.
+    Joiners that follow a letter outside ASCII are kept, because some scripts need them. The
+    characters after a right-to-left override are reversed to match the order in which they are
+    displayed.
     """
     if text.isascii():
         return text

@@ -1,8 +1,9 @@
 """Find attacks in an instruction, and remove those whose removal the gate accepts.
 
-The networks in :mod:`segmenter` decide whether the text contains an attack, and where it begins and
-ends. The search is repeated, because a text can contain several attacks. The constants were chosen
-on one part of the test texts, called "choose" (``tools/safeguard``).
+The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
+the text contains an attack, and where the attack begins and ends. The search is repeated, because a
+text can contain several attacks. The constants were chosen on one part of the test texts, called
+"choose" (``tools/safeguard``).
 """
 
 from __future__ import annotations
@@ -19,11 +20,13 @@ from mitigate.guards.text.pieces import Piece, without
 FOREIGN = 0.3
 ROUTE = -1.0  # English text is treated as a route if its log odds of an attack are below this
 ATTACK = 1.0  # a text contains an attack if the log odds of the networks are above this
-# The networks' score is reduced by how far the regression's log odds of the span are below this.
+# The networks' score is reduced if the regression gives the detected span log odds below this.
+# It is reduced by the difference between this value and the regression's log odds.
 # Without this second opinion, three times as many R2R-CE routes were harmed.
 SURE = 1.0
 LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remained in the text
-# a clause next to an attack that says nothing about the route is removed above these log odds
+# A clause next to an attack may say nothing about the route.
+# It is also removed if its log odds are above this.
 BESIDE = -2.0
 GOAL = 17  # a sentence with fewer words than this is often only the name of a goal object
 # ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words
@@ -36,8 +39,9 @@ READ = 20_000  # maximum number of characters of a text that are read
 
 
 def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[str]]:
-    """Return ``text`` without attacks, the removed pieces, and the gate's reasons to keep others.
+    """Remove the attacks from ``text``.
 
+    Returns the remaining text, the removed pieces, and the gate's reasons to keep other pieces.
     Only whole clauses are removed, and an instruction always remains.
     """
     removed: list[str] = []
@@ -59,11 +63,12 @@ def take_out(text: str, classifier: Classifier) -> tuple[str, list[str], list[st
 
 
 def foreign(text: str, classifier: Classifier) -> list[Piece]:
-    """Return the piece of a text that is an attack, if any.
+    """Return the pieces of a text that are attacks.
 
-    If the route may be in non-Latin parts, every English part that looks like an attack is
-    returned. This is so if more than the fraction ``FOREIGN`` of the letters is not Latin, or if
-    the log odds of an attack in the Latin parts are above ``ROUTE``.
+    At most one piece is returned, unless the route may be in non-Latin parts of the text. In that
+    case, every English part that looks like an attack is returned. The route may be in the
+    non-Latin parts if more than the fraction ``FOREIGN`` of the letters is not Latin, or if the log
+    odds of an attack in the Latin parts are above ``ROUTE``.
     """
     clauses = classifier.clauses(text)
     english = [clause for clause in clauses if clause.script != "other"]
@@ -104,7 +109,10 @@ def _is_step(text: str) -> bool:
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:
-    """Return the English parts that look like attacks; the route is in the non-Latin parts."""
+    """Return the English parts that look like attacks, in a text that has non-Latin parts.
+
+    The route is assumed to be in the non-Latin parts, so these parts are never removed.
+    """
     spans = []
     for other, run in groupby(clauses, key=lambda clause: clause.script == "other"):
         parts = list(run)

@@ -5,7 +5,8 @@ The command needs a checkout of the repository, because it reads the texts in
 sentence or clause belongs to an attack, and the other whether it is in an unusual style. Then a
 network is trained to find where an attack begins and ends. It is trained on benign texts, most of
 which contain an inserted attack. The regression scores of a training text come from regressions
-that were trained without the text's fold. Otherwise, the network would rely on them too much.
+that were trained without the text's fold. Otherwise, the scores would be more accurate than the
+scores of new texts, and the network would rely on them too much.
 """
 
 from __future__ import annotations
@@ -50,9 +51,10 @@ Pair = tuple[Weights, Weights]
 
 @dataclass(frozen=True)
 class Regressions:
-    """The regressions (weights [SIZE], bias) on TF-IDF values, for attacks and for styles.
+    """The two regressions on TF-IDF values, for attacks and for styles.
 
-    Those in ``complete`` were trained on all texts, and those in ``folds[i]`` without fold i.
+    A regression is a pair (weights [SIZE], bias). ``complete`` contains the regressions that were
+    trained on all texts. ``folds[i]`` contains the regressions that were trained without fold i.
     """
 
     words: list[str]
@@ -77,7 +79,10 @@ class Regressions:
 def fit(
     folder: Path, routes: int = ROUTES, texts: int = SPLICES, earlier: Classifier | None = None
 ) -> Classifier:
-    """Train a classifier on the data in a folder; the networks of ``earlier`` are added to it."""
+    """Train a classifier on the data in a folder.
+
+    The scores of its network are averaged with the scores of the networks of ``earlier``.
+    """
     lines = read_lines(folder, routes)
     regressions = regress(lines)
     classifiers = [regressions.classifier(fold) for fold in range(FOLDS)]
@@ -156,7 +161,10 @@ def common_words(lines: Sequence[Line]) -> list[str]:
 
 
 def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
-    """Yield (text, is_block, line, weight) for each line, sentence and clause."""
+    """Yield (text, is_block, line, weight) for each line, sentence and clause.
+
+    ``is_block`` says whether the text is between delimiters.
+    """
     for line in lines:
         for text in line.text.split("{route}"):
             sentences = sentence_pieces(text)
@@ -170,7 +178,10 @@ def _pieces(lines: Sequence[Line]) -> Iterator[tuple[str, bool, Line, float]]:
 
 
 def _matrix(term_counts: Sequence[Mapping[int, int]], idf: np.ndarray) -> csr_matrix:
-    """Return the TF-IDF matrix with rows of unit norm, without terms that occur only once."""
+    """Return the TF-IDF matrix of the terms, with rows normalised to unit norm.
+
+    Terms that occur only once are omitted; their entry in ``idf`` is 0.
+    """
     rows = []
     for terms in term_counts:
         index, value = model.weighted(terms, idf)

@@ -38,7 +38,10 @@ def words(text: str) -> list[str]:
 
 
 def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
-    """Return why the ``rest`` without ``removed`` is no longer an instruction, or "" if it is."""
+    """Return the reason why ``rest`` is no longer an instruction, or "" if it is one.
+
+    ``rest`` is the text that remains after the piece ``removed`` was deleted.
+    """
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
     if not rest.isascii() or len(rest) > LONG:
@@ -76,7 +79,10 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
 
 
 def _is_aside(problem: str, heard: str) -> bool:
-    """Return whether ``problem`` reports a lost word that is unknown and has no article."""
+    """Return whether ``problem`` reports a lost word that is probably not a landmark.
+
+    A lost word is probably not a landmark if it is unknown and no article precedes it.
+    """
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False

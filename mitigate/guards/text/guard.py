@@ -12,7 +12,7 @@ import json
 import os
 import re
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Protocol
@@ -41,7 +41,11 @@ LOOKS = re.compile(
 
 
 class Rewriter(Protocol):
-    """Interface of a language model, which may run locally or behind an endpoint."""
+    """Interface of a language model, which may run locally or behind an endpoint.
+
+    A model may have an attribute ``failures``. It maps each text of the last call of ``rewrite``
+    that has no answer to the reason.
+    """
 
     def rewrite(self, texts: Sequence[str], seconds: float | None = None) -> list[str | None]: ...
 
@@ -52,8 +56,8 @@ class Decision:
 
     ``route`` is "clean" if the instruction is unchanged, "classifier" if it was changed without a
     language model, "model" if the model rewrote it, and "fallback" if no answer of the model was
-    accepted. ``reasons`` lists accepted and rejected changes. ``seconds`` is the mean computing
-    time per instruction of the batch.
+    accepted. ``reasons`` lists accepted and rejected changes, and why the model gave no answer.
+    ``seconds`` is the mean computing time per instruction of the batch.
     """
 
     original: str
@@ -92,11 +96,17 @@ class Safeguard:
         self._known: dict[str, Decision] = {}
 
     def canonicalise(self, text: str) -> Decision:
-        """Return the decision on one instruction; see :meth:`canonicalise_all`."""
+        """Return the decision on one instruction.
+
+        Raises TypeError if the instruction is not a string.
+        """
         return self.canonicalise_all([text])[0]
 
     def canonicalise_all(self, texts: Iterable[str]) -> list[Decision]:
-        """Return the decision on each text; raise TypeError for anything but a list of strings."""
+        """Return the decision on each text; the model rewrites passages of all texts in batches.
+
+        Raises TypeError if ``texts`` is a single string or if an instruction is not a string.
+        """
         if isinstance(texts, str):
             raise TypeError(f"texts must be a list of strings, got a string. Pass [{texts!r}].")
         texts = list(texts)
@@ -111,8 +121,9 @@ class Safeguard:
         if self.rewriter is not None and requested:
             answers = self.rewriter.rewrite(requested, self.seconds * len(drafts))
             by_passage = dict(zip(requested, answers, strict=True))
+            failures = getattr(self.rewriter, "failures", {})
             for draft in drafts:
-                draft.accept(by_passage)
+                draft.accept(by_passage, failures)
         each = (time.monotonic() - began) / max(1, len(fresh))
         decided = [draft.decision(each) for draft in drafts]
         known.update((decision.original, decision) for decision in decided)
@@ -155,14 +166,21 @@ class _Draft:
             self.parts = passages(quiet)
         self.requested = [p for p in self.parts if rules.MASK.search(p) or classifier.styled(p)]
 
-    def accept(self, answers: dict[str, str | None]) -> None:
-        """Replace each requested passage by the model's answer if the gate accepts the answer."""
+    def accept(self, answers: dict[str, str | None], failures: Mapping[str, str]) -> None:
+        """Replace each requested passage by the model's answer if the gate accepts the answer.
+
+        Args:
+            answers: the model's answer to each passage.
+            failures: the reason why a passage has no answer, if the model states it.
+        """
         parts = list(self.parts)
         for place, heard in enumerate(self.parts):
             if heard not in self.requested:
                 continue
             answer = answers[heard]
             problem = gate.rewrite_refused(heard, answer, last=place == len(parts) - 1)
+            if answer is None and heard in failures:
+                problem = f"the model gave no answer ({failures[heard]})"
             if problem:
                 self.reasons.append(f"kept {heard[:40]!r}: {problem}")
             elif answer is not None and answer != heard:
@@ -191,7 +209,10 @@ class _Draft:
 
 
 def _beginning(text: str) -> str:
-    """Return the first ``READ`` characters without repeated spaces, up to a sentence's end."""
+    """Return the first ``READ`` characters of a text without repeated spaces.
+
+    The result ends with the last complete sentence or, if there is none, with a complete word.
+    """
     text = re.sub(r"(\s)\s+", r"\1", text)
     if len(text) <= READ:
         return text

@@ -22,25 +22,38 @@ class Repair:
     """A repaired instruction."""
 
     family: str  # the corruption family, or "clean"
-    clean: str  # the original
-    heard: str  # the input of the safeguard
-    repaired: str  # the output of the safeguard
-    injected: tuple[str, ...] = ()  # sentences of an attack
+    clean: str  # the original instruction
+    heard: str  # the safeguard's input
+    repaired: str  # the safeguard's output
+    # the sentences that the corruption inserted before the instruction
+    injected: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
 class Scores:
-    """Means in [0, 1] over ``count`` repairs, or None if a measure is undefined."""
+    """Means over ``count`` repairs.
+
+    Each mean is in [0, 1], or None if the measure is undefined.
+
+    ``exact`` is the fraction of repaired instructions that have the same words as the original.
+    ``token_f1`` is the F1 score of the bags of words. ``chrf`` is the corpus chrF2 (Popovic 2015)
+    from sacrebleu. ``directions`` is the fraction of repaired instructions that have the same
+    directions (left, right, up, down, stop ...) in the same order as the original. ``landmarks`` is
+    the fraction of the original landmarks that are kept. ``faithful`` is the fraction of
+    instructions for which ``fidelity.check`` finds no change of meaning. ``removed`` is the
+    fraction of injected sentences that were removed. ``changed`` is the fraction of clean
+    instructions whose meaning was changed.
+    """
 
     count: int
-    exact: float  # instructions with the same words as the original
-    token_f1: float  # F1 score of the bags of words
-    chrf: float  # corpus chrF2 (Popovic 2015) from sacrebleu
-    directions: float  # instructions with the same directions (left, stop ...) in the same order
-    landmarks: float | None  # original landmarks that are kept
-    faithful: float  # instructions for which ``fidelity.check`` finds no change of meaning
-    removed: float | None  # injected sentences that were removed
-    changed: float | None  # clean instructions whose meaning was changed
+    exact: float
+    token_f1: float
+    chrf: float
+    directions: float
+    landmarks: float | None
+    faithful: float
+    removed: float | None
+    changed: float | None
 
 
 def score(repairs: Sequence[Repair]) -> Scores:
@@ -52,7 +65,9 @@ def score(repairs: Sequence[Repair]) -> Scores:
     chrf = CHRF().corpus_score([r.repaired for r in repairs], [[r.clean for r in repairs]])
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
     directions = [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
-    kept, landmarks = map(sum, zip(*map(_landmarks_kept, repairs), strict=True))
+    landmark_counts = [_landmarks_kept(r) for r in repairs]
+    kept = sum(part for part, _ in landmark_counts)
+    landmarks = sum(total for _, total in landmark_counts)
     removed = [left(text, r.repaired) < REMAINS for r in repairs for text in r.injected]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
     return Scores(
@@ -69,7 +84,10 @@ def score(repairs: Sequence[Repair]) -> Scores:
 
 
 def by_family(repairs: Sequence[Repair]) -> dict[str, Scores]:
-    """Return the scores by family, in order of appearance, and of all repairs as "all"."""
+    """Return the scores by family.
+
+    Families are in order of appearance. The key "all" holds the scores of all repairs.
+    """
     groups: dict[str, list[Repair]] = defaultdict(list)
     for repair in repairs:
         groups[repair.family].append(repair)

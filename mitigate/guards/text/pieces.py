@@ -29,7 +29,8 @@ _BLOCK = re.compile(
 _SENTENCE = re.compile(
     r"(?<=[.!?…。！？।॥])[\"'”’)\]*_]*\s+|(?<=[.!?])(?=[A-Z][a-z])|\s*\n+\s*|(?<=[.!?][\"'”’)])\s+"
 )
-# Where one of these words has a capital letter without a full stop before it, an attack may begin.
+# These words begin a sentence.
+# If one has a capital letter without a full stop before it, an attack may begin or end there.
 # "I" is not listed, because it is always a capital letter.
 _BEGINS = (
     "Go|Walk|Turn|Exit|Leave|Enter|Head|Take|Make|Move|Continue|Proceed|Climb|Pass|Stop|Find|Start|Stand|"
@@ -86,7 +87,10 @@ def sentence_pieces(text: str) -> list[Piece]:
 
 
 def clause_pieces(text: str, sentence: Piece) -> list[Piece]:
-    """Return the clauses of a sentence; a single word is joined to a neighbour if possible."""
+    """Return the clauses of a sentence.
+
+    If possible, a clause of a single word is joined to a neighbouring clause.
+    """
     if sentence.block:
         return [sentence]
     clauses: list[Piece] = []
@@ -137,7 +141,11 @@ def _clause_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def _seams(part: str) -> list[tuple[int, int]]:
-    """Return positions before capitalised words and interjections, and around words in capitals."""
+    """Return the positions inside a sentence where an attack may begin or end without a full stop.
+
+    Such a position is before a capitalised word, before an interjection such as "um", or at the
+    start or end of a sequence of words in capitals.
+    """
     cuts = []
     words = list(re.finditer(r"\S+", part))
     caps = [len(word.group()) > 1 and word.group().isupper() for word in words]
@@ -168,9 +176,10 @@ def _script_cuts(part: str) -> list[tuple[int, int]]:
 
 
 def script(text: str) -> str:
-    """Return "latin" if at least half of the letters are Latin, "" without letters, or "other".
+    """Return "latin" if at least half of the letters are Latin, otherwise "other".
 
-    Fullwidth letters and those of mathematical alphabets count as Latin.
+    Fullwidth letters and those of mathematical alphabets count as Latin. For a text without
+    letters, return "".
     """
     letters = LETTERS.findall(unicodedata.normalize("NFKC", text))
     if not letters:

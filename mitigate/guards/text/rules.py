@@ -14,7 +14,9 @@ from mitigate.guards.text.learning.routes import draw_route
 
 MASK = re.compile(r"\[(?:MASK|UNK|mask)\]|<(?:mask|unk)>")
 KEPT_CAPITALS = bag("TV TVS DVD BBQ AC PC")
-# minimum number of known words in capitals, and their minimum fraction of all words
+# Words in capitals are converted to lower case only if enough of them are known words.
+# SHOUTS is the minimum number of such words, and SHOUTED their minimum fraction of all words.
+# A text with only a few words in capitals may quote a sign.
 SHOUTS, SHOUTED = 2, 0.15
 # number of generated routes whose words are counted; this takes about one second per process
 ROUTES = 4000
@@ -52,7 +54,8 @@ _TOKEN = re.compile(r"\[mask\]|[A-Za-z]+(?:['’][a-z]+)?|\d+|[.,;!?]")
 def lower_capitals(text: str, known: frozenset[str]) -> str:
     """Convert words in capitals to lower case, except the first letter of a sentence.
 
-    Few ``known`` (common) words in capitals stay, because they may be names or the text of a sign.
+    ``known`` contains common words. If the text has only a few known words in capitals, they may be
+    names or the text of a sign, and nothing is changed.
     """
     shouted = [m.group().lower() for m in _SHOUT.finditer(text) if m.group() not in KEPT_CAPITALS]
     count = sum(word in known for word in shouted)
@@ -98,7 +101,8 @@ def fill_masks(text: str) -> str:
 def _hidden_adjective(match: re.Match[str]) -> str:
     """Return the replacement for a match of ``_WHICH``, such as "the [mask]" or "first [mask]".
 
-    A mask before a noun is removed, and one that hides a noun is kept as "[MASK]".
+    If a noun follows the mask, the mask is removed. If a verb follows, and the word before the mask
+    is not "your", the match is returned unchanged. Otherwise the mask hides a noun and is kept.
     """
     which, behind = match["which"], match["next"].lower()
     doing = behind.endswith("ing") and behind not in _NOUNS | _ROOMS

@@ -1,9 +1,10 @@
 """Use small recurrent networks to find the span of clauses that forms an attack.
 
-A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text, so that it does
-not take an unusual style for an attack. It predicts a score for each clause, which may be part of
-an attack, and for each boundary, where an attack may start or end. The score of a span is the sum
-of the scores of its clauses and its two boundaries, relative to the score of "no attack". The
+A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
+the network predicts a score for whether it is part of an attack. For each boundary between clauses,
+it predicts a score for whether an attack starts or ends there. The score of a span is the sum of
+the scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
+network reads each clause in its context, it does not take an unusual style for an attack. The
 scores of several networks are averaged. Inference needs only numpy;
 :mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """
@@ -38,7 +39,10 @@ NAMES = (
 
 
 def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
-    """Return the features of clauses, shape [clauses, FEATURES]: ten numbers and twelve flags."""
+    """Return the features of clauses, shape [clauses, FEATURES].
+
+    The first ten features are real numbers, and the other twelve are 0 or 1.
+    """
     products = np.array([clause.product for clause in clauses])
     squares = np.array([clause.square for clause in clauses])
     words = np.array([clause.words for clause in clauses])
@@ -51,17 +55,17 @@ def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np
     first = classifier.log_odds(sums, norms)
     last = classifier.log_odds(sums[-1] - sums, norms[-1] - norms)
     result = np.zeros((len(clauses), FEATURES), np.float32)
-    # log odds of an attack in the clause, in its sentence, and in parts of the text
-    result[:, 0] = classifier.log_odds(products, squares)
-    result[:, 1] = by_sentence[sentence]
+    # columns 0, 1 and 4 to 8 are log odds of an attack in a part of the text
+    result[:, 0] = classifier.log_odds(products, squares)  # the clause
+    result[:, 1] = by_sentence[sentence]  # its sentence
     result[:, 2] = [clause.style for clause in clauses]
-    result[:, 3] = np.log(words + 1) - 1.5
-    result[:, 4] = first[1:]  # up to and including the clause
-    result[:, 5] = first[:-1]  # before the clause
-    result[:, 6] = last[:-1]  # from the clause on
-    result[:, 7] = last[1:]  # after the clause
+    result[:, 3] = np.log(words + 1) - 1.5  # words of the clause
+    result[:, 4] = first[1:]  # the text up to and including the clause
+    result[:, 5] = first[:-1]  # the text before the clause
+    result[:, 6] = last[:-1]  # the text from the clause on
+    result[:, 7] = last[1:]  # the text after the clause
     result[:, 8] = first[-1]  # the whole text
-    result[:, 9] = np.log(words.sum() + 1) - 3.5
+    result[:, 9] = np.log(words.sum() + 1) - 3.5  # words of the text
     result[:, [0, 1, 2, 4, 5, 6, 7, 8]] *= SCALE
     for place, clause in enumerate(clauses):
         start = clause.piece.start
@@ -106,8 +110,8 @@ class Segmenter:
 
         Args:
             values: the features of the n clauses, shape [n, FEATURES].
-            bonus: added to a span's score for each of its clauses when the best span is chosen. It
-                does not change the log odds.
+            bonus: number that is added to the score of a span for each of its clauses, before the
+                span with the highest score is chosen. The bonus does not change the log odds.
 
         Returns:
             The log odds, and the first and the last clause of the span.
@@ -169,7 +173,10 @@ def _mean(parts: list[np.ndarray], weights: np.ndarray, bias: np.ndarray) -> np.
 
 
 def _sides(clause: np.ndarray, edge: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return terms of every clause; a span's score is start of its first plus end of its last."""
+    """Return a start term and an end term for every clause.
+
+    The score of a span is the start term of its first clause plus the end term of its last clause.
+    """
     sums = np.cumsum(clause)
     return edge[:-1] - sums + clause, edge[1:] + sums
 

@@ -105,7 +105,7 @@ def test_endpoint_retries_only_temporary_failures(server):
     server.replies = [(401, b"", 0)]
     client = endpoint(server)
     assert client.rewrite(["a"]) == [None] and len(server.requests) == 1
-    assert "HTTP 401" in client.failures[0]
+    assert "HTTP 401" in client.failures["a"]
 
 
 def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
@@ -113,7 +113,7 @@ def test_endpoint_keeps_its_deadline_when_a_server_hangs(server):
     client = endpoint(server, timeout=0.2, retries=1)
     began = time.monotonic()
     assert client.rewrite(["a"]) == [None]
-    assert time.monotonic() - began < 2 and "time" in client.failures[0].lower()
+    assert time.monotonic() - began < 2 and "time" in client.failures["a"].lower()
     assert endpoint(server, timeout=9).rewrite(["a", "b"], seconds=0.2) == [None, None]
 
 
@@ -180,6 +180,34 @@ def test_endpoint_answers_pass_the_gate(server):
     assert decision.route == "fallback" and "airport" not in decision.text
 
 
+def test_decision_and_log_state_why_the_endpoint_gave_no_answer(server, tmp_path, monkeypatch):
+    # a key with a final newline is an invalid header, and a server may repeat the key
+    heard = "Hey there! So, go ahead and stroll past the sofa. Then hang a left, okay?"
+    log = tmp_path / "log.jsonl"
+    for key in ("secret-key", "secret-key\n"):
+        monkeypatch.setenv("OPENAI_API_KEY", key)
+        server.replies = [(401, b"secret-key", 0)]
+        client = endpoint(server, retries=0)
+        decision = Safeguard(client, log=log).canonicalise(heard)
+        assert decision.route == "fallback" and decision.text == heard
+        cause = "HTTP 401" if key == "secret-key" else "Invalid header"
+        assert any("gave no answer" in r and cause in r for r in decision.reasons)
+    lines = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    assert "HTTP 401" in str(lines[0]["reasons"])
+    assert "secret" not in log.read_text(encoding="utf-8")
+
+
+def test_failures_do_not_repeat_the_key(server, monkeypatch):
+    monkeypatch.setenv("OPENAI_API_KEY", "secret-key")
+    client = endpoint(server, retries=0)
+    for reply in (b'{"error": "wrong key secret-key"}', answer(["secret-key"])):
+        server.replies = [(200, reply, 0)]
+        assert client.rewrite(["a"]) == [None]
+        assert "[key]" in client.failures["a"] and "secret" not in client.failures["a"]
+    server.replies = [(200, answer("Go."), 0)]
+    assert client.rewrite(["a"]) == ["Go."] and not client.failures
+
+
 @pytest.mark.parametrize("status", [301, 302, 303, 307, 308])
 def test_endpoint_follows_no_redirect(server, monkeypatch, status):
     monkeypatch.setenv("OPENAI_API_KEY", "secret")
@@ -189,10 +217,10 @@ def test_endpoint_follows_no_redirect(server, monkeypatch, status):
     other.replies = [(200, answer("Go."), 0)]
     server.replies = [(status, f"{other.url}/chat/completions".encode(), 0)]
     client = endpoint(server, retries=1)
-    assert client.rewrite(["a"]) == [None] and f"HTTP {status}" in client.failures[0]
+    assert client.rewrite(["a"]) == [None] and f"HTTP {status}" in client.failures["a"]
     other.shutdown()
     other.server_close()
-    assert not other.requests and "secret" not in client.failures[0]
+    assert not other.requests and "secret" not in client.failures["a"]
 
 
 @pytest.mark.parametrize("headers", [0, 200])
@@ -202,7 +230,7 @@ def test_endpoint_keeps_its_deadline_when_a_server_drips(server, headers):
     client = endpoint(server, timeout=0.4, retries=0)
     began = time.monotonic()
     assert client.rewrite(["a"]) == [None]
-    assert time.monotonic() - began < 1.5 and "time" in client.failures[0].lower()
+    assert time.monotonic() - began < 1.5 and "time" in client.failures["a"].lower()
 
 
 def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
@@ -220,7 +248,7 @@ def test_endpoint_keeps_its_deadline_with_dead_addresses(server, monkeypatch):
         client = endpoint(server, timeout=0.4, retries=0)
         began = time.monotonic()
         assert client.rewrite(["a"]) == [None]
-        assert time.monotonic() - began < 1.2 and "time" in client.failures[0].lower()
+        assert time.monotonic() - began < 1.2 and "time" in client.failures["a"].lower()
         for one in fill:
             one.close()
 
@@ -241,7 +269,7 @@ def test_endpoint_reads_no_huge_answer(server, length):
         "Kindly stroll past the sofa, my dear, and hang a left."
     )
     assert decision.text == decision.original and time.monotonic() - began < 2
-    assert "more than" in client.failures[0]
+    assert "more than" in str(client.failures)
 
 
 SECRETS = [

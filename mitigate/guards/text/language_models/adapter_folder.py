@@ -34,7 +34,10 @@ _AGAIN = "Fetch the folder again, or train it again with `make train RECIPE=safe
 def write_adapter(
     folder: str | Path, network: Any, tensors: dict[str, Tensor], card: dict[str, Any]
 ) -> None:
-    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``."""
+    """Write the adapter of a PEFT ``network``: its weights (``tensors``) and its ``card``.
+
+    All files are replaced together, and a manifest lists them.
+    """
     with folders.write_folder(folder, "safeguard") as draft:
         network.save_pretrained(draft, state_dict=tensors, save_embedding_layers=False)
         for file in draft.iterdir():
@@ -44,9 +47,10 @@ def write_adapter(
 
 
 def read_adapter(folder: str | Path) -> tuple[dict[str, Any], dict[str, Any]]:
-    """Return the card of an adapter folder, and the PEFT config, with checked ``ENTRIES``.
+    """Return the card of an adapter folder, and the PEFT config.
 
-    Raises FileNotFoundError for a missing file, and ValueError for a damaged one.
+    Only the entries listed in ``ENTRIES`` are checked. Raises FileNotFoundError for a missing file,
+    and ValueError for a damaged one.
     """
     missing = [n for n in (CARD, CONFIG, ADAPTER) if not (Path(folder) / n).is_file()]
     if missing:
@@ -86,7 +90,10 @@ def adapter_tensors(folder: str | Path, config: dict[str, Any]) -> dict[str, Ten
 
 
 def _entries(file: Path, kinds: dict[str, tuple[type, ...]]) -> dict[str, Any]:
-    """Return the JSON object in ``file``; ``kinds`` are the allowed types of required entries."""
+    """Return the JSON object in ``file``.
+
+    ``kinds`` maps the names of its required entries to their allowed types.
+    """
     config = folders.read_checked(file, _AGAIN)
     for name, kind in kinds.items():
         value = config.get(name)

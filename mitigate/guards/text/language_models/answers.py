@@ -20,8 +20,8 @@ _OTHER = "Name another file, or delete this one."
 class AnswerCache:
     """Store texts by name.
 
-    If the file is damaged later, or another process writes slowly, the only effect is one more
-    request.
+    The constructor raises an error for a file that is not a cache. If the file is damaged later, or
+    another process writes slowly, no error is raised. The only effect is one more request.
 
     Raises:
         ValueError: If the file is not a cache of this kind.

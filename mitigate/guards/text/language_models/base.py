@@ -70,6 +70,9 @@ def _source(base: str) -> tuple[str, dict[str, Any]]:
 
 
 def base_sha256(base: str) -> str:
-    """Return the hash of the weight files of ``base`` (:func:`files_sha256`)."""
+    """Return the sha256 of the weight files of ``base``, sorted by file name.
+
+    For a hub id, the sha256 of the id is returned.
+    """
     place, options = _source(base)
     return files_sha256(place, options.get("gguf_file", "*.safetensors"))

@@ -129,7 +129,10 @@ class LanguageModel(nn.Module):
 
     @contextmanager
     def untuned(self) -> Iterator[LanguageModel]:
-        """Yield the model without its adapter, and with the explanatory prompt."""
+        """Yield the model in its state before fine-tuning.
+
+        The adapter is disabled, and the explanatory prompt is used.
+        """
         from peft import PeftModel
 
         network = self.network
@@ -184,9 +187,10 @@ class LanguageModel(nn.Module):
         return list(dict.fromkeys([self.tokenizer.eos_token_id, *known]))
 
     def save(self, folder: str | Path, *, half: bool = False) -> None:
-        """Write the adapter in PEFT's folder format; ``half`` rounds to float16.
+        """Write the adapter in PEFT's folder format, with a card that names the base.
 
-        Raises ValueError if there is no adapter.
+        ``half`` rounds to float16. Files appear either completely or not at all. Raises ValueError
+        if there is no adapter.
         """
         from peft import PeftModel, get_peft_model_state_dict
 
@@ -281,7 +285,10 @@ def open_adapter(folder: str | Path) -> LanguageModel:
 
 
 def _shared(prompts: Sequence[list[int]]) -> int:
-    """Return the length of the common prefix of all prompts without their last tokens."""
+    """Return the length of the common prefix of all prompts.
+
+    The prefix never contains the last token of a prompt.
+    """
     columns = zip(*(ids[:-1] for ids in prompts), strict=False)
     return sum(1 for _ in takewhile(lambda column: len(set(column)) == 1, columns))
 

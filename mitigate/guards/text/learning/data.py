@@ -48,7 +48,11 @@ _PHRASES = json.loads(Path(__file__).with_name("attack_phrases.json").read_text(
 
 @dataclass(frozen=True)
 class Pair:
-    """A text that the model reads, the plain text that it must write, and one of ``KINDS``."""
+    """A training pair.
+
+    ``source`` is the text that the model reads. ``target`` is the plain text that it must write.
+    ``kind`` is one of ``KINDS``.
+    """
 
     source: str
     target: str
@@ -56,7 +60,10 @@ class Pair:
 
 
 def draw_pair(seed: int, index: int, texts: Sequence[str] = (), share: float = 0.5) -> Pair:
-    """Generate a pair; a fraction ``share`` is made from ``texts``, the others from templates."""
+    """Generate the training pair with this seed and index.
+
+    A fraction ``share`` of all pairs is made from ``texts``, and the others from templates.
+    """
     from_templates = not texts or generator(seed, "own", index).random() >= share
     hand_written = from_templates and spoken.available()
     kinds = {kind: part for kind, part in KINDS.items() if hand_written or kind != "spoken"}
@@ -129,26 +136,35 @@ _MAKE = {
 
 
 def attacks(rng: np.random.Generator) -> list[str]:
-    """Return one to three attack sentences, from the train split or composed by :func:`vary`."""
+    """Return one to three attack sentences.
+
+    Each sentence is sampled from the train split of the attacks, or composed by :func:`vary`.
+    """
     bank = [sentence for group in prefixes("train").values() for sentence in group]
     count = int(rng.integers(1, 4))
     return [pick(bank, rng) if rng.random() < 0.4 else vary(rng) for _ in range(count)]
 
 
 def vary(rng: np.random.Generator) -> str:
-    """Compose an attack sentence from random phrases."""
+    """Compose an attack sentence from random phrases, similar to the attacks of the train split."""
     pattern, *slots = pick(_PHRASES["patterns"], rng)
     text = pattern.format(*(pick(_PHRASES[slot], rng) for slot in slots))
     return text[0].upper() + text[1:] + ("." if rng.random() < 0.9 else "!")
 
 
 def holds_held_out(source: str, manner: str) -> bool:
-    """Return whether a text in the style ``manner`` contains a phrase of :func:`held_out`."""
+    """Return whether ``source`` contains a phrase that is excluded from training.
+
+    ``manner`` is the style of ``source``.
+    """
     return any(pattern.search(source) for pattern in held_out(manner))
 
 
 def held_out(manner: str) -> list[re.Pattern[str]]:
-    """Return patterns of those phrases of a style that are excluded from training."""
+    """Return patterns that match those phrases of a style that are excluded from training.
+
+    Phrases are openers, frames, commands and closers.
+    """
     voice = VOICES[manner]
     groups = [voice.openers, voice.closers, *voice.frames.values(), *voice.commands.values()]
     phrases = {p for group in groups for p in group if len(re.sub(r"\{\w*\}", "", p).split()) > 1}
@@ -165,9 +181,10 @@ def _told(clause: Any) -> str:
 
 
 def _align(commands: list[str], source: list[str]) -> list[tuple[str, int | None]] | None:
-    """Return each styled sentence with the index of its command, if any.
+    """Return pairs of each styled sentence and the index of its plain command.
 
-    The result is None if the commands cannot be assigned to sentences.
+    The index is None for a sentence without a command. If the commands cannot be assigned to
+    sentences, the result is None.
     """
     pairs: list[tuple[str, int | None]] = []
     at = 0
@@ -211,8 +228,8 @@ def read_texts(files: Iterable[str | Path]) -> list[str]:
 def read_chats(path: str | Path) -> Iterator[Pair]:
     """Yield the pairs of a chat file, one per line.
 
-    A line is ``{"messages": [system, user, assistant]}``; the system message is optional. An
-    invalid line raises ValueError.
+    A line is ``{"messages": [system, user, assistant]}``; the system message is optional. If a line
+    is invalid, raises a ValueError that names the file, the line and the problem.
     """
     with open_text(path) as file:
         for number, line in enumerate(iter(lambda: file.readline(LONGEST_LINE), ""), 1):

@@ -35,7 +35,10 @@ class Line:
 
 
 def read_lines(folder: Path, routes: int = ROUTES) -> list[Line]:
-    """Return all training texts; raise FileNotFoundError outside a checkout."""
+    """Return all training texts.
+
+    Raises FileNotFoundError outside a checkout of the repository.
+    """
     banks = folder / "banks"
     if not banks.is_dir():
         raise FileNotFoundError(
@@ -90,7 +93,11 @@ def read_frames(folder: Path) -> tuple[list[str], list[str]]:
 
 
 def _json(file: Path, *keys: str) -> Iterator[dict[str, Any]]:
-    """Yield the objects in a JSON-lines file; the values of ``keys`` must be text."""
+    """Yield the objects in a JSON-lines file.
+
+    Raises ValueError if a line is not a JSON object, or if the value of one of ``keys`` is not
+    text.
+    """
     with open(file, encoding="utf-8") as opened:
         for number, line in enumerate(opened, 1):
             if not line.strip():
@@ -114,7 +121,10 @@ def _text(file: Path) -> list[str]:
 
 
 def varied(lines: Sequence[Line]) -> list[Line]:
-    """Return all texts, and copies of some in careless writing or with hidden attack words."""
+    """Return all texts, and additional changed copies of some texts.
+
+    The copies imitate careless writing, such as missing capitals, or hide the words of an attack.
+    """
     results = list(lines)
     for number, line in enumerate(lines):
         rng = generator(0, "varied", number)

@@ -1,11 +1,12 @@
 """Generate clean training instructions that describe a route through a building in many ways.
 
-``route_words.json`` lists words and phrases, which were written for this project. In a template,
-{a} and {aa} stand for different objects. Other fields are {room}, {door}, {stairs}, {place}, {look}
-(an adjective), {side} (left or right), {n} (a number) and {ordinal}.
+``route_words.json`` lists words and phrases of routes in buildings: rooms, things, doors and clause
+templates. All of them were written for this project. In a template, {a} stands for an object and
+{aa} for a different object. Other fields are {room}, {aroom} (a second room), {door}, {stairs},
+{place}, {look} (an adjective), {side} (left or right), {n} (a number) and {ordinal}.
 
-No instruction contains a phrase of the apartments' validation templates, on which a safeguard is
-evaluated.
+No instruction contains a phrase of the apartments' validation templates. So a safeguard that is
+trained on these instructions has never seen the phrases on which it is evaluated.
 """
 
 from __future__ import annotations
@@ -27,7 +28,10 @@ LONGEST = 7  # maximum number of clauses, without asides (heuristic)
 
 
 def draw_route(rng: np.random.Generator) -> str:
-    """Generate one instruction; some are verbose or carelessly written."""
+    """Generate one instruction of at most ``LONGEST`` clauses.
+
+    Some instructions are verbose or carelessly written.
+    """
     while True:
         text = _careless(_joined(_clauses(rng), rng), rng)
         if not overlaps_validation(text):

@@ -36,7 +36,7 @@ class Example:
 
 
 class Network(nn.Module):
-    """The torch version of :class:`Segmenter`, for training."""
+    """The torch network, for training. :class:`Segmenter` is the same network in numpy."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -131,7 +131,10 @@ def _loss(network: Network, batch: Sequence[Example], rng: np.random.Generator) 
 
 
 def _span_scores(clause: torch.Tensor, edge: torch.Tensor, lengths: torch.Tensor) -> torch.Tensor:
-    """Return scores [batch, first, last] of spans; -1e9 for the whole text and with padding."""
+    """Return the scores of all spans, shape [batch, first, last].
+
+    The score is -1e9 for the whole text and for spans that contain padding.
+    """
     sums = nn.functional.pad(clause.cumsum(1), (1, 0))
     scores = (edge[:, 1:] + sums[:, 1:])[:, None] + (edge - sums)[:, :-1, None]
     place = torch.arange(clause.shape[1])
@@ -142,7 +145,10 @@ def _span_scores(clause: torch.Tensor, edge: torch.Tensor, lengths: torch.Tensor
 
 
 def _runs(attack: np.ndarray) -> list[tuple[int, int]]:
-    """Return the first and last clause of each attack; [] if all or no clauses are attacks."""
+    """Return the first and the last clause of each attack.
+
+    The list is empty if the text contains no attack, or if it consists only of an attack.
+    """
     places = np.flatnonzero(attack)
     if not 0 < len(places) < len(attack):
         return []

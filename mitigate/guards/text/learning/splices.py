@@ -1,4 +1,7 @@
-"""Insert attacks into benign texts, to train the network that finds the span of an attack."""
+"""Insert attacks into benign texts.
+
+The resulting texts train the network that finds the span of an attack.
+"""
 
 from __future__ import annotations
 
@@ -42,7 +45,9 @@ def fold_of(line: Line) -> int:
 def splices(
     lines: Sequence[Line], frames: tuple[list[str], list[str]], count: int = SPLICES
 ) -> Iterator[Splice]:
-    """Yield texts in which an attack is inserted only into a benign text of the same fold.
+    """Yield training texts.
+
+    An attack is inserted only into a benign text of the same fold.
 
     ``frames`` contains sentences to put before an attack, and sentences to put after it.
     """
@@ -90,7 +95,11 @@ class _Source:
         return self._line(self.odd if rng.random() < 0.6 else self.hosts, rng).text
 
     def attack(self, frames: tuple[list[str], list[str]], rng: np.random.Generator) -> str:
-        """Sample an attack; some are joined with a second attack, or get sentences around them."""
+        """Sample an attack.
+
+        To imitate longer attacks, some attacks are joined with a second attack. Some also get a
+        sentence before or after them.
+        """
         line = self._line(self.attacks, rng)
         attack = line.text
         if "{route}" in attack:
@@ -119,7 +128,10 @@ class _Source:
 
 
 def _by_group(lines: Sequence[Line]) -> dict[str, list[Line]]:
-    """Return the lines by group; benign groups that differ only in their number are merged."""
+    """Return the lines by group.
+
+    Groups of benign texts whose names differ only in their number are merged.
+    """
     groups: dict[str, list[Line]] = defaultdict(list)
     for line in lines:
         groups[line.group if line.attack else line.group.split(" ")[0]].append(line)
@@ -136,7 +148,10 @@ def _careless(text: str, rng: np.random.Generator) -> str:
 
 
 def _joined(attack: str, route: str, rng: np.random.Generator) -> tuple[str, list[tuple[int, int]]]:
-    """Put an attack before, after, into or around a route; return the text and its spans."""
+    """Join an attack to a route, and return the text and the spans of the attack.
+
+    The attack can be before, after or inside the route, or surround it.
+    """
     attack, route = _careless(attack.strip(), rng), _careless(route.strip(), rng)
     separator = " " if rng.random() < 0.9 else pick(SEPARATORS, rng)
     first, around, last = attack.partition("{route}")

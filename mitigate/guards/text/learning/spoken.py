@@ -2,8 +2,9 @@
 
 These texts are training data. They are not in the package, only in the folder
 ``tools/safeguard/data/styles`` of a checkout. A line of a file ``<style>.jsonl`` has the form
-``{"task": "route", "parts": [[styled, plain], ...]}``. A part consists of whole sentences, and
-their plain translation, which is empty if they do not describe the route.
+``{"task": "route", "parts": [[styled, plain], ...]}``. The task may also be "object". Each part
+consists of whole sentences and a plain translation of them. The translation is empty if the part
+does not describe the route.
 """
 
 from __future__ import annotations
@@ -19,9 +20,15 @@ from mitigate.core.seeding import pick
 FOLDER = "tools/safeguard/data/styles"
 # styles that the language model never sees in training
 EXCLUDED = (
-    "butler", "gps", "non_native", "bureaucratic", "elaborate", "poetic", "storyteller",
+    "butler",
+    "gps",
+    "non_native",
+    "bureaucratic",
+    "elaborate",
+    "poetic",
+    "storyteller",
     "tour_guide",
-)  # fmt: skip
+)
 LONGEST = 80  # maximum number of words of a training passage (heuristic)
 Parts = tuple[tuple[str, str], ...]  # pairs (styled sentences, plain sentences), in order
 
@@ -40,7 +47,10 @@ def texts() -> tuple[Parts, ...]:
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:
-    """Sample consecutive parts of a random text; return them in their style, and plain."""
+    """Sample consecutive parts of a random training text.
+
+    Returns these parts in their original style, and their plain translation.
+    """
     parts = pick(texts(), rng)
     share = rng.random()
     count = 1 if share < 0.45 else int(rng.integers(2, 4)) if share < 0.8 else len(parts)
