@@ -21,7 +21,12 @@ from mitigate.guards.text.language_models.adapter_folder import adapter_tensors,
 
 ROOT = Path(__file__).parents[2]
 FLIPS = 50
-KINDS = {"restorer": "restorer", "safeguard": "safeguard", "safeguard_classifier": "safeguard"}
+KINDS = {
+    "restorer": "restorer",
+    "safeguard": "safeguard",
+    "safeguard_classifier": "safeguard",
+    "topological_imagenet/conv_adapter": "hardened",
+}
 # the kinds of all shipped folders
 SHIPPED = {
     name: "hardened" if name.startswith("hardened/") else KINDS.get(name, "agent")
