@@ -18,7 +18,7 @@ EPISODES = 300  # assumed length of episode lists; the estimate does not open th
 
 
 def describe(config: TrainConfig, folder: Path) -> str:
-    """Return a line with the number of steps and episodes of a run and its estimated duration."""
+    """Return a line with the steps, episodes, estimated duration and initial weights of a run."""
     parts = [f"{name} {count} steps" for name, count in _steps(config).items()]
     if _episodes(config):
         count = config.evaluation.episodes
@@ -27,7 +27,11 @@ def describe(config: TrainConfig, folder: Path) -> str:
         parts.append(f"{1 + config.has_base} x {listed} x {measured}")
     total = estimate(config, folder)
     about = "no estimate" if math.isnan(total) else f"about {duration(60 * math.ceil(total / 60))}"
-    return f"{config.name}: {', '.join(parts)}: {about} on this machine; output in {folder}"
+    start = config.init or "those that the agent is built with"
+    return (
+        f"{config.name}: {', '.join(parts)}: {about} on this machine; initial weights: {start}; "
+        f"output in {folder}"
+    )
 
 
 def estimate(config: TrainConfig, folder: Path) -> float:

@@ -72,6 +72,13 @@ def test_estimate_is_nan_for_agents_without_costs(tmp_path, unknown):
     assert estimate.estimate(known, tmp_path) > 60
 
 
+def test_description_names_the_initial_weights(tmp_path):
+    line = estimate.describe(training("da_per_episode", "recurrent"), tmp_path)
+    assert "initial weights: checkpoints/recurrent/base;" in line
+    line = estimate.describe(training("da_per_episode", "recurrent", "init=null"), tmp_path)
+    assert "initial weights: those that the agent is built with;" in line
+
+
 def test_estimate_is_nan_for_unknown_evaluation_cost(tmp_path):
     cfg = training("conv_adapter", "recurrent")
     cfg.cost = CostConfig()
