@@ -3,6 +3,7 @@ errors."""
 
 from __future__ import annotations
 
+import copy
 import json
 import pickle
 import shutil
@@ -16,6 +17,7 @@ from mitigate.core import checkpoint, folders
 from mitigate.guards.text.language_models.model import (
     LanguageModel,
     collate,
+    encode,
     encode_pair,
     open_adapter,
 )
@@ -81,6 +83,15 @@ def test_workers_encode_pairs_without_the_model(model):
     there = pickle.loads(pickle.dumps(recipe))
     assert not list(there.parameters())
     assert [there.work(job) for job in there.jobs(3)] == [recipe.work(j) for j in recipe.jobs(3)]
+
+
+def test_encode_does_not_depend_on_the_date(model):
+    tokenizer = copy.deepcopy(model.tokenizer)
+    tokenizer.chat_template = (  # as in the template of Llama 3.2
+        "{% if not date_string is defined %}{% set date_string = strftime_now('%d %b %Y') %}"
+        "{% endif %}{{ date_string }} {{ messages[1]['content'] }}"
+    )
+    assert tokenizer.decode(encode(tokenizer, "tuned", "Go.")) == "26 Jul 2024 Go."
 
 
 def test_loss_counts_only_completion_and_end_mark(model):

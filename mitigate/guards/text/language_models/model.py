@@ -32,6 +32,9 @@ if TYPE_CHECKING:
 
 # tokens that begin a turn in ChatML (SmolLM2) and in Llama 3
 TURNS = ("<|im_start|>", "<|start_header_id|>")
+# The chat templates of Llama 3 put today's date into the prompt unless they receive a date.
+# This is the date in Llama 3.2's template, which it uses if the clock is not available.
+DATE = "26 Jul 2024"
 # maximum number of tokens of a prompt; texts with longer prompts are not rewritten (heuristic)
 LONGEST = 512
 
@@ -231,9 +234,15 @@ class LanguageModel(nn.Module):
 
 
 def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
-    """Return the token ids of the chat that asks the model to rewrite ``text``."""
+    """Return the token ids of the chat that asks the model to rewrite ``text``.
+
+    They do not depend on today's date, so training and use have the same prompt.
+    """
     ids = tokenizer.apply_chat_template(
-        prompt_messages(text, prompt), add_generation_prompt=True, return_dict=False
+        prompt_messages(text, prompt),
+        add_generation_prompt=True,
+        return_dict=False,
+        date_string=DATE,
     )
     return list(ids)
 
