@@ -14,7 +14,7 @@ FLOOR = 0.10
 def prs(clean: float, corrupted: ArrayLike) -> float:
     """Return the Performance Retention Score: the mean over K of ``corrupted[k] / clean``.
 
-    As in the paper, values are not clipped.
+    As in the paper's formula, values are not clipped, so they may exceed 1.
 
     Args:
         clean: the agent's SR or SPL without corruption.

@@ -373,6 +373,9 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
         f"{section.grid.suite}. SR in %. Intervals, and what marks mean, are in table.md."
     )
     if theirs:
-        about += " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65)."
+        about += (
+            " In brackets the paper's figure for ETPNav on R2R (its Table II, clean SR 65). PRS in "
+            "brackets is relative to this 65, our PRS to the agent's own clean SR."
+        )
     table = markdown_table(["Corruption", *section.columns], lines)
     return f"{about}\n\n{table}\n"
