@@ -2,10 +2,11 @@
 
 ``Distil`` works on episodes of any trainable agent:
 
-    L = w_il * L_imitation + w_kl * tau^2 * KL(pi_T || pi_S) + w_feat * sum(MSE(f_S, f_T))
+    L = w_il * L_imitation + w_kl * tau^2 * KL(pi_T || pi_S)
+        + w_feat * sum(MSE(f_S, f_T) / Var(f_T))
 
-T is the teacher, S the student, and tau the temperature. The sum is over the features of all
-encoders.
+T is the teacher, S the student, and tau the temperature. The sum is over the features that the
+agent returns, such as those of views and nodes.
 
 Under corruption, the candidate actions of the student may differ from the teacher's
 candidates. For example, missing depth changes the places to which the student can go. Therefore
