@@ -18,6 +18,9 @@ from torch import nn
 
 PRECISIONS = ("fp32", "bf16", "int8", "nf4")
 LORA = "lora_"  # the name of every LoRA tensor of PEFT contains this text
+# The chat templates of Llama 3 put today's date into the prompt unless they receive a date.
+# This is the date in Llama 3.2's template, which it uses if the clock is not available.
+TEMPLATE_DATE = "26 Jul 2024"
 PEFT_WEIGHTS = "adapter_model.safetensors"  # name of PEFT's file with LoRA weights
 
 

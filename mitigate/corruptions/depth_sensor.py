@@ -58,9 +58,10 @@ class DepthSensor:
         return np.where(normalised == 0, 0, metres).astype(np.float32)
 
     def from_metres(self, metres: np.ndarray) -> np.ndarray:
-        """Convert metres to normalised depth in [0, 1]; only 0 (no reading) is mapped to 0."""
-        unit = (metres - self.z_min) / np.float32(self.z_max - self.z_min)
-        return np.where(metres == 0, 0, np.clip(unit, LEAST, 1)).astype(np.float32)
+        """Convert metres to normalised depth in [0, 1]; only invalid pixels become 0."""
+        valid = (metres > 0) & (metres < np.inf)
+        unit = (np.where(valid, metres, 0) - self.z_min) / np.float32(self.z_max - self.z_min)
+        return np.where(valid, np.clip(unit, LEAST, 1), 0).astype(np.float32)
 
 
 @njit(inline="always")

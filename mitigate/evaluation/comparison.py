@@ -128,14 +128,21 @@ def compare(rows: Iterable[Row]) -> Comparison:
     (R_corrupted - R_random) / (R_clean - R_random), where each R is a mean return.
 
     Raises:
-        ValueError: If the agents were not evaluated on common episodes, or if the first agent is no
-            better than random actions.
+        ValueError: If a corruption has several severities, the agents have no common episodes, or
+            the first agent is no better than random actions.
     """
     rows = list(rows)
     if not rows:
         raise ValueError("There are no rows to compare. Evaluate the agents first.")
     cells: dict[tuple[str, str], dict[str, list[Row]]] = defaultdict(lambda: defaultdict(list))
+    severities: dict[str, float] = {}
     for row in rows:
+        severity = severities.setdefault(row["corruption"], row["severity"])
+        if severity != row["severity"]:
+            raise ValueError(
+                f"Rows of {row['corruption']} must have one severity, got {severity:g} and "
+                f"{row['severity']:g}. Compare the rows of one severity at a time."
+            )
         cells[row["name"], row["corruption"]][row["episode_id"]].append(row)
     episodes = sorted(set.intersection(*(set(by_episode) for by_episode in cells.values())))
     if not episodes:
@@ -161,12 +168,12 @@ def compare(rows: Iterable[Row]) -> Comparison:
             f" Random actions return {mean(scores.values(RANDOM, CLEAN, RETURN)).text('.1f')}. "
             "Retention = (R - R_random) / (R_clean - R_random), with R_clean of the first column."
         )
-    severities = sorted({row["severity"] for row in rows if row["corruption"] != CLEAN})
+    listed_severities = sorted({severities[name] for name in names})
     seeds = sorted({row["seed"] for row in rows})
     listed_seeds = f"seed{'s' * (len(seeds) > 1)} {', '.join(map(str, seeds))}"
     about = (
         f"{counted(len(episodes), 'episode')}, {listed_seeds}, severity "
-        f"{', '.join(f'{s:g}' for s in severities)}.{more} Brackets: {100 * LEVEL:.0f} % "
+        f"{', '.join(f'{s:g}' for s in listed_severities)}.{more} Brackets: {100 * LEVEL:.0f} % "
         f"paired bootstrap over episodes, {RESAMPLES:,} resamples; where all or none succeed, "
         "or all episodes change alike, Wilson's; [–]: no resample differs. Changes in bold exclude "
         "zero."

@@ -188,6 +188,8 @@ def test_normalised_sensor_is_converted_to_metres_and_back():
     near = sensor.from_metres(np.array([0.0, sensor.z_min / 2, sensor.z_min]))
     assert near[0] == 0 and (near[1:] > 0).all()  # a valid pixel must not become a hole (0)
     assert sensor.to_metres(unit).dtype == np.float32
+    invalid = sensor.from_metres(np.array([np.inf, np.nan, -1.0, 0.0], np.float32))
+    assert (invalid == 0).all()
 
 
 def test_half_size_depth_is_corrupted_alike(scene):

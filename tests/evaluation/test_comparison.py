@@ -113,6 +113,12 @@ def test_compare_rejects_agents_without_common_episodes():
         compare(rows)
 
 
+def test_compare_rejects_several_severities_of_a_corruption():
+    other = [{**row, "severity": 0.3} for row in rows_of("before", "flare", [6.0, 6.0])]
+    with pytest.raises(ValueError, match=r"flare must have one severity, got 0\.6 and 0\.3"):
+        compare([*example(), *other])
+
+
 def test_compare_names_known_lines_for_an_unknown_one():
     with pytest.raises(KeyError, match="Return: Clean"):
         compare(example()).line("SR")

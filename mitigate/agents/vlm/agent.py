@@ -38,6 +38,7 @@ from mitigate.core.pretrained import (
     LORA,
     PEFT_WEIGHTS,
     PRECISIONS,
+    TEMPLATE_DATE,
     check_place,
     explained,
     files_sha256,
@@ -193,7 +194,10 @@ class VLMAgent(AnsweringAgent, nn.Module):
                 f"{self.model} has no chat template: choose an instruction-tuned model."
             )
         text = self.processor.apply_chat_template(
-            messages, tokenize=False, add_generation_prompt=generation
+            messages,
+            tokenize=False,
+            add_generation_prompt=generation,
+            date_string=TEMPLATE_DATE,
         )
         return str(text)
 

@@ -355,6 +355,18 @@ def test_answers_are_scored_with_a_template_that_writes_turns_differently(model,
 
 
 @pytest.mark.slow
+def test_prompt_does_not_depend_on_the_date(model, tmp_path):
+    folder = shutil.copytree(model, tmp_path / "model")
+    file = folder / "chat_template.jinja"
+    date = (  # as in the template of Llama 3.2
+        "{% if not date_string is defined %}{% set date_string = strftime_now('%d %b %Y') %}"
+        "{% endif %}{{ date_string }}\n"
+    )
+    file.write_text(date + file.read_text("utf-8"), "utf-8")
+    assert "26 Jul 2024" in build(str(folder))._prompt("Go.", None, 0)
+
+
+@pytest.mark.slow
 def test_template_without_a_system_prompt_is_explained(model, tmp_path):
     folder = shutil.copytree(model, tmp_path / "model")
     file = folder / "chat_template.jinja"

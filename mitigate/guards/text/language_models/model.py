@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING, Any
 import torch
 from torch import Tensor, nn
 
-from mitigate.core.pretrained import keep_lora_only
+from mitigate.core.pretrained import TEMPLATE_DATE, keep_lora_only
 from mitigate.core.progress import Progress
 from mitigate.guards.text.language_models.adapter_folder import (
     adapter_tensors,
@@ -32,9 +32,6 @@ if TYPE_CHECKING:
 
 # tokens that begin a turn in ChatML (SmolLM2) and in Llama 3
 TURNS = ("<|im_start|>", "<|start_header_id|>")
-# The chat templates of Llama 3 put today's date into the prompt unless they receive a date.
-# This is the date in Llama 3.2's template, which it uses if the clock is not available.
-DATE = "26 Jul 2024"
 # maximum number of tokens of a prompt; texts with longer prompts are not rewritten (heuristic)
 LONGEST = 512
 
@@ -242,7 +239,7 @@ def encode(tokenizer: Any, prompt: str, text: str) -> list[int]:
         prompt_messages(text, prompt),
         add_generation_prompt=True,
         return_dict=False,
-        date_string=DATE,
+        date_string=TEMPLATE_DATE,
     )
     return list(ids)
 
