@@ -140,4 +140,4 @@ def _rendering(rates: dict[str, tuple[float, float]]) -> str:
         for name, (wall, cpu) in rates.items()
     ]
     views = ("RGB-D views/s", "per CPU second", "panoramas (12 views)/s")
-    return markdown_table(("renderer", *views, "speed of ours relative to it"), rows)
+    return markdown_table(("renderer", *views, "speed of `apartments` divided by its speed"), rows)
