@@ -22,8 +22,8 @@ from mitigate.agents.agent import as_agent
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.recipes.imitate import Imitate, falling_share
-from mitigate.training import success
 from mitigate.training.rollouts import Rollouts, batch_of
+from mitigate.training.success import reject_success_distributed
 
 
 class Dagger(Imitate):
@@ -73,7 +73,7 @@ class Dagger(Imitate):
         walks: int = 24,
         losses: Mapping[str, float] | None = None,
     ) -> None:
-        success.refuse(rollouts.schedule)
+        reject_success_distributed(rollouts.schedule)
         super().__init__(agent, rollouts, train_parts, losses)
         self.folder = Path(folder)
         self.steps = steps
@@ -84,20 +84,21 @@ class Dagger(Imitate):
     def jobs(self, step: int) -> list[tuple]:
         """Return the jobs of ``Rollouts``, or an empty list in steps without new rollouts.
 
-        Each job also contains the fraction of decisions that follow the expert.
+        Each job is a pair (job of ``Rollouts``, fraction of decisions that follow the expert).
         """
         if step % self.every:
             return []
-        expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
-        return [(*job, expert) for job in jobs]
+        expert_share = falling_share(step, self.steps, self.least)
+        return [(job, expert_share) for job in super().jobs(step)]
 
     def pieces(self) -> int:
         """Return 1, which requires a single process, because rollouts are stored per process."""
         return 1
 
     def work(self, job: tuple) -> Any:
-        *rollout_job, self.rollouts.follow_oracle = job
-        return self.rollouts.work(tuple(rollout_job))
+        rollout_job, expert_share = job
+        self.rollouts.follow_oracle = expert_share
+        return self.rollouts.work(rollout_job)
 
     def batch(self, step: int) -> dict[str, Any]:
         return super().batch(step) if step % self.every == 0 else self.collate(step, [])

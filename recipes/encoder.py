@@ -32,8 +32,8 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, corrupted, source_of
-from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
+from mitigate.training.success import reject_success_distributed
 
 SHOWN = 12  # number of frames in the logged picture
 # maximum number of bytes of cached clean features; larger amounts are computed again at each step
@@ -103,7 +103,7 @@ class HardenEncoder(Objective):
                 f"frames must be >= 1, got {frames}."
             )
         check_weights(w_feat=w_feat, w_gate=w_gate)
-        success.refuse(schedule)
+        reject_success_distributed(schedule)
         self.agent = agent
         self.batch_size = batch
         self.micro = micro_batch

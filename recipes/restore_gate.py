@@ -164,7 +164,8 @@ class RestoreGate(Objective):
         step, collected, device = OFFSETS[which], 0, self.net.threshold.device
         with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
             while collected < count:
-                batch = pairs.collate([pairs.work(job) for job in pairs.jobs(step)])
+                jobs: list[Any] = list(pairs.jobs(step))
+                batch = pairs.collate([pairs.work(job) for job in jobs])
                 frames, clean = (batch[n].flatten(0, 1).to(device) for n in ("frames", "clean"))
                 parts.append(self._part(frames, clean, batch["frames"].shape[1] if ring else 1))
                 added, step = min(len(parts[-1][0]), count - collected), step + 1

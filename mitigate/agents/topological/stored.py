@@ -207,8 +207,8 @@ class ScenesTask:
         for number, (rgb, depth, seen) in enumerate(frames):
             # the corruption may depend on the heading, as a lens flare does
             observation = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}
-            drawn = schedule.draw(self.seed, name, number)
-            result = corrupt_observation(observation, *drawn, sensor)
+            corruption, key = schedule.draw(self.seed, name, number)
+            result = corrupt_observation(observation, corruption, key, sensor)
             corrupted.append((result[RGB], result[DEPTH], seen))
         return corrupted
 
