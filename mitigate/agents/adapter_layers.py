@@ -105,7 +105,7 @@ class FrameGate(Adapter):
         """Return ``x`` unchanged, so that a gate in an ``nn.Sequential`` has no effect."""
         return x
 
-    def look(self, x: Tensor) -> None:
+    def classify(self, x: Tensor) -> None:
         """Compute and keep the logits of frames ``[n, C, h, w]``."""
         x = x.detach().float()
         y = F.gelu(self.second(F.gelu(self.first(x)))).flatten(2)
