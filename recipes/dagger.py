@@ -105,12 +105,12 @@ class Dagger(Imitate):
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
-            self._keep(step, number, piece)
+            self._store(step, number, piece)
         size = -(-self.rollouts.episodes // self.rollouts.pieces)  # number of rollouts per job
-        again = self._drawn(step, -(-self.walks // size) - len(pieces))
-        return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
+        stored = self._stored(step, -(-self.walks // size) - len(pieces))
+        return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in stored)]))
 
-    def _drawn(self, step: int, count: int) -> list[Any]:
+    def _stored(self, step: int, count: int) -> list[Any]:
         """Return ``count`` randomly chosen groups of stored rollouts from earlier steps."""
         pieces = range(self.rollouts.pieces)
         known = [(s, n) for s in range(0, step, self.every) for n in pieces]
@@ -122,7 +122,7 @@ class Dagger(Imitate):
     def _file(self, step: int, number: int) -> Path:
         return self.folder / f"{step:06d}-{number}.pt"
 
-    def _keep(self, step: int, number: int, piece: Any) -> None:
+    def _store(self, step: int, number: int, piece: Any) -> None:
         """Store the rollouts of one job, with floating-point tensors as float16."""
         if other := _not_plain(piece):
             raise ValueError(

@@ -114,7 +114,7 @@ class ImitateStored(Objective):
         train_only(agent, agent.stored_parts)
         self.agent = agent
         self.rollouts = rollouts
-        self.losses = loss_weights(agent, losses)
+        self.loss_weights = loss_weights(agent, losses)
 
     def start(self) -> None:
         self.rollouts.start(self.workers)
@@ -132,4 +132,4 @@ class ImitateStored(Objective):
         return batch_of(self.agent.join(pieces))
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        return decide(self.agent, batch["decisions"], self.losses)[1]
+        return decide(self.agent, batch["decisions"], self.loss_weights)[1]
