@@ -76,7 +76,7 @@ class Poses(DrawsBySuccess):
             raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
         check_counts(panoramas=self.panoramas)
         check_share("camera_share", self.camera_share)
-        self.sensor = self.modality
+        self.sensor = self.modality  # ``modality`` is the name of the option in configs
         self.schedule = self.schedule or Schedule("clean", 0.0)
         if self.own:
             self.schedule = self.schedule.only(self.sensor)
