@@ -49,9 +49,17 @@ class Adapt(Distil):
         w_feat: float = 1.0,
         temperature: float = 2.0,
     ) -> None:
-        has_adapters(agent)
+        require_adapters(agent)
         super().__init__(
-            agent, rollouts, START, (ADAPTERS,), losses, w_il, w_kl, w_feat, temperature
+            agent,
+            rollouts,
+            teacher=START,
+            train_parts=(ADAPTERS,),
+            losses=losses,
+            w_il=w_il,
+            w_kl=w_kl,
+            w_feat=w_feat,
+            temperature=temperature,
         )
         self.backbone = backbone_sha(agent)
 
@@ -101,9 +109,9 @@ class AdaptViews(DistilViews):
                 f"at most 1, got {strength}; held must be >= 1, got {held}."
             )
         check_weights(w_gate=w_gate)
-        super().__init__(agent, poses, START, w_labels, w_feat)
-        encoders = [agent.parts()[name] for name in agent.encoders[self.modality]]
-        has_adapters(agent, *encoders)
+        super().__init__(agent, poses, teacher=START, w_labels=w_labels, w_feat=w_feat)
+        encoders = [agent.parts()[name] for name in agent.encoders[self.sensor]]
+        require_adapters(agent, *encoders)
         self.w_gate = w_gate
         self.touched = touched
         self.held = held
@@ -115,15 +123,15 @@ class AdaptViews(DistilViews):
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         values = super().forward(batch)
         for gate in self.gates:
-            corrupted = differ(batch["frames"], batch["clean"])
+            corrupted = changed_views(batch["frames"], batch["clean"])
             logits = gate.judged.logits.float() + gate.threshold
             loss = F.binary_cross_entropy_with_logits(logits, corrupted.float())
             opened = (logits > 0).float()
             values |= {
                 "loss": values["loss"] + self.w_gate * loss,
                 "gate": loss,
-                "opened_corrupted": share(opened, corrupted),
-                "opened_clean": share(opened, ~corrupted),
+                "opened_corrupted": mean_where(opened, corrupted),
+                "opened_clean": mean_where(opened, ~corrupted),
             }
         return values
 
@@ -133,7 +141,7 @@ class AdaptViews(DistilViews):
         Raises ValueError if the backbone has changed.
         """
         check_backbone(self.agent, self.backbone)
-        for name in self.agent.encoders[self.modality]:
+        for name in self.agent.encoders[self.sensor]:
             encoder = self.agent.parts()[name]
             if adapted(encoder):
                 scale_adapters(encoder, self.strength)
@@ -153,7 +161,7 @@ class AdaptViews(DistilViews):
             logits, _ = self._judged(gate, FRESH, few, clean=True)
             values["clean_opened"] = float((logits > 0).float().mean())
             logits, hit = self._judged(gate, FRESH, few, clean=False)
-            values["corrupted_opened"] = float(share((logits > 0).float(), hit))
+            values["corrupted_opened"] = float(mean_where((logits > 0).float(), hit))
         return values
 
     def _judged(self, gate: FrameGate, step: int, count: int, clean: bool) -> tuple[Tensor, Tensor]:
@@ -166,13 +174,13 @@ class AdaptViews(DistilViews):
         for job in poses.jobs(step):
             batch = poses.collate([poses.work(job)])
             images = batch["clean" if clean else "frames"].to(gate.threshold.device)
-            self.agent.see(self.modality, images)
+            self.agent.see(self.sensor, images)
             logits.append(gate.judged.logits.float())
-            corrupted.append(differ(images, batch["clean"].to(images.device)))
+            corrupted.append(changed_views(images, batch["clean"].to(images.device)))
         return torch.cat(logits), torch.cat(corrupted)
 
 
-def differ(frames: Tensor, clean: Tensor) -> Tensor:
+def changed_views(frames: Tensor, clean: Tensor) -> Tensor:
     """Return a bool mask [P * V] of the views that differ between two batches of shape [P, V, H, W,
     c].
     """
@@ -180,7 +188,7 @@ def differ(frames: Tensor, clean: Tensor) -> Tensor:
     return other.flatten(0, 1).flatten(1).any(1)
 
 
-def share(values: Tensor, where: Tensor) -> Tensor:
+def mean_where(values: Tensor, where: Tensor) -> Tensor:
     """Return the mean of those ``values`` [n] for which the mask ``where`` [n] is true. Return 0 if
     the mask is false everywhere.
     """
@@ -197,10 +205,10 @@ def check_backbone(agent: nn.Module, expected: str) -> None:
         )
 
 
-def has_adapters(agent: nn.Module, *modules: nn.Module) -> None:
-    """Print the size of the agent's adapters, as a fraction of its backbone.
+def require_adapters(agent: nn.Module, *modules: nn.Module) -> None:
+    """Raise ValueError if none of ``modules`` (default: the whole agent) has adapters.
 
-    Raises ValueError if none of ``modules`` has adapters. The default is the whole agent.
+    If there are adapters, print their size as a fraction of the backbone.
     """
     if not any(adapted(module) for module in modules or (agent,)):
         raise ValueError(

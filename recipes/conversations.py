@@ -32,10 +32,10 @@ from mitigate.core.pictures import picture
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule, corrupt_observation, frame_files
 from mitigate.recipes.imitate import Imitate
-from mitigate.training import success
-from mitigate.training.objective import check_counts, divided
+from mitigate.training.objective import Job, check_counts, divide
 from mitigate.training.parts import TRAINABLE
 from mitigate.training.rollouts import PIECES
+from mitigate.training.success import reject_success_distributed
 
 MOST_LINE = 1 << 20  # maximum number of characters in a line
 MOST_LINES = 10_000_000
@@ -80,7 +80,7 @@ class Conversations:
     def __post_init__(self) -> None:
         check_counts(decisions=self.decisions)
         self.schedule = self.schedule or Schedule("clean", 0.0)
-        success.refuse(self.schedule)
+        reject_success_distributed(self.schedule)
         if not self.folder:
             raise ValueError(
                 "The folder of the conversations is missing: stages.imitation.recipe.folder=FOLDER."
@@ -104,13 +104,11 @@ class Conversations:
         """Return the hash of the conversations."""
         return {"conversations_sha256": sha256(self.file)}
 
-    def jobs(self, step: int, workers: int | None = None) -> list[tuple[int, int, int, int]]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        entries).
-        """
-        return divided(step, self.decisions, self.pieces)
+    def jobs(self, step: int, workers: int | None = None) -> list[Job]:
+        """Return the jobs of a step, whose items are entries."""
+        return divide(step, self.decisions, self.pieces)
 
-    def work(self, job: tuple[int, int, int, int]) -> tuple[Piece, np.ndarray]:
+    def work(self, job: Job) -> tuple[Piece, np.ndarray]:
         """Read and corrupt the images of a job; return its decisions and a picture of an image."""
         step, index, _, count = job
         rng = generator(self.seed, "conversation", step, index)

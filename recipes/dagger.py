@@ -22,8 +22,8 @@ from mitigate.agents.agent import as_agent
 from mitigate.core.files import write_bytes
 from mitigate.core.seeding import generator
 from mitigate.recipes.imitate import Imitate, falling_share
-from mitigate.training import success
 from mitigate.training.rollouts import Rollouts, batch_of
+from mitigate.training.success import reject_success_distributed
 
 
 class Dagger(Imitate):
@@ -73,7 +73,7 @@ class Dagger(Imitate):
         walks: int = 24,
         losses: Mapping[str, float] | None = None,
     ) -> None:
-        success.refuse(rollouts.schedule)
+        reject_success_distributed(rollouts.schedule)
         super().__init__(agent, rollouts, train_parts, losses)
         self.folder = Path(folder)
         self.steps = steps
@@ -84,32 +84,33 @@ class Dagger(Imitate):
     def jobs(self, step: int) -> list[tuple]:
         """Return the jobs of ``Rollouts``, or an empty list in steps without new rollouts.
 
-        Each job also contains the fraction of decisions that follow the expert.
+        Each job is a pair (job of ``Rollouts``, fraction of decisions that follow the expert).
         """
         if step % self.every:
             return []
-        expert, jobs = falling_share(step, self.steps, self.least), super().jobs(step)
-        return [(*job, expert) for job in jobs]
+        expert_share = falling_share(step, self.steps, self.least)
+        return [(job, expert_share) for job in super().jobs(step)]
 
     def pieces(self) -> int:
         """Return 1, which requires a single process, because rollouts are stored per process."""
         return 1
 
     def work(self, job: tuple) -> Any:
-        *rollout_job, self.rollouts.follow_oracle = job
-        return self.rollouts.work(tuple(rollout_job))
+        rollout_job, expert_share = job
+        self.rollouts.follow_oracle = expert_share
+        return self.rollouts.work(rollout_job)
 
     def batch(self, step: int) -> dict[str, Any]:
         return super().batch(step) if step % self.every == 0 else self.collate(step, [])
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         for number, (piece, _) in enumerate(pieces):
-            self._keep(step, number, piece)
+            self._store(step, number, piece)
         size = -(-self.rollouts.episodes // self.rollouts.pieces)  # number of rollouts per job
-        again = self._drawn(step, -(-self.walks // size) - len(pieces))
-        return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in again)]))
+        stored = self._stored(step, -(-self.walks // size) - len(pieces))
+        return batch_of(self.rollouts.collate([*pieces, *((piece, None) for piece in stored)]))
 
-    def _drawn(self, step: int, count: int) -> list[Any]:
+    def _stored(self, step: int, count: int) -> list[Any]:
         """Return ``count`` randomly chosen groups of stored rollouts from earlier steps."""
         pieces = range(self.rollouts.pieces)
         known = [(s, n) for s in range(0, step, self.every) for n in pieces]
@@ -121,7 +122,7 @@ class Dagger(Imitate):
     def _file(self, step: int, number: int) -> Path:
         return self.folder / f"{step:06d}-{number}.pt"
 
-    def _keep(self, step: int, number: int, piece: Any) -> None:
+    def _store(self, step: int, number: int, piece: Any) -> None:
         """Store the rollouts of one job, with floating-point tensors as float16."""
         if other := _not_plain(piece):
             raise ValueError(

@@ -75,7 +75,7 @@ class Distil(OnEpisodes):
                 "No weight would be trained: w_il, w_kl and w_feat are 0. Set one of them above 0."
             )
         self.agent = agent
-        self.losses = loss_weights(agent, losses)
+        self.loss_weights = loss_weights(agent, losses)
         self.teacher: Any = load_teacher(agent, teacher)
         train_only(agent, train_parts)
         self.w_il = w_il
@@ -90,7 +90,7 @@ class Distil(OnEpisodes):
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
         decisions = batch["decisions"]
-        out, values = decide(self.agent, decisions, self.losses)
+        out, values = decide(self.agent, decisions, self.loss_weights)
         with torch.no_grad():
             target = self.teacher.decide(decisions, clean=True)
         values["kl"] = policy_kl(out.logits, target.logits, self.temperature)
@@ -151,8 +151,8 @@ class DistilViews(OnViews):
             for name in agent.encoders.get(poses.sensor, ()):
                 refuse_gates(agent.parts()[name])
         self.agent = agent
-        self.modality = poses.sensor
-        poses.learn(**views_to_learn(agent, self.modality, self.adapters_only))
+        self.sensor = poses.sensor
+        poses.learn(**views_to_learn(agent, self.sensor, self.adapters_only))
         self.poses = poses
         self.teacher: Any = load_teacher(agent, teacher)
         self.w_labels = w_labels
@@ -162,9 +162,9 @@ class DistilViews(OnViews):
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        out = self.agent.see(self.modality, batch["frames"], batch["targets"])
+        out = self.agent.see(self.sensor, batch["frames"], batch["targets"])
         with torch.no_grad():
-            target = self.teacher.see(self.modality, batch["clean"])
+            target = self.teacher.see(self.sensor, batch["clean"])
         feat = feature_loss(out.features["views"], target.features["views"])
         loss = self.w_labels * out.losses["labels"] + self.w_feat * feat
         return {"loss": loss, "feat": feat, **out.losses, **out.figures}

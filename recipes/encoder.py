@@ -32,14 +32,14 @@ from mitigate.corruptions import Schedule
 from mitigate.corruptions.registry import modality
 from mitigate.encoders.model import Encoder
 from mitigate.encoders.sources import TRAIN, UNSEEN, Frames, Source, collect, corrupted, source_of
-from mitigate.training import success
 from mitigate.training.objective import Objective, check_weights
+from mitigate.training.success import reject_success_distributed
 
 SHOWN = 12  # number of frames in the logged picture
 # maximum number of bytes of cached clean features; larger amounts are computed again at each step
 MOST_KEPT = 1 << 30
 # number of frames from which the variance is estimated if features are not cached (heuristic)
-LOOKED_AT = 48
+VARIANCE_FRAMES = 48
 
 
 def frame_source(
@@ -103,10 +103,10 @@ class HardenEncoder(Objective):
                 f"frames must be >= 1, got {frames}."
             )
         check_weights(w_feat=w_feat, w_gate=w_gate)
-        success.refuse(schedule)
+        reject_success_distributed(schedule)
         self.agent = agent
         self.batch_size = batch
-        self.micro = micro_batch
+        self.micro_batch = micro_batch
         # freeze first, so that the teacher, which is a copy, is frozen too
         agent.requires_grad_(False)
         self.teacher = as_agent(agent).as_teacher().eval()
@@ -143,9 +143,10 @@ class HardenEncoder(Objective):
     def start(self) -> None:
         if self.frames is None:
             self.frames = collect(self.source, TRAIN, self.count, self.seed)
-        device, self.targets = next(self.teacher.parameters(), torch.zeros(())).device, None
-        clean = torch.from_numpy(self.frames.frames).split(self.micro)
-        some = clean[: -(-LOOKED_AT // self.micro)]
+        device = next(self.teacher.parameters(), torch.zeros(())).device
+        self.targets = None
+        clean = torch.from_numpy(self.frames.frames).split(self.micro_batch)
+        some = clean[: -(-VARIANCE_FRAMES // self.micro_batch)]
         first = torch.cat([self._clean(part.to(device)) for part in some])
         self.variance = variance(first, self.per_channel)
         if first[0].numel() * first.element_size() * len(self.frames) > MOST_KEPT:
@@ -153,7 +154,7 @@ class HardenEncoder(Objective):
         with Progress("clean features", len(self.frames), unit="frame") as progress:
             self.targets = first.new_empty(len(self.frames), *first.shape[1:])
             for at, part in enumerate(clean):
-                start = at * self.micro
+                start = at * self.micro_batch
                 self.targets[start : start + len(part)] = self._clean(part.to(device))
                 progress.advance(len(part))
         self.variance = variance(self.targets, self.per_channel)
@@ -203,7 +204,9 @@ class HardenEncoder(Objective):
         """Split the frames of a step into parts of at most ``micro_batch`` frames, and return each
         part with its fraction of all frames.
         """
-        tensors = {name: batch[name].split(self.micro) for name in batch if name != "episode_ids"}
+        tensors = {
+            name: batch[name].split(self.micro_batch) for name in batch if name != "episode_ids"
+        }
         parts = [
             dict(zip(tensors, part, strict=True)) for part in zip(*tensors.values(), strict=True)
         ]

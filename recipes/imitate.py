@@ -48,11 +48,11 @@ class Imitate(OnEpisodes):
         super().__init__()
         train_only(agent, train_parts)
         self.agent = agent
-        self.losses = loss_weights(agent, losses)
+        self.loss_weights = loss_weights(agent, losses)
         self.rollouts = rollouts
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        return decide(self.agent, batch["decisions"], self.losses)[1]
+        return decide(self.agent, batch["decisions"], self.loss_weights)[1]
 
 
 def decide(

@@ -16,10 +16,10 @@ from torch import Tensor
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.recipes.imitate import decide, falling_share, loss_weights
-from mitigate.training import success
-from mitigate.training.objective import Objective, check_counts, check_share, divided
+from mitigate.training.objective import Job, Objective, check_counts, check_share, divide
 from mitigate.training.parts import TRAINABLE, train_only
 from mitigate.training.rollouts import PIECES, batch_of
+from mitigate.training.success import reject_success_distributed
 from mitigate.worlds.world import TrainingEpisodes, World
 
 
@@ -60,7 +60,7 @@ class StoredRollouts:
     def __post_init__(self) -> None:
         check_counts(episodes=self.episodes)
         check_share("follow_oracle", self.follow_oracle)
-        success.refuse(self.schedule if self.variants else None)
+        reject_success_distributed(self.schedule if self.variants else None)
 
     def start(self, workers: int | None) -> None:
         """Compute and store the features, in the precision of the training run."""
@@ -75,17 +75,15 @@ class StoredRollouts:
         """The number of jobs in every step."""
         return min(PIECES, self.episodes)
 
-    def jobs(self, step: int) -> list[tuple[int, int, int, int]]:
-        """Return a list of jobs, each a tuple (step, index of the job, number of jobs, number of
-        episodes).
-        """
-        return divided(step, self.episodes, self.pieces)
+    def jobs(self, step: int) -> list[Job]:
+        """Return the jobs of a step, whose items are episodes."""
+        return divide(step, self.episodes, self.pieces)
 
-    def work(self, job: tuple) -> Any:
+    def work(self, job: Job) -> Any:
         """Run the episodes of a job and return their decisions."""
-        step, piece, pieces, count = job
-        rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
-        episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
+        step, number, jobs, count = job
+        rngs = [generator(self.seed, "rollout", step, number, i) for i in range(count)]
+        episodes = [self.training.draw(rng, (number, jobs)) for rng in rngs]
         expert_share = falling_share(step, self.steps, self.follow_oracle)
         return self.store.collect(episodes, expert_share=expert_share, rngs=rngs)
 
@@ -116,22 +114,22 @@ class ImitateStored(Objective):
         train_only(agent, agent.stored_parts)
         self.agent = agent
         self.rollouts = rollouts
-        self.losses = loss_weights(agent, losses)
+        self.loss_weights = loss_weights(agent, losses)
 
     def start(self) -> None:
         self.rollouts.start(self.workers)
 
-    def jobs(self, step: int) -> list[tuple]:
+    def jobs(self, step: int) -> list[Job]:
         return self.rollouts.jobs(step)
 
     def pieces(self) -> int:
         return self.rollouts.pieces
 
-    def work(self, job: tuple) -> Any:
+    def work(self, job: Job) -> Any:
         return self.rollouts.work(job)
 
     def collate(self, step: int, pieces: list[Any]) -> dict[str, Any]:
         return batch_of(self.agent.join(pieces))
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        return decide(self.agent, batch["decisions"], self.losses)[1]
+        return decide(self.agent, batch["decisions"], self.loss_weights)[1]

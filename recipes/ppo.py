@@ -103,8 +103,9 @@ class Ppo(Objective):
         self.training_episodes = training
         self.schedule = schedule
         self.rollout = rollout
-        self.parts = max(1, rollout // batch)  # training steps per epoch
-        self.updates = epochs * self.parts  # training steps per round
+        # both numbers count training steps, not environment steps
+        self.steps_per_epoch = max(1, rollout // batch)
+        self.steps_per_round = epochs * self.steps_per_epoch
         self.gamma = gamma
         self.lmbda = lmbda
         self.w_kl = w_kl
@@ -150,17 +151,17 @@ class Ppo(Objective):
         """Return a minibatch of the round's environment steps. Each environment step is used once
         per epoch.
         """
-        number, within = divmod(step, self.updates)
+        number, within = divmod(step, self.steps_per_round)
         if number != self._number:
             if within == 0:  # if not 0, a resumed run repeats the interrupted round
                 self.behaviour.load_state_dict(self.actor.state_dict())
                 self._steps_before += self._steps_now
-            self._rollouts = self._run(number)
+            self._rollouts = self._round(number)
             self._number = number
             self._steps_now = len(self._rollouts["action"])
-        epoch, part = divmod(within, self.parts)
+        epoch, part = divmod(within, self.steps_per_epoch)
         order = generator(self.seed, "ppo order", number, epoch).permutation(self._steps_now)
-        rows = np.array_split(order, self.parts)[part]
+        rows = np.array_split(order, self.steps_per_epoch)[part]
         batch: dict[str, Any] = {
             name: {sensor: frames[rows] for sensor, frames in value.items()}
             if isinstance(value, dict)
@@ -201,7 +202,7 @@ class Ppo(Objective):
     def figures(self, step: int) -> dict[str, np.ndarray]:
         return {} if self._picture is None else {"seen": self._picture}
 
-    def _run(self, number: int) -> dict[str, Any]:
+    def _round(self, number: int) -> dict[str, Any]:
         """Run the episodes of a round, and return their environment steps with advantages."""
         from torchrl.objectives.value.functional import generalized_advantage_estimate
 
@@ -289,7 +290,8 @@ class Ppo(Objective):
         return {"steps_before": self._steps_before, "steps_now": self._steps_now}
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
-        self._steps_before, self._steps_now = state["steps_before"], state["steps_now"]
+        self._steps_before = state["steps_before"]
+        self._steps_now = state["steps_now"]
 
 
 class _Networks:

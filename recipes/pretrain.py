@@ -30,12 +30,12 @@ class Pretrain(OnViews):
     def __init__(self, agent: Any, poses: Poses) -> None:
         super().__init__()
         self.agent = agent
-        self.modality = poses.sensor
-        poses.learn(**views_to_learn(agent, self.modality))
+        self.sensor = poses.sensor
+        poses.learn(**views_to_learn(agent, self.sensor))
         self.poses = poses
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        out = self.agent.see(self.modality, batch["frames"], batch["targets"])
+        out = self.agent.see(self.sensor, batch["frames"], batch["targets"])
         return {"loss": out.losses["labels"], **out.figures}
 
 

@@ -40,7 +40,7 @@ SPENT = 0.15
 OFFSETS = {"held": 1_000_000, "fresh": 2_000_000, "corrupted": 3_000_000, "learned": 4_000_000}
 
 
-class Judged(NamedTuple):
+class GateSamples(NamedTuple):
     """Gate inputs and restoration errors of N time steps with V views.
 
     Attributes:
@@ -104,7 +104,7 @@ class RestoreGate(Objective):
                 f"{single} and {touched}; instants, held and batch must be >= 1, got "
                 f"{instants}, {held} and {batch}."
             )
-        self.modality = pairs.sensor
+        self.sensor = pairs.sensor
         self.instants = instants
         self.held = held
         self.batch_size = batch
@@ -112,12 +112,12 @@ class RestoreGate(Objective):
         self.touched = touched
         self.seed = seed
         self.agent = agent.requires_grad_(False)
-        self.net: SensorRestorer = agent.parts()[self.modality]
+        self.net: SensorRestorer = agent.parts()[self.sensor]
         self.net.gate.requires_grad_(True)
         self.pairs = with_clean_share(pairs, CLEAN_SHARE)
         self.clean = with_clean_share(pairs, 1.0)
         # one data set of panoramas (if there are any), and one of single views
-        self.learned: list[Judged] = []
+        self.learned: list[GateSamples] = []
 
     def identity(self) -> dict[str, str]:
         return self.pairs.identity()
@@ -126,7 +126,7 @@ class RestoreGate(Objective):
         self.pairs.start()
         self.clean.start()
         kinds = [True, False] if self.pairs.ring else [False]
-        self.learned = [self._judged(self.pairs, self.instants, "learned", ring) for ring in kinds]
+        self.learned = [self._samples(self.pairs, self.instants, "learned", ring) for ring in kinds]
 
     def pieces(self) -> int:
         """Return 1, because a batch cannot be divided among ranks."""
@@ -137,43 +137,50 @@ class RestoreGate(Objective):
         rng = generator(self.seed, "gate batch", step)
         table = self.learned[-1 if rng.random() < self.single else 0]
         chosen = rng.integers(len(table.before), size=self.batch_size)
-        return {"judged": Judged(*(part[torch.from_numpy(chosen)] for part in table))}
+        return {"samples": GateSamples(*(part[torch.from_numpy(chosen)] for part in table))}
 
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        judged = Judged(*(part.to(self.net.threshold.device) for part in batch["judged"]))
-        logits, (better, counted) = self._logits(judged), judged.labels
+        samples = GateSamples(*(part.to(self.net.threshold.device) for part in batch["samples"]))
+        logits = self._logits(samples)
+        better, counted = samples.labels
         each = F.binary_cross_entropy_with_logits(logits, better.float(), reduction="none")
-        total, right = counted.sum().clamp(min=1), (logits > 0) == better
+        total = counted.sum().clamp(min=1)
+        right = (logits > 0) == better
         return {
             "loss": (each * counted).sum() / total,
             "accuracy": (right & counted).sum() / total,
             "wanted": (better & counted).sum() / total,
         }
 
-    def _logits(self, judged: Judged) -> Tensor:
+    def _logits(self, samples: GateSamples) -> Tensor:
         """Return the gate's logit for each time step [N]."""
-        stats, textures = (part.flatten(0, 1) for part in judged[:2])
-        return self.net.gate(stats, textures, judged.stats.shape[1]).float()
+        stats = samples.stats.flatten(0, 1)
+        textures = samples.textures.flatten(0, 1)
+        return self.net.gate(stats, textures, samples.stats.shape[1]).float()
 
     @torch.no_grad()
-    def _judged(self, pairs: Pairs, count: int, which: str, ring: bool) -> Judged:
+    def _samples(self, pairs: Pairs, count: int, which: str, ring: bool) -> GateSamples:
         """Measure ``count`` time steps: whole panoramas if ``ring`` is true, otherwise single
         views.
         """
         parts: list[tuple[Tensor, ...]] = []
-        step, collected, device = OFFSETS[which], 0, self.net.threshold.device
-        with Progress(f"{self.modality}, {which}", count, unit="instant") as progress:
+        step = OFFSETS[which]
+        collected = 0
+        device = self.net.threshold.device
+        with Progress(f"{self.sensor}, {which}", count, unit="instant") as progress:
             while collected < count:
-                batch = pairs.collate([pairs.work(job) for job in pairs.jobs(step)])
+                jobs: list[Any] = list(pairs.jobs(step))
+                batch = pairs.collate([pairs.work(job) for job in jobs])
                 frames, clean = (batch[n].flatten(0, 1).to(device) for n in ("frames", "clean"))
                 parts.append(self._part(frames, clean, batch["frames"].shape[1] if ring else 1))
-                added, step = min(len(parts[-1][0]), count - collected), step + 1
+                added = min(len(parts[-1][0]), count - collected)
+                step += 1
                 collected += added
                 progress.advance(added)
-        return Judged(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
+        return GateSamples(*(torch.cat(part)[:count] for part in zip(*parts, strict=True)))
 
     def _part(self, frames: Tensor, clean: Tensor, views: int) -> tuple[Tensor, ...]:
-        """Compute the fields of :class:`Judged` for frames [n, H, W, c]."""
+        """Compute the fields of :class:`GateSamples` for frames [n, H, W, c]."""
         restored = self.net(frames, views)
         small = self.net.small(*self.net.scaled(frames))
         inputs = (self.net.judge(*small, views)[0].stats, texture(*small))
@@ -189,7 +196,7 @@ class RestoreGate(Objective):
     @torch.no_grad()
     def finish(self) -> None:
         """Set the threshold on held-out clean time steps."""
-        logits = self._logits(self._judged(self.clean, self.held, "held", self.pairs.ring))
+        logits = self._logits(self._samples(self.clean, self.held, "held", self.pairs.ring))
         self.net.threshold.fill_(float(logits.quantile(1 - self.touched)))
 
     @torch.no_grad()
@@ -200,8 +207,8 @@ class RestoreGate(Objective):
         target 1 are counted. The threshold is set only at the end of training.
         """
         ring = self.pairs.ring
-        fresh = self._judged(self.clean, -(-self.held // 3), "fresh", ring)
-        corrupted = self._judged(self.pairs, -(-self.held // 3), "corrupted", ring)
+        fresh = self._samples(self.clean, -(-self.held // 3), "fresh", ring)
+        corrupted = self._samples(self.pairs, -(-self.held // 3), "corrupted", ring)
         return {
             "threshold": float(self.net.threshold),
             "clean_touched": self._above(self._logits(fresh)),

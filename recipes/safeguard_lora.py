@@ -19,7 +19,7 @@ from mitigate.guards.text.learning.data import Pair, draw_pair, read_chats, read
 from mitigate.training.objective import Objective
 
 Encoded = tuple[int, list[int], list[int]]  # index, prompt and completion of a pair
-_HELD = 10**9  # index of the first pair for evaluation
+_HELD_OUT = 10**9  # index of the first pair for evaluation
 
 
 class SafeguardLora(Objective):
@@ -61,12 +61,12 @@ class SafeguardLora(Objective):
         self.chats = [pair for path in chats or [] for pair in read_chats(path)]
         self.share = share
         self.seed = seed
-        self.read = [*(files or []), *(chats or [])]
+        self.paths = [*(files or []), *(chats or [])]
         for name, parameter in agent.named_parameters():
             parameter.requires_grad_("lora_" in name)
 
     def identity(self) -> dict[str, str]:
-        return {path: sha256(path) for path in self.read}
+        return {path: sha256(path) for path in self.paths}
 
     def pair(self, index: int) -> Pair:
         """Return the pair with this index; it depends only on the seed."""
@@ -119,7 +119,7 @@ class SafeguardLora(Objective):
 
     def evaluate(self, step: int) -> dict[str, float]:
         """Return loss and accuracy on pairs that are never used in training."""
-        pieces = [self.work(index) for index in range(_HELD, _HELD + 4 * self.pairs)]
+        pieces = [self.work(index) for index in range(_HELD_OUT, _HELD_OUT + 4 * self.pairs)]
         batches = self.micro_batches(self.collate(step, pieces))
         values = [self(to_device(part, self.agent.device)) for part in batches]
         return {n: float(sum(part[n] for part in values)) for n in ("loss", "accuracy")}

@@ -130,7 +130,7 @@ class SelfDistil(Objective):
         self.module = module or last_convolution(agent)
         # windows of each round of rollouts, [n, window, ...]
         self._stored: list[dict[str, np.ndarray]] = []
-        self._now = 0  # in a resumed run, the rounds before this step are already stored
+        self._resumed_at = 0  # step of the checkpoint; the rounds before it are already stored
         self._picture: np.ndarray | None = None
         # constructed only once, because constructing an environment takes time
         self._world: World | None = None
@@ -155,7 +155,7 @@ class SelfDistil(Objective):
         clean: list[dict[str, np.ndarray]] = []
         corrupted: tuple[list, list] = ([], [])
         schedule = self.schedule_at(step)
-        sensor = depth_sensor(self._made_world().sensors)
+        sensor = depth_sensor(self._shared_world().sensors)
         for place, number in zip(places, rounds, strict=True):
             within = place - (ends[number - 1] if number else 0)
             window = {name: frames[within] for name, frames in self._stored[number].items()}
@@ -222,7 +222,7 @@ class SelfDistil(Objective):
         file = self.folder / f"frames-{step:06d}.safetensors"
         if file.is_file():
             return _read(file)
-        if step < self._now:
+        if step < self._resumed_at:
             raise ValueError(
                 f"{file} is missing. Training cannot resume without its stored frames. Restore "
                 "the file if you have a copy, or choose another folder (out=...)."
@@ -244,27 +244,28 @@ class SelfDistil(Objective):
         rng = generator(self.seed, "self-distil rollout", step, number)
         episode = self.training_episodes.draw(rng, (0, 1))
         schedule = self.schedule_at(step)
-        world = Corrupted(self._made_world(), schedule, self.seed, f"rollout {step}-{number}")
+        world = Corrupted(self._shared_world(), schedule, self.seed, f"rollout {step}-{number}")
         observation = world.reset(episode)
         self.agent.reset(episode.instruction.text)
-        met: list[dict[str, np.ndarray]] = []
+        seen: list[dict[str, np.ndarray]] = []
         while not world.done:
-            met.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
+            seen.append({name: np.array(observation.clean[name]) for name in self.agent.sensors})
             observation = world.step(self.agent.act(observation))
-        length = len(met)
+        length = len(seen)
         # the last window is filled with copies of its last frame
-        met += [met[-1]] * (-len(met) % self.window)
-        starts = np.arange(0, len(met), self.window)
+        seen += [seen[-1]] * (-len(seen) % self.window)
+        starts = np.arange(0, len(seen), self.window)
         most = max(1, self.frames // self.window)
         if len(starts) > most:
             starts = starts[np.sort(rng.choice(len(starts), most, replace=False))]
         windows = {
-            name: np.stack([[m[name] for m in met[s : s + self.window]] for s in starts])
-            for name in met[0]
+            name: np.stack([[frames[name] for frames in seen[s : s + self.window]] for s in starts])
+            for name in seen[0]
         }
         return windows, length
 
-    def _made_world(self) -> World:
+    def _shared_world(self) -> World:
+        """Return the world, which is constructed at the first call."""
         self._world = self._world or self.world()
         return self._world
 
@@ -272,7 +273,7 @@ class SelfDistil(Objective):
         return {"rounds": len(self._stored)}
 
     def set_extra_state(self, state: dict[str, Any]) -> None:
-        self._now = int(state["rounds"]) * self.every
+        self._resumed_at = int(state["rounds"]) * self.every
 
 
 def check_frames(policy: Policy) -> None:

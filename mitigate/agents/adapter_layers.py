@@ -29,7 +29,8 @@ class Adapter(nn.Module):
         settings: constructor arguments as plain data.
         corrects: names of the layers that ``scale_adapters`` scales.
         gates: list with the gate of the encoder, empty if the encoder has no gate
-            (``insert_adapters``).
+            (``insert_adapters``). It is a list because a module that is assigned to an attribute
+            becomes a submodule, and the gate's weights would be stored once per adapter.
         hook: handle of the hook that calls the adapter after its module, or None if
             ``nn.Sequential`` calls it.
     """
@@ -55,7 +56,7 @@ def set_to_zero(*layers: nn.Module) -> None:
         nn.init.zeros_(parameter)
 
 
-class Judged:
+class GateLogits:
     """The logits ``[n]`` of a gate for the last batch; a gate is open for logits above 0."""
 
     logits: Tensor
@@ -99,13 +100,13 @@ class FrameGate(Adapter):
         self.hidden = nn.Linear(read * (1 if views == 1 else 2), HIDDEN)
         self.judge = nn.Linear(HIDDEN, 1)
         self.register_buffer("threshold", torch.zeros(()))
-        self.judged = Judged()
+        self.judged = GateLogits()
 
     def forward(self, x: Tensor) -> Tensor:
         """Return ``x`` unchanged, so that a gate in an ``nn.Sequential`` has no effect."""
         return x
 
-    def look(self, x: Tensor) -> None:
+    def classify(self, x: Tensor) -> None:
         """Compute and keep the logits of frames ``[n, C, h, w]``."""
         x = x.detach().float()
         y = F.gelu(self.second(F.gelu(self.first(x)))).flatten(2)

@@ -361,7 +361,7 @@ def _adapt(module: nn.Module, inputs: Any, output: Any) -> Any:
 def _judge_input(module: nn.Module, inputs: Any) -> None:
     """Apply the gate of ``module`` to its input (forward pre-hook)."""
     gate: Any = module.get_submodule(NAME)
-    gate.look(inputs[0])
+    gate.classify(inputs[0])
 
 
 def _gates_of(adapters: dict[str, Adapter]) -> dict[str, str]:

@@ -44,7 +44,7 @@ class Memory:
         return result
 
 
-def give_back() -> None:
+def release_memory() -> None:
     """Return freed memory to the system; this takes a few milliseconds.
 
     glibc keeps freed memory for later use. If array sizes vary, glibc keeps more and more memory.

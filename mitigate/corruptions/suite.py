@@ -30,6 +30,20 @@ from mitigate.corruptions.record import (
     Record,
 )
 
+# Increase this version when the result of any corruption changes in any pixel or word.
+# A change that affects only invalid inputs needs no new version.
+# docs/corruptions.md and docs/instructions.md describe valid inputs.
+SUITE_VERSION = "1.1"
+
+# names of corruptions; in core/observation.py, RGB and DEPTH are the names of sensors
+RGB = registry.names("rgb")
+DEPTH = registry.names("depth")
+NAMES = RGB + DEPTH
+# instruction.py applies these corruptions before an episode starts
+INSTRUCTION = registry.names("instruction")
+SENSOR = DepthSensor()
+_TRIED: list[Record] = []  # records of plugins whose function gave equal results twice
+
 # This is the maximum number of views per time step.
 # R2R's discrete panoramas have 12 views at each of 3 elevations, and VLN-CE has 12 views.
 MAX_VIEWS = 36
@@ -87,20 +101,6 @@ def _one_instant(views: np.ndarray) -> np.ndarray:
             "batch one at a time, because each has its own key."
         )
     return views
-
-
-# Increase this version when the result of any corruption changes in any pixel or word.
-# A change that affects only invalid inputs needs no new version.
-# docs/corruptions.md and docs/instructions.md describe valid inputs.
-SUITE_VERSION = "1.1"
-
-RGB = registry.names("rgb")
-DEPTH = registry.names("depth")
-NAMES = RGB + DEPTH
-# instruction.py applies these corruptions before an episode starts
-INSTRUCTION = registry.names("instruction")
-SENSOR = DepthSensor()
-_TRIED: list[Record] = []  # records of plugins whose function gave equal results twice
 
 
 def check_name(name: str, allowed: tuple[str, ...] | None = None) -> str:

@@ -17,7 +17,7 @@ from mitigate.corruptions import CLEAN
 from mitigate.evaluation import provenance, rows
 from mitigate.evaluation.config import EvaluateConfig
 from mitigate.evaluation.episode_lists import episodes
-from mitigate.evaluation.evaluator import EpisodeTask, Job, jobs_of, label_of, run_missing
+from mitigate.evaluation.evaluator import EpisodeJob, EpisodeTask, jobs_of, label_of, run_missing
 from mitigate.worlds.world import World, expert_of
 
 # probability that a random action is STOP; episodes then have about 100 actions
@@ -58,9 +58,9 @@ class RandomAgent:
 class ControlTask(EpisodeTask):
     """Worker task that runs the episodes of a control agent, with one episode per group."""
 
-    def work(self, jobs: Sequence[Job]) -> Iterator[rows.Row]:
+    def work(self, jobs: Sequence[EpisodeJob]) -> Iterator[rows.Row]:
         if isinstance(self.agent, RandomAgent):
-            self.agent.episode = jobs[0][0].episode_id
+            self.agent.episode = jobs[0].episode.episode_id
         return super().work(jobs)
 
 
@@ -81,5 +81,5 @@ def run(config: EvaluateConfig, out: Path) -> list[rows.Row]:
         for name, agent in {"oracle": OracleAgent(world), "random": RandomAgent()}.items():
             jobs = jobs_of(chosen, [CLEAN], label_of(name, name, split, 0, world))
             task = ControlTask(agent, make_world, world=world)
-            results += run_missing(task, world, jobs, out / rows.ROWS, name)
+            results += run_missing(task, jobs, out / rows.ROWS, name)
     return results

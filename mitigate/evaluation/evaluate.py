@@ -48,7 +48,7 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     env = config.env
     where = launcher.chosen(config.launcher)
     chosen = episodes(env, config.split, config.episodes)
-    met = conditions(config.condition_names, config.severity, config.severity_depth)
+    chosen_conditions = conditions(config.condition_names, config.severity, config.severity_depth)
     # these imports are slow, so they follow the checks of the options
     from mitigate.core import build
     from mitigate.evaluation import provenance
@@ -62,9 +62,9 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
     world = build.maker(env.world)
     name = _column(config, overrides)
     first, made_by = provenance.first_world(world, config.version)
-    check_sensors(met, first.sensors, env.name)
+    check_sensors(chosen_conditions, first.sensors, env.name)
     if config.critical is not None:
-        met = first_conditions(met, first.rule)
+        chosen_conditions = first_conditions(chosen_conditions, first.rule)
     choices.check(config.safeguard)
     out = Path(config.out or default_folder(config, name))
     guards = open_guards(
@@ -77,8 +77,8 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
         lock.expect(out / ROWS, note)
         print(  # printed after all checks, so that a failed check prints only its error
             f"evaluate: {config.checkpoint or name} on {config.split}, "
-            f"{counted(len(chosen), 'episode')} x {counted(len(met), 'condition')} at severity "
-            f"{config.severity:g}",
+            f"{counted(len(chosen), 'episode')} x {counted(len(chosen_conditions), 'condition')} "
+            f"at severity {config.severity:g}",
             flush=True,
         )
         warn_of_tasks(agent, chosen, name, env.split)
@@ -97,9 +97,11 @@ def run(cfg: DictConfig, overrides: Sequence[str] = ()) -> Path:
             version=config.version,
         )
         if config.critical is None:
-            write_table([out / ROWS], out, measure(conditions=met))
+            write_table([out / ROWS], out, measure(conditions=chosen_conditions))
         else:
-            write_critical(search(measure, met, config.critical), config.critical, out)
+            write_critical(
+                search(measure, chosen_conditions, config.critical), config.critical, out
+            )
     return out
 
 

@@ -18,7 +18,7 @@ from contextlib import contextmanager, nullcontext
 from dataclasses import dataclass, field
 from itertools import groupby
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import torch
 
@@ -33,9 +33,8 @@ from mitigate.core.names import counted
 from mitigate.core.output import FolderLostError
 from mitigate.core.precision import computing
 from mitigate.core.progress import Progress
-from mitigate.corruptions import SUITE_VERSION, Corruption
+from mitigate.corruptions import SUITE_VERSION, Corruption, registry
 from mitigate.corruptions.language.text import UNMARKED, is_english, passed_through
-from mitigate.corruptions.registry import parts, version
 from mitigate.evaluation import rows
 from mitigate.evaluation.episode import Run, run_episode, run_side_by_side, start_of
 from mitigate.evaluation.provenance import Known, check_classes
@@ -47,8 +46,19 @@ WORTH = 40  # minimum number of episodes per process (heuristic); at 0.1 s per e
 LOCAL = LauncherConfig()  # the default launcher: worker processes on this machine
 _PAUSE = 1.0  # minimum seconds between two writes
 
-# the episode, the corruption, and the entries of the result row except the measures
-Job = tuple[Episode, Corruption, dict[str, Any]]
+
+class EpisodeJob(NamedTuple):
+    """An episode to run under one condition.
+
+    Attributes:
+        episode: the episode.
+        condition: the corruption.
+        label: the entries of the result row, except the measures.
+    """
+
+    episode: Episode
+    condition: Corruption
+    label: rows.Row
 
 
 @dataclass
@@ -66,7 +76,7 @@ class EpisodeTask:
     guards: Guards = NO_GUARDS
     world: World | None = None
     classes: str = ""
-    streams: dict[Corruption, list[Job]] = field(default_factory=dict)
+    streams: dict[Corruption, list[EpisodeJob]] = field(default_factory=dict)
     preload: ClassVar[str] = "mitigate.evaluation.evaluator"
 
     def __getstate__(self) -> dict[str, Any]:
@@ -92,7 +102,7 @@ class EpisodeTask:
         finally:
             torch.set_num_threads(threads)
 
-    def work(self, jobs: Sequence[Job]) -> Iterator[dict[str, Any]]:
+    def work(self, jobs: Sequence[EpisodeJob]) -> Iterator[dict[str, Any]]:
         """Yield the rows of ``jobs``.
 
         The jobs should belong to one episode, because frames of an episode are cached.
@@ -100,19 +110,19 @@ class EpisodeTask:
         assert self.world is not None, "work() is called while ready()"
         # a guard that adapts the agent makes cached features invalid
         agent_memory = nullcontext() if self.guards.adapts else as_agent(self.agent).remembering()
-        repeated: Sequence[Job] = ()
+        repeated: Sequence[EpisodeJob] = ()
         if self.guards.continual:
             self.guards.restart()
-            stream = self.streams[jobs[0][1]]
-            unfinished = {rows.identity(label) for _, _, label in jobs}
-            repeated = [job for job in stream if rows.identity(job[2]) not in unfinished]
+            stream = self.streams[jobs[0].condition]
+            unfinished = {rows.identity(job.label) for job in jobs}
+            repeated = [job for job in stream if rows.identity(job.label) not in unfinished]
             jobs = stream
         with agent_memory, as_world(self.world).remembering():
-            runs = [(episode, condition, label["seed"]) for episode, condition, label in jobs]
+            runs = [(job.episode, job.condition, job.label["seed"]) for job in jobs]
             measured = self._measures(self.world, runs)
             for job, measures in zip(jobs, measured, strict=True):
                 if job not in repeated:
-                    yield {**job[2], **measures}
+                    yield {**job.label, **measures}
 
     def _measures(self, world: Any, runs: Sequence[Run]) -> Iterator[rows.Row]:
         """Yield the measures of each (episode, corruption, seed), in order.
@@ -120,16 +130,16 @@ class EpisodeTask:
         Episodes run one after the other if a corruption changes the agent's prompt or a guard
         changes the agent.
         """
-        count = _together(self.agent, world)
-        prompted = any("white_box" in parts(corruption.name) for _, corruption, _ in runs)
-        if count > 1 and not prompted and not self.guards.adapts:
-            worlds = [world, *(world.beside() for _ in range(count - 1))]
+        at_once = _together(self.agent, world)
+        prompted = any("white_box" in registry.parts(corruption.name) for _, corruption, _ in runs)
+        if at_once > 1 and not prompted and not self.guards.adapts:
+            worlds = [world, *(world.beside() for _ in range(at_once - 1))]
             return run_side_by_side(self.agent, worlds, runs, self.guards)
         return (run_episode(self.agent, world, *run, self.guards) for run in runs)
 
-    def name(self, job: Job) -> str:
+    def name(self, job: EpisodeJob) -> str:
         """Return a text that names the episode and its condition."""
-        return f"episode {job[0].episode_id}, {job[1].name}"
+        return f"episode {job.episode.episode_id}, {job.condition.name}"
 
 
 def _together(agent: Any, world: Any) -> int:
@@ -196,16 +206,15 @@ def evaluate(
     task = EpisodeTask(agent, world, guards, world=first, classes=known.classes)
     jobs = jobs_of(episodes, conditions, label)
     with known:
-        results = run_missing(task, first, jobs, out, f"{name}, {split}", workers, launcher)
-    if cut := rows.cuts(results):
+        measured = run_missing(task, jobs, out, f"{name}, {split}", workers, launcher)
+    if cut := rows.cuts(measured):
         print(f"{name}: {cut}", flush=True)
-    return results
+    return measured
 
 
 def run_missing(
     task: EpisodeTask,
-    world: World,
-    jobs: list[Job],
+    jobs: list[EpisodeJob],
     out: Path,
     title: str,
     workers: int | None = 1,
@@ -213,20 +222,21 @@ def run_missing(
 ) -> list[dict[str, Any]]:
     """Run the jobs without a row in ``out`` and append their rows; return the rows of all jobs.
 
-    Each group of jobs runs in one process. Raises as :func:`evaluate`.
+    The world of ``task`` must already be constructed. Each group of jobs runs in one process.
+    Raises as :func:`evaluate`.
     """
-    identities = [rows.identity(job[2]) for job in jobs]
+    identities = [rows.identity(job.label) for job in jobs]
     finished = {rows.identity(row) for row in rows.read(out)} if out.exists() else set()
     todo = [job for job, identity in zip(jobs, identities, strict=True) if identity not in finished]
     _warn_of_languages(todo)
     if task.guards:
         task.guards = task.guards.prepared(
-            [start_of(task.agent, episode, met, label["seed"]) for episode, met, label in todo]
+            [start_of(task.agent, job.episode, job.condition, job.label["seed"]) for job in todo]
         )
     if not todo:
         print(f"{title}: {counted(len(jobs), 'episode')}, all already done, in {out}", flush=True)
         return _in_order(out, identities)
-    at_once = _together(task.agent, world)
+    at_once = _together(task.agent, task.world)
     if task.guards.continual:
         task.streams = _by_condition(jobs)
         groups = [*_by_condition(todo).values()]
@@ -253,23 +263,32 @@ def label_of(agent: str, name: str, split: str, seed: int, world: World) -> rows
 
 def jobs_of(
     episodes: list[Episode], conditions: list[Corruption], label: dict[str, Any]
-) -> list[Job]:
+) -> list[EpisodeJob]:
     """Return all jobs in the order of episodes.
 
     Each job contains the entries of its row, except the measures.
     """
 
     def row(episode: Episode, condition: Corruption) -> rows.Row:
-        met = {"corruption": condition.name, "severity": condition.severity}
-        return {**label, **met, **rows.of_episode(episode), **version(condition.name)}
+        applied = {"corruption": condition.name, "severity": condition.severity}
+        versions = registry.version(condition.name)
+        return {**label, **applied, **rows.of_episode(episode), **versions}
 
-    return [(episode, met, row(episode, met)) for episode in episodes for met in conditions]
+    return [
+        EpisodeJob(episode, condition, row(episode, condition))
+        for episode in episodes
+        for condition in conditions
+    ]
 
 
 def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Corruption]:
     """Return the conditions that apply to the agent, and warn about other conditions."""
     prompted = as_agent(agent).system_prompt
-    applicable = [one for one in conditions if prompted or "white_box" not in parts(one.name)]
+    applicable = [
+        condition
+        for condition in conditions
+        if prompted or "white_box" not in registry.parts(condition.name)
+    ]
     if len(applicable) < len(conditions):
         warnings.warn(
             f"white_box is not applicable to {name}, which has no system prompt: it gets no rows.",
@@ -278,30 +297,30 @@ def _applicable(agent: Any, conditions: list[Corruption], name: str) -> list[Cor
     return applicable
 
 
-def _warn_of_languages(jobs: list[Job]) -> None:
+def _warn_of_languages(jobs: list[EpisodeJob]) -> None:
     """Warn about instructions that should be corrupted but are not in English."""
     languages = {
-        episode.episode_id: episode.instruction.language or UNMARKED
-        for episode, condition, _ in jobs
-        if "instruction" in condition.modalities
-        and not is_english(episode.instruction.language, episode.instruction.text)
+        job.episode.episode_id: job.episode.instruction.language or UNMARKED
+        for job in jobs
+        if "instruction" in job.condition.modalities
+        and not is_english(job.episode.instruction.language, job.episode.instruction.text)
     }
     if languages:
         warnings.warn(passed_through(Counter(map(str, languages.values()))), stacklevel=3)
 
 
-def _by_condition(jobs: list[Job]) -> dict[Corruption, list[Job]]:
+def _by_condition(jobs: list[EpisodeJob]) -> dict[Corruption, list[EpisodeJob]]:
     """Return the jobs of each condition, in the order of ``jobs``."""
-    streams: dict[Corruption, list[Job]] = defaultdict(list)
+    streams: dict[Corruption, list[EpisodeJob]] = defaultdict(list)
     for job in jobs:
-        streams[job[1]].append(job)
+        streams[job.condition].append(job)
     return streams
 
 
-def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
+def _groups(jobs: list[EpisodeJob], least: int) -> list[list[EpisodeJob]]:
     """Return groups of at least ``least`` jobs. The jobs of an episode are in the same group."""
-    groups: list[list[Job]] = []
-    for _, group in groupby(jobs, lambda job: job[0].episode_id):
+    groups: list[list[EpisodeJob]] = []
+    for _, group in groupby(jobs, lambda job: job.episode.episode_id):
         if groups and len(groups[-1]) < least:
             groups[-1] += group
         else:
@@ -309,14 +328,15 @@ def _groups(jobs: list[Job], least: int) -> list[list[Job]]:
     return groups
 
 
-def _write(results: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
+def _write(items: Iterable[tuple[int, Any] | None], out: Path, progress: Progress) -> None:
     """Append rows to ``out`` every ``_PAUSE`` seconds and at the end, even after an error."""
     pending: list[dict[str, Any]] = []
     last_write = time.monotonic()
     try:
-        for item in results:
+        for item in items:
             if item is not None:
-                pending.append(item[1])
+                _, row = item
+                pending.append(row)
                 progress.advance()
             if pending and time.monotonic() - last_write >= _PAUSE:
                 # reset before the write, so that ``finally`` does not repeat a failed write

@@ -392,8 +392,22 @@ def _grid(key: tuple[str, str, str], rows: list[Row], drawn: str | None) -> Grid
             cells |= {(label, name, severity, metric): v for (name, metric), v in pooled.items()}
     unit, units = _units(rows, episodes, drawn)
     texts = {label: cuts(chain.from_iterable(runs.values())) for label, runs in grouped.items()}
-    cut = {label: text for label, text in texts.items() if text}
-    return Grid(*key, columns, agents, seeds, unfinished, episodes, cells, runs, unit, units, cut)
+    split, suite, rule = key
+    return Grid(
+        split=split,
+        suite=suite,
+        rule=rule,
+        columns=columns,
+        agents=agents,
+        seeds=seeds,
+        unfinished=unfinished,
+        episodes=episodes,
+        cells=cells,
+        runs=runs,
+        drawn=unit,
+        units=units,
+        cut={label: text for label, text in texts.items() if text},
+    )
 
 
 def _units(rows: list[Row], episodes: tuple[str, ...], drawn: str | None) -> tuple[str, np.ndarray]:

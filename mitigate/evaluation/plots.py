@@ -12,9 +12,10 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from mitigate.core.files import write_figure
+from mitigate.corruptions import registry
 from mitigate.evaluation.curves import curves
 from mitigate.evaluation.grid import Grid
-from mitigate.evaluation.sections import Section, label
+from mitigate.evaluation.sections import Section
 
 COLOURS = mpl.colormaps["viridis"]  # readable without colour vision; bright means good
 # The colour-blind safe palette of Okabe and Ito (2008), without its yellow
@@ -68,7 +69,7 @@ def severity_curves(grid: Grid, path: Path | str) -> Path:
     axes = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False).ravel()
     for axis, name in zip(axes, names, strict=False):
         _draw_curves(axis, grid, name)
-        axis.set_title(label(name), fontsize=11)
+        axis.set_title(registry.title(name), fontsize=11)
         axis.set(xlim=(-0.03, 1.03), ylim=(-3, 103))
         axis.tick_params(labelsize=9)
         axis.grid(alpha=0.3)
@@ -109,7 +110,7 @@ def draw_cells(
 
 
 def _panel(axis: Axes, section: Section, block: str, names: tuple[str, ...]) -> None:
-    rows = ["PRS-SR", "PRS-SPL", "Clean", *map(label, names)]
+    rows = ["PRS-SR", "PRS-SPL", "Clean", *map(registry.title, names)]
     shape = (len(rows), len(section.columns))
     colours, texts = np.full(shape, np.nan), np.full(shape, "–", object)
     best = max((section.value(c, "clean") for c in section.columns), default=math.nan)

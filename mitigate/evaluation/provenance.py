@@ -41,6 +41,21 @@ from mitigate.evaluation.rows import read
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
+NOTE = "walked.json"  # name of the note in a folder of rows
+# These are keys and texts of stored notes, which must not change.
+CLASS, CODE, ENV = "its class", "its code", "its env"
+READ = "what its code reads"
+UNREADABLE = "what cannot be read of it"
+MADE = "what makes it"
+CHANGES = "changes while worlds are made"
+_OTHER = (
+    "Choose another folder (out=... for an evaluation, folder=... for a training run), or delete "
+    "this one."
+)
+MOST_LAYERS = 20  # maximum number of wrappers around an environment (heuristic)
+# maximum length of a stored value in characters (heuristic); longer values are cut and hashed
+SHOWN = 100
+
 # Data from which the hashes of agents without settings() are computed, by the id() of the agent.
 # Each value is a tuple: a function that returns the agent, its newest data and its oldest data.
 # The newest data describe the agent as it was after its last evaluation.
@@ -55,10 +70,10 @@ _read_by: dict[tuple[tuple[type, ...], str | None], tuple[str, str]] = {}
 class Known:
     """Hashes of an agent and of classes, computed before episodes can change them.
 
-    ``hash`` is the fingerprint of ``agent`` in ``world`` with the guards ``front``. ``classes`` is
-    a hash of the attributes of the agent's and the world's classes, and of the global variables and
-    functions that their code refers to. The object is used as a context manager around all
-    episodes.
+    ``hash`` is the fingerprint of ``agent`` in ``world``, with ``guards``, the fingerprint of the
+    guards. ``classes`` is a hash of the attributes of the agent's and the world's classes, and of
+    the global variables and functions that their code refers to. The object is used as a context
+    manager around all episodes.
 
     If an agent has no ``settings()``, its attributes are hashed instead, although they can change
     during episodes. An agent that has not changed since the end of its last evaluation keeps the
@@ -66,7 +81,7 @@ class Known:
     in the same way.
     """
 
-    def __init__(self, agent: Any, world: World, front: str, version: str | None = None) -> None:
+    def __init__(self, agent: Any, world: World, guards: str, version: str | None = None) -> None:
         _check_version(version)
         self.agent = agent
         self.layers = tuple(type(layer) for layer in _layers(world))
@@ -76,10 +91,12 @@ class Known:
         self.classes = _hash_of_classes(agent, of_world)
         self.without_settings = not says_all(agent)
         current = contents(agent, version)
-        same, after, before = _last.get(id(agent), (lambda: None, None, None))
-        self.parts = before if same() is agent and after == current.parts else current.parts
+        find_agent, newest, oldest = _last.get(id(agent), (lambda: None, None, None))
+        # ``id`` alone is not enough, because Python reuses the id of a deleted agent
+        unchanged = find_agent() is agent and newest == current.parts
+        self.parts = oldest if unchanged else current.parts
         self.unreadable = current.explain() if current.unreadable else ""
-        self.hash = hash_of(self.parts, world.sensors, front)
+        self.hash = hash_of(self.parts, world.sensors, guards)
 
     def __enter__(self) -> Known:
         return self
@@ -92,14 +109,14 @@ class Known:
             return
         agent, key = self.agent, id(self.agent)
         try:
-            same: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
+            find_agent: Callable[[], Any] = weakref.ref(agent, lambda _: _last.pop(key, None))
         # the class allows no weak references, so this reference keeps the agent alive
         except TypeError:
 
-            def same() -> Any:
+            def find_agent() -> Any:
                 return agent
 
-        _last[key] = same, contents(agent, self.version).parts, self.parts
+        _last[key] = find_agent, contents(agent, self.version).parts, self.parts
 
     def check(self, file: Path, name: str) -> Known:
         """Print a message if all rows of ``name`` in ``file`` belong to a different agent.
@@ -141,17 +158,6 @@ def _check_version(version: Any) -> None:
         )
 
 
-NOTE = "walked.json"
-_OTHER = (
-    "Choose another folder (out=... for an evaluation, folder=... for a training run), or delete "
-    "this one."
-)
-CLASS, CODE, ENV = "its class", "its code", "its env"  # keys of stored notes, which must not change
-READ = "what its code reads"
-UNREADABLE = "what cannot be read of it"
-MOST_LAYERS = 20  # maximum number of wrappers around an environment (heuristic)
-
-
 def keep(
     folder: Path,
     world: World,
@@ -183,7 +189,7 @@ def keep(
     note = folder / NOTE
     known = _read(note) if output.is_regular(note) else {}
     described = {**_described(world), **made_by}
-    sums = {episode.episode_id: _sum(episode) for episode in episodes}
+    sums = {episode.episode_id: _episode_hash(episode) for episode in episodes}
     entry = known.get(split, {})
     listed = entry.get("list", "") if source is None else sha256(find(source))
     if entry.get("list", listed) != listed:
@@ -285,6 +291,7 @@ def name_of(world: World) -> str:
 
 
 def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> str:
+    """Describe how the entry ``key`` of a world's description changed, for a message."""
     if key == CODE:
         return f"the code of {now[CLASS]} was changed"
     if key == READ:
@@ -293,7 +300,7 @@ def _difference(key: str, before: Mapping[str, str], now: Mapping[str, str]) -> 
     return f"{key} was {was} and is {is_}"
 
 
-def _sum(episode: Episode) -> str:
+def _episode_hash(episode: Episode) -> str:
     """Return the hash of those parts of an episode that an agent and a world use."""
     content = {
         "ids": [episode.episode_id, episode.trajectory_id, episode.scene_id],
@@ -318,12 +325,6 @@ def _member(owner: Any, name: str) -> Any:
     """Return the attribute ``name`` of an environment, or None if it is missing."""
     # gymnasium and torchrl have no common base class that declares the attribute
     return getattr(owner, name, None)
-
-
-MADE = "what makes it"  # keys and texts of stored notes, which must not change
-CHANGES = "changes while worlds are made"
-# maximum length of a stored value in characters (heuristic); longer values are cut and hashed
-SHOWN = 100
 
 
 def first_world(

@@ -14,6 +14,7 @@ from typing import Any
 from mitigate.core.files import make_folder, write_text
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted
+from mitigate.corruptions import registry
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, NO_WIDTH, RESAMPLES, Estimate
 from mitigate.evaluation.grid import METRICS, PROMPT_ONLY, Grid, expected_corruptions
 from mitigate.evaluation.metrics import FLOOR
@@ -23,7 +24,6 @@ from mitigate.evaluation.sections import (
     Difference,
     Retained,
     Section,
-    label,
     sections,
 )
 
@@ -168,10 +168,10 @@ def _table(section: Section, intervals: bool) -> str:
         for half in section.halves.get(block, {}):
             lines.append([f"PRS-SR ({half})", *(_prs(section, (c, half, "SR")) for c in columns)])
         for name in names:
-            rates = [label(name), *(_rate(section, c, name) for c in columns)]
+            rates = [registry.title(name), *(_rate(section, c, name) for c in columns)]
             lines += _with_intervals(section, name) if intervals else [rates]
         if _prompt_not_applicable(section, block):
-            lines.append([label(PROMPT_ONLY), *["n/a"] * len(columns)])
+            lines.append([registry.title(PROMPT_ONLY), *["n/a"] * len(columns)])
     return markdown_table(["Corruption", *map(markdown_of, columns)], lines)
 
 
@@ -211,11 +211,11 @@ def _notes(section: Section) -> str:
     blocks = section.blocks.items()
     expected = [name for block, names in blocks for name in expected_corruptions(block, names)]
     if absent := [name for name in expected if name not in section.corruptions]:
-        notes.append(f"Not measured: {', '.join(map(label, absent))}.")
+        notes.append(f"Not measured: {', '.join(map(registry.title, absent))}.")
     if any(_prompt_not_applicable(section, block) for block in section.blocks):
         notes.append(
-            f"n/a: {label(PROMPT_ONLY)} changes an agent's system prompt; no agent here has one, "
-            "so it is not applicable and not part of the PRS."
+            f"n/a: {registry.title(PROMPT_ONLY)} changes an agent's system prompt; no agent here "
+            "has one, so it is not applicable and not part of the PRS."
         )
     if any(change.clean or change.retained for change in _changes(section)):
         notes.append(
@@ -255,7 +255,7 @@ def _with_intervals(section: Section, corruption: str) -> list[list[str]]:
     """Return the table lines of a corruption: its SR, and the differences from the clean SR and
     from the reference column.
     """
-    title = label(corruption)
+    title = registry.title(corruption)
     cells = []
     for column in section.columns:
         rate = section.mean_sr(column, (corruption,))
@@ -364,7 +364,7 @@ def beside(section: Section, paper: Mapping[str, Sequence]) -> str:
         lines.append(cells(f"**{title}**", title, values))
         for name in names:
             rates = {c: f"{100 * section.value(c, name):.1f}" for c in section.columns}
-            lines.append(cells(label(name), name, rates))
+            lines.append(cells(registry.title(name), name, rates))
     seeds = (" ".join(map(str, section.grid.seeds[c, section.severity])) for c in section.columns)
     lines.append(["Seeds", *seeds])
     at = f"severity {section.severity:g}" if section.blocks else "clean only"

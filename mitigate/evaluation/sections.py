@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from mitigate.core.names import unknown
-from mitigate.corruptions.registry import HALVES, UNSEEN, title
+from mitigate.corruptions.registry import HALVES, UNSEEN
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
 from mitigate.evaluation.grid import (
@@ -30,8 +30,6 @@ from mitigate.worlds.seeded import RETURN
 
 # a column with one of these names comes first, and the other columns are compared with it
 REFERENCES = ("base", "before")
-
-label = title  # returns the name of a corruption in the paper's table
 
 
 @dataclass(frozen=True)
@@ -123,8 +121,8 @@ class Section:
 
         The parts are the blocks, followed by the validation and test halves of blocks.
         """
-        parts = self.halves.values()
-        return self.blocks | {half: names for part in parts for half, names in part.items()}
+        halves = {half: names for pair in self.halves.values() for half, names in pair.items()}
+        return self.blocks | halves
 
     @cached_property
     def corruptions(self) -> tuple[str, ...]:
@@ -158,11 +156,11 @@ class Section:
     def retained(self) -> dict[tuple[str, str, str], Retained]:
         """The PRS, keyed by (column, part, metric), where a part is a key of :attr:`parts`."""
         return {
-            (column, part, metric): _retained(retention)
+            (column, part, metric): _retained(retentions)
             for column in self.columns
             for metric, key in METRICS.items()
             for part, names in self.parts.items()
-            if (retention := self.grid.retention([column], names, self.severity, key))
+            if (retentions := self.grid.retention([column], names, self.severity, key))
         }
 
     @cached_property
@@ -185,15 +183,15 @@ class Section:
                 clean = run.cell(column, "clean", self.severity, METRICS["SR"])
                 values[column, "clean"][seed] = _mean(clean)
                 for block, names in self.blocks.items():
-                    retention = run.retention([column], names, self.severity, METRICS["SR"])
-                    for part in retention or ():
-                        values[column, block][seed] = part.prs
+                    retentions = run.retention([column], names, self.severity, METRICS["SR"])
+                    if retentions:
+                        values[column, block][seed] = retentions[0].prs
         return dict(values)
 
     def mean_sr(self, column: str, names: Sequence[str]) -> Retained | None:
         """Return a column's mean SR over ``names``, or None if none of them was measured."""
-        retention = self.grid.retention([column], names, self.severity, METRICS["SR"])
-        return _mean_sr(retention) if retention else None
+        retentions = self.grid.retention([column], names, self.severity, METRICS["SR"])
+        return _mean_sr(retentions) if retentions else None
 
     def compare(self, column: str, reference: str) -> Difference:
         """Return ``column`` minus ``reference``; both can be any columns."""
@@ -205,14 +203,14 @@ class Section:
         change = first - second
         mask = ~np.isnan(change)
         clean = bootstrap.mean(change[mask], units=both.units[mask]) if mask.any() else None
-        retention = both.retention(pair, self.corruptions, severity, METRICS["SR"])
+        corrupted = both.retention(pair, self.corruptions, severity, METRICS["SR"])
         retained = {
-            (part, metric): _retained(parts)
+            (part, metric): _retained(retentions)
             for metric, key in METRICS.items()
             for part, names in self.parts.items()
-            if (parts := both.retention(pair, names, severity, key))
+            if (retentions := both.retention(pair, names, severity, key))
         }
-        return Difference(clean, _mean_sr(retention) if retention else None, retained)
+        return Difference(clean, _mean_sr(corrupted) if corrupted else None, retained)
 
     def changes(self, column: str, corruption: str) -> dict[str, Retained]:
         """Return the paired differences of a column's SR under one corruption: from its clean SR
@@ -222,12 +220,13 @@ class Section:
         """
         pair, severity, key = (column, self.reference), self.severity, METRICS["SR"]
         changes = {}
-        for part in self.grid.retention([column], (corruption,), severity, key) or ():
-            change = bootstrap.mean(part.corrupted[0] - part.clean, units=part.units)
-            changes["clean"] = Retained(change, part.corruptions, len(part.clean), False)
+        if retentions := self.grid.retention([column], (corruption,), severity, key):
+            own = retentions[0]
+            change = bootstrap.mean(own.corrupted[0] - own.clean, units=own.units)
+            changes["clean"] = Retained(change, own.corruptions, len(own.clean), False)
         both = self.grid.paired(pair, severity) if column != self.reference else None
-        if both and (parts := both.retention(pair, (corruption,), severity, key)):
-            changes[self.reference] = _mean_sr(parts)
+        if both and (retentions := both.retention(pair, (corruption,), severity, key)):
+            changes[self.reference] = _mean_sr(retentions)
         return changes
 
     def value(self, column: str, corruption: str, metric: str = "SR") -> float:
@@ -319,27 +318,29 @@ def sections(
     return results
 
 
-def _retained(parts: list[Retention]) -> Retained:
-    """Return the PRS of ``parts[0]``, minus the PRS of ``parts[1]`` if there is a second part."""
-    pairs, units = [(part.clean, part.corrupted) for part in parts], parts[0].units
+def _retained(columns: list[Retention]) -> Retained:
+    """Return the PRS of the first column, minus the PRS of the second column if it exists."""
+    pairs = [(column.clean, column.corrupted) for column in columns]
+    first = columns[0]
     estimate = (
-        bootstrap.prs(*pairs[0], units=units)
+        bootstrap.prs(*pairs[0], units=first.units)
         if len(pairs) == 1
-        else bootstrap.prs_difference(*pairs, units=units)
+        else bootstrap.prs_difference(*pairs, units=first.units)
     )
-    near_floor = min(part.clean.mean() for part in parts) < FLOOR
-    return Retained(estimate, parts[0].corruptions, len(parts[0].clean), bool(near_floor))
+    near_floor = min(column.clean.mean() for column in columns) < FLOOR
+    return Retained(estimate, first.corruptions, len(first.clean), bool(near_floor))
 
 
-def _mean_sr(parts: list[Retention]) -> Retained:
-    """Return the mean SR of ``parts[0]``, minus the mean SR of ``parts[1]`` if it exists."""
-    means, units = [part.corrupted.mean(axis=0) for part in parts], parts[0].units
+def _mean_sr(columns: list[Retention]) -> Retained:
+    """Return the mean SR of the first column, minus that of the second column if it exists."""
+    means = [column.corrupted.mean(axis=0) for column in columns]
+    first = columns[0]
     estimate = (
-        bootstrap.share(means[0], units=units)
+        bootstrap.share(means[0], units=first.units)
         if len(means) == 1
-        else bootstrap.mean(means[0] - means[1], units=units)
+        else bootstrap.mean(means[0] - means[1], units=first.units)
     )
-    return Retained(estimate, parts[0].corruptions, len(parts[0].clean), False)
+    return Retained(estimate, first.corruptions, len(first.clean), False)
 
 
 def _mean(values: np.ndarray) -> float:

@@ -18,10 +18,9 @@ from mitigate.agents.agent import Agent
 from mitigate.core.files import write_figure
 from mitigate.core.observation import DEPTH, POSE, RGB, VIEWS, Observation
 from mitigate.core.pictures import depth_picture, draw_path, strip
-from mitigate.corruptions import CLEAN, Corruption
+from mitigate.corruptions import CLEAN, Corruption, registry
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import label
 from mitigate.guards.guard import NO_GUARDS, Guards
 from mitigate.worlds.episodes import Episode, from_vlnce
 from mitigate.worlds.world import Corrupted, World, WorldWrapper, as_world
@@ -69,7 +68,7 @@ def draw_episode(
     figure = Figure(figsize=INCHES, layout="constrained")
     *above, plan = figure.subplots(3, 1, height_ratios=(1, 1, 3.4))
     clean = f"start, straight ahead in the middle: {entry}, clean"
-    met = f"{label(corruption.name)}, severity {corruption.severity:g}"
+    met = f"{registry.title(corruption.name)}, severity {corruption.severity:g}"
     for axes in above:
         axes.axis("off")
     for axes, picture, title in zip(above, sight, (clean, met), strict=False):
@@ -193,7 +192,7 @@ def run_agents(
     first = next(iter(agents))
     plans = [(f"{first}, clean", first, CLEAN, CLEAN_WALK)]
     plans += [
-        (f"{name}, {label(corruption.name)}", name, corruption, colour)
+        (f"{name}, {registry.title(corruption.name)}", name, corruption, colour)
         for name, colour in zip(agents, cycle(CORRUPTED_WALKS), strict=False)
     ]
     for title, name, met, colour in plans:

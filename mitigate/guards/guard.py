@@ -250,6 +250,7 @@ class Guards(Guard):
 
 
 def _with(episodes: Sequence[EpisodeStart], instructions: Sequence[str]) -> list[EpisodeStart]:
+    """Return copies of ``episodes`` with other instructions."""
     pairs = zip(episodes, instructions, strict=True)
     return [replace(episode, instruction=instruction) for episode, instruction in pairs]
 
@@ -267,21 +268,22 @@ class Guarded(WorldWrapper):
     def __init__(self, world: World, guards: Guards) -> None:
         super().__init__(world)
         self.guards = guards
-        self.started = guards  # for the current episode
+        self.episode_guards = guards  # :meth:`Guard.for_episode` of the current episode
 
     def reset(self, episode: Episode) -> Observation:
-        self.started = self.guards.for_episode()
+        self.episode_guards = self.guards.for_episode()
         return super().reset(episode)
 
-    def _observe(self, met: Observation) -> Observation:
+    def _observe(self, observation: Observation) -> Observation:
         @cache
-        def observed() -> dict[str, Any]:
-            guarded_frames = self.started.observe(dict(met))
-            return {name: guarded_frames[name] for name in met.frames}
+        def guarded_frames() -> dict[str, Any]:
+            changed = self.episode_guards.observe(dict(observation))
+            return {name: changed[name] for name in observation.frames}
 
         if self.guards.remembers:
-            observed()
-        return Observation(met.ready, observed, met.frames, clean=met.clean)
+            guarded_frames()  # even if the agent reads no frame in this step
+        ready, names = observation.ready, observation.frames
+        return Observation(ready, guarded_frames, names, clean=observation.clean)
 
 
 def guarded(world: World, guards: Guards) -> World:

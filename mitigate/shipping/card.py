@@ -22,10 +22,10 @@ from mitigate.core import checkpoint
 from mitigate.core.files import ROOT, find, sha256
 from mitigate.core.markdown import markdown_of, markdown_table
 from mitigate.core.names import counted, short
-from mitigate.corruptions import SUITE_VERSION
+from mitigate.corruptions import SUITE_VERSION, registry
 from mitigate.evaluation.bootstrap import LEVEL, NO_INTERVAL, RESAMPLES, Estimate
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import Retained, Section, label, sections
+from mitigate.evaluation.sections import Retained, Section, sections
 
 VERSIONS = ("mitigate", "torch", "numpy", "safetensors", "panda3d")
 # the files at these paths of a checkout determine the content of an exported folder
@@ -213,7 +213,7 @@ def _span(severity: float | list[float]) -> str:
 def _table(entry: dict[str, Any]) -> str:
     rows = [[f"Clean {name}", _cell(value)] for name, value in entry["clean"].items()]
     rows += [[name, _cell(value)] for name, value in entry["PRS"].items()]
-    rows += [[f"SR under {label(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
+    rows += [[f"SR under {registry.title(name)}", _cell([sr])] for name, sr in entry["SR"].items()]
     table = markdown_table(["measure", "value, 95 % interval"], rows)
     gaps = f"\n\nNot complete: {', '.join(entry['incomplete'])}." if entry["incomplete"] else ""
     return (
@@ -347,7 +347,7 @@ def _result(entry: dict[str, Any]) -> dict[str, Any]:
     intervals += entry["PRS"].items()
     metrics = [_metric(title, *value) for title, value in intervals if value[0] is not None]
     metrics += [
-        _metric(f"SR under {label(name)}", value, None, None)
+        _metric(f"SR under {registry.title(name)}", value, None, None)
         for name, value in entry["SR"].items()
         if value is not None
     ]

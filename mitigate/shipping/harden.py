@@ -174,25 +174,13 @@ def harden(
         ValueError: If an argument is invalid, or the folder contains a different run.
     """
     seeding.check(seed)
-    for argument, value, allowed in (
-        ("method", method, tuple(METHODS)),
-        ("tune", tune, TUNE),
-        ("schedule", schedule, SCHEDULES),
-    ):
-        if value not in allowed:
-            raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
-    for argument, number, least in (("steps", steps, 1), ("validation", validation, 0)):
-        if type(number) is not int or number < least:
-            raise ValueError(f"{argument} must be a whole number >= {least}, got {number!r:.80}.")
+    _check_choices(method=method, tune=tune, schedule=schedule)
+    _check_counts(steps=steps, validation=validation)
     default = seeded_episodes(range(EPISODES))
     compared = default if listed is None else episode_list("listed", listed)
     if not compared:
         raise ValueError("listed must hold at least one episode, or be None.")
-    parameters = signature(METHODS[method]).parameters
-    known = [name for name in parameters if name not in OWN]
-    if others := sorted(set(settings) - set(known)):
-        own = [name for name in signature(harden).parameters if name != "settings"]
-        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], own + known))
+    _check_settings(method, settings)
     first, made_by = checked_world(world, [], version)
     before = as_policy(policy, first, forward=forward, recurrent=recurrent)
     after = copied(before)
@@ -215,6 +203,7 @@ def harden(
         "steps": steps,
         "seed": seed,
     }
+    parameters = signature(METHODS[method]).parameters
     arguments: dict[str, Any] = {name: available[name] for name in OWN if name in parameters}
     objective = METHODS[method](**arguments, **settings)
     identity: dict[str, Any] = {
@@ -254,18 +243,18 @@ def harden(
                 folder, recorded, trainer.config, "Or choose another folder (out=...)."
             )
         provenance.keep(folder, first, made_by, SPLIT, compared)
-        each = seconds_per_episode(before, first, compared)
+        episode_seconds = seconds_per_episode(before, first, compared)
         count = len(compared) * len(conditions)
         say(
-            f"harden: {counted(count, 'episode')} with the policy (about {duration(each * count)}),"
-            f" {counted(steps, 'step')} of training, {counted(count, 'episode')} with the hardened "
-            f"policy; in {folder}"
+            f"harden: {counted(count, 'episode')} with the policy (about "
+            f"{duration(episode_seconds * count)}), {counted(steps, 'step')} of training, "
+            f"{counted(count, 'episode')} with the hardened policy; in {folder}"
         )
         measure = partial(
             evaluate, world=world, episodes=compared, out=folder / ROWS, split=SPLIT, seed=seed
         )
-        several = partial(measure, conditions=conditions, workers=workers)
-        rows = several(before, name="before", version=before.version + label)
+        measure_all = partial(measure, conditions=conditions, workers=workers)
+        rows = measure_all(before, name="before", version=before.version + label)
         rows += measure(RandomPolicy(before.space, seed), conditions=[CLEAN], name=RANDOM)
         # raises an error, before any training, if the policy is not better than random actions
         compare(rows)
@@ -277,17 +266,51 @@ def harden(
         after.requires_grad_(True)
         chosen = "trained"
         if validation:
-            drawn = episodes.several(validation, seed)
-            rows_file = folder / "validation.jsonl"
-            chosen = selection.choose(
-                after, start, partial(several, episodes=drawn, out=rows_file, split=VALIDATION)
+            measure_validation = partial(
+                measure_all,
+                episodes=episodes.several(validation, seed),
+                out=folder / "validation.jsonl",
+                split=VALIDATION,
             )
+            chosen = selection.choose(after, start, measure_validation)
         if tune == "adapters":
             save_adapters(after.network, folder / "agent")
         else:
             checkpoint.save_weights(after.network, folder / "agent")
-        rows += several(after, name="after", version=after.version + label)
+        rows += measure_all(after, name="after", version=after.version + label)
     report = compare(rows)
+    _advise(report, chosen, tune)
+    return Hardened(_like(policy, after), after, report, rows, folder, chosen)
+
+
+def _check_choices(*, method: str, tune: str, schedule: str) -> None:
+    """Raise ValueError for an argument of :func:`harden` that is not one of its allowed values."""
+    for argument, value, allowed in (
+        ("method", method, tuple(METHODS)),
+        ("tune", tune, TUNE),
+        ("schedule", schedule, SCHEDULES),
+    ):
+        if value not in allowed:
+            raise ValueError(f"{argument} must be one of {', '.join(allowed)}, got {value!r:.80}.")
+
+
+def _check_counts(*, steps: int, validation: int) -> None:
+    """Raise ValueError for a number of :func:`harden` that is too small."""
+    for argument, number, least in (("steps", steps, 1), ("validation", validation, 0)):
+        if type(number) is not int or number < least:
+            raise ValueError(f"{argument} must be a whole number >= {least}, got {number!r:.80}.")
+
+
+def _check_settings(method: str, settings: Iterable[str]) -> None:
+    """Raise ValueError for a name in ``settings`` that the class of ``method`` does not take."""
+    known = [name for name in signature(METHODS[method]).parameters if name not in OWN]
+    if others := sorted(set(settings) - set(known)):
+        own = [name for name in signature(harden).parameters if name != "settings"]
+        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], own + known))
+
+
+def _advise(report: Comparison, chosen: str, tune: str) -> None:
+    """Print advice if the hardened policy is worse than the given one, or if it is unchanged."""
     corrupted = next(line for line in report.lines if not line.title.endswith(": Clean"))
     # change of the mean over all corruptions, or of the single corruption if there is just one
     change = corrupted.changes["after"]
@@ -303,7 +326,6 @@ def harden(
             f"the policy is unchanged. If it is not robust yet, try {other}, or more validation "
             "episodes (validation=)."
         )
-    return Hardened(_like(policy, after), after, report, rows, folder, chosen)
 
 
 class _Training:

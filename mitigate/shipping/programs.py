@@ -70,7 +70,7 @@ class Perceive(nn.Module):
 
     def forward(self, rgb: Tensor, depth: Tensor) -> tuple[Tensor, Tensor]:
         views, _, waypoints = self.agent.perceive(rgb, depth)
-        return self.agent.planner.look(views), waypoints
+        return self.agent.planner.embed_views(views), waypoints
 
 
 class Decide(nn.Module):
@@ -190,7 +190,7 @@ def probe(agent: TopologicalAgent, size: int) -> dict[str, Tensor]:
         "rgb": integers(0, 256, p, VIEWS, size, size, 3).to(torch.uint8),
         "depth": 5 * torch.rand(p, VIEWS, size, size, 1, generator=draw),
         "tokens": integers(1, len(agent.vocabulary), 2, words),
-        "views": torch.randn(p, VIEWS, agent.planner.looked_width, generator=draw),
+        "views": torch.randn(p, VIEWS, agent.planner.embedding_width, generator=draw),
         "episode": torch.arange(b),
         "panorama": torch.tensor([p - 1, p - 2]),
         "nodes": torch.tensor([[0, 1, 2], [0, 1, -1]]),

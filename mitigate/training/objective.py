@@ -12,7 +12,7 @@ from collections.abc import Callable, Container, Mapping
 from dataclasses import dataclass, field
 from inspect import Parameter, signature
 from numbers import Real
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 import torch
@@ -413,13 +413,26 @@ def check_counts(**counts: int) -> None:
             raise ValueError(f"{name} must be a whole number >= 1, got {value!r:.80}.")
 
 
-def divided(step: int, count: int, pieces: int) -> list[tuple[int, int, int, int]]:
-    """Divide ``count`` items of a step evenly among ``pieces`` jobs.
+class Job(NamedTuple):
+    """A job that makes some of the items in a step's batch.
 
-    Each job is a tuple (step, index of the job, number of jobs, number of items).
+    Attributes:
+        step: training step.
+        number: index of the job.
+        jobs: number of jobs in the step.
+        items: number of items that the job makes.
     """
-    parts = np.array_split(np.arange(count), pieces)
-    return [(step, index, pieces, len(part)) for index, part in enumerate(parts)]
+
+    step: int
+    number: int
+    jobs: int
+    items: int
+
+
+def divide(step: int, items: int, jobs: int) -> list[Job]:
+    """Divide the ``items`` of a step evenly among ``jobs`` jobs."""
+    parts = np.array_split(np.arange(items), jobs)
+    return [Job(step, number, jobs, len(part)) for number, part in enumerate(parts)]
 
 
 def check_share(name: str, value: float) -> None:

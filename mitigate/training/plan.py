@@ -5,7 +5,7 @@ the order of the functions below:
 
 1. It builds the agent, which inherits settings from its initial weights.
 2. It skips stages that would train nothing in this agent, drops corruptions of sensors that the
-   agent does not read, and reports both.
+   agent does not read, and displaced cameras that the world cannot render. It reports all of them.
 3. It plans the objective and the trainer settings of each stage.
 4. It checks that the agent, the world, the folder and the stages are compatible.
 """
@@ -51,7 +51,7 @@ from mitigate.worlds.world import Placeable
 # It records which initial weights, settings, code and teacher the stage uses.
 IDENTITY = "identity.json"
 NOT_IDENTITY = ("workers", "folder")  # arguments that do not affect the result of a stage
-OURS = "mitigate.recipes."
+SHIPPED = "mitigate.recipes."  # package of the objectives of this project
 
 
 @dataclass(frozen=True)
@@ -89,10 +89,10 @@ def check(config: TrainConfig) -> None:
             "such as {_target_: mitigate.worlds.episodes.ListedEpisodes, path: x.json}."
         )
     complete = [stage for stage in stages if _target_of(stages[stage])]
-    other = next((stage for stage in stages if stage not in complete), None)
-    if other is not None:
+    absent = next((stage for stage in stages if stage not in complete), None)
+    if absent is not None:
         raise ValueError(
-            f"The recipe {name} has no stage {other!r}; its stages are {', '.join(complete)}. "
+            f"The recipe {name} has no stage {absent!r}; its stages are {', '.join(complete)}. "
             "Remove options of other stages (experiment=frozen fits only imitation and da_*, "
             "experiment=camera only ts_distill, stacked and self_distill; harden includes it)."
         )
@@ -134,7 +134,7 @@ def plan(config: TrainConfig, ranks: Ranks) -> Plan:
         )
     warn_unused_schedule(config)
     leave_out_stages(config, agent)
-    keep_cameras(config)
+    disable_camera_share(config)
     warn_warmup(config)
     drop_unread_corruptions(config, agent)
     stages = plan_stages(config, agent, folder)
@@ -198,8 +198,8 @@ def leave_out_stages(config: TrainConfig, agent: nn.Module) -> None:
     say(f"nothing is trained: the agent is evaluated with agent.blind={list(blind)}")
 
 
-def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
-    """Return why a stage would train nothing in this kind of agent, or None if it trains something.
+def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str:
+    """Return why a stage would train nothing in this kind of agent, or "" if it trains something.
 
     Possible reasons: the agent lacks the sensor, stores no features, or can only train encoders.
     """
@@ -212,7 +212,7 @@ def nothing_to_train(recipe: Mapping[str, Any], agent: nn.Module) -> str | None:
         return f"{kind} stores no features"
     if recipe.get("train_parts") == POLICY and encoders and not policy_parts(agent):
         return f"{kind} can only train encoders"
-    return None
+    return ""
 
 
 def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
@@ -240,7 +240,7 @@ def _leave_out_views(config: TrainConfig, agent: nn.Module) -> None:
             say(f"{name}: left out, {cause} (docs/bring-your-own.md)")
 
 
-def keep_cameras(config: TrainConfig) -> None:
+def disable_camera_share(config: TrainConfig) -> None:
     """Set ``camera_share`` to 0 in stages whose world cannot render a displaced camera.
 
     The names of these stages are printed.
@@ -336,6 +336,7 @@ def plan_stages(config: TrainConfig, agent: nn.Module, folder: Path) -> list[Sta
 
 
 def _identity(node: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """Yield the entries of a stage's ``recipe`` node that affect its result."""
     for name, value in node.items():
         if name not in NOT_IDENTITY:
             yield name, dict(_identity(value)) if isinstance(value, dict) else value
@@ -409,7 +410,7 @@ def check_stages(name: str, agent: nn.Module, stages: list[StagePlan], ranks: Ra
     except Exception:
         return
     for stage in stages:
-        if not stage.objective.target.startswith(OURS):
+        if not stage.objective.target.startswith(SHIPPED):
             return
         with redirect_stdout(StringIO()):
             pieces = stage.objective.build(copied).pieces()

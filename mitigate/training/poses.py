@@ -21,7 +21,7 @@ from mitigate.corruptions.faults.camera import random_mount
 from mitigate.corruptions.keying import Key, digest, uniform
 from mitigate.training.objective import OnSource, check_counts, check_share
 from mitigate.training.parts import OWN, SEEING
-from mitigate.training.success import DrawsBySuccess
+from mitigate.training.success import DrawsBySuccess, ScheduledJob
 from mitigate.worlds.episodes import share_of
 from mitigate.worlds.world import Placeable, TrainingEpisodes, depth_sensor
 
@@ -76,7 +76,7 @@ class Poses(DrawsBySuccess):
             raise ValueError(f"modality must be 'rgb' or 'depth', got {self.modality!r}.")
         check_counts(panoramas=self.panoramas)
         check_share("camera_share", self.camera_share)
-        self.sensor = self.modality
+        self.sensor = self.modality  # ``modality`` is the name of the option in configs
         self.schedule = self.schedule or Schedule("clean", 0.0)
         if self.own:
             self.schedule = self.schedule.only(self.sensor)
@@ -130,21 +130,22 @@ class Poses(DrawsBySuccess):
         """The number of jobs in every step."""
         return -(-self.panoramas // PIECE)
 
-    def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return the jobs of a step (:meth:`divide`).
+    def jobs(self, step: int, workers: int | None = None) -> list[ScheduledJob]:
+        """Return the jobs of a step, whose items are panoramas.
 
         If the schedule needs success rates but has none, they are measured with ``workers``
         processes.
         """
-        return self.divide(step, self.panoramas, self.pieces, workers)
+        self.refresh_if_needed(step, workers)
+        return self.scheduled_jobs(step, self.panoramas, self.pieces)
 
-    def work(self, job: tuple) -> list[tuple[np.ndarray, ...]]:
+    def work(self, job: ScheduledJob) -> list[tuple[np.ndarray, ...]]:
         """Return (corrupted frames, clean frames, labels) for each random pose of a job."""
-        step, piece, pieces, count, state = job
-        self.schedule.load_state_dict(state)
-        rng = generator(self.seed, "perception", self.sensor, step, piece)
-        scenes = share_of(self.placed.scenes, piece, pieces)
-        return [self._panorama(rng, scenes, f"{step}-{piece}-{i}") for i in range(count)]
+        step, number, jobs, count, schedule_state = job
+        self.schedule.load_state_dict(schedule_state)
+        rng = generator(self.seed, "perception", self.sensor, step, number)
+        scenes = share_of(self.placed.scenes, number, jobs)
+        return [self._panorama(rng, scenes, f"{step}-{number}-{i}") for i in range(count)]
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
         """Join the results of all jobs into the tensors "frames", "clean" and "targets"."""
@@ -175,8 +176,8 @@ class Poses(DrawsBySuccess):
         # Views that were not rendered are therefore filled with copies of rendered views.
         sources = [views[(view - first) // self.every % len(views)] for view in range(VIEWS)]
         seen = {**seen, self.sensor: seen[self.sensor][sources]}
-        corruptions = self.schedule.draw(self.seed, name, 0)
-        frames = corrupt_observation(seen, *corruptions, depth_sensor(self.placed.sensors))
+        corruption, key = self.schedule.draw(self.seed, name, 0)
+        frames = corrupt_observation(seen, corruption, key, depth_sensor(self.placed.sensors))
         target = self._target(truth)
         target = target[views] if len(target) == VIEWS else target
         return frames[self.sensor][views], clean[self.sensor][views], target
@@ -187,8 +188,8 @@ class Poses(DrawsBySuccess):
         """Return the result of :meth:`_panorama` for one view of a single camera."""
         heading = float(rng.uniform(-np.pi, np.pi))
         clean, seen, truth = self._put(xy, heading, None, Key(self.seed, f"{name}-{number}", 0))
-        corruptions = self.schedule.draw(self.seed, name, number)
-        frames = corrupt_observation(seen, *corruptions, depth_sensor(self.placed.sensors))
+        corruption, key = self.schedule.draw(self.seed, name, number)
+        frames = corrupt_observation(seen, corruption, key, depth_sensor(self.placed.sensors))
         return frames[self.sensor], clean[self.sensor], self._target(truth)
 
     def _put(

@@ -14,9 +14,9 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import DepthSensor, Schedule
 from mitigate.corruptions.suite import SENSOR
 from mitigate.encoders.sources import TRAIN, Frames, Source, collect, corrupted, source_of
-from mitigate.training import success
 from mitigate.training.objective import check_counts
 from mitigate.training.poses import Poses
+from mitigate.training.success import reject_success_distributed
 from mitigate.worlds.world import TrainingEpisodes
 
 # number of frames per group; batches from a folder contain groups instead of panoramas
@@ -91,8 +91,10 @@ class FramePairs:
     def work(self, job: tuple[int, int, Frames]) -> tuple[np.ndarray, np.ndarray]:
         """Return corrupted and clean frames [GROUP, H, W, c] of a group."""
         step, group, clean = job
-        drawn = [self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0) for i in range(len(clean))]
-        frames = [corrupted(clean, i, *chosen, self.depth) for i, chosen in enumerate(drawn)]
+        frames = []
+        for i in range(len(clean)):
+            corruption, key = self.schedule.draw(self.seed, f"{step}-{group}-{i}", 0)
+            frames.append(corrupted(clean, i, corruption, key, self.depth))
         return np.stack(frames), clean.frames
 
     def collate(self, pieces: list[Any]) -> dict[str, Any]:
@@ -123,7 +125,7 @@ def pairs_of(
     Raises:
         ValueError: If the schedule samples corruptions by success rate.
     """
-    success.refuse(schedule)
+    reject_success_distributed(schedule)
     if training is None:
         depth = replace(SENSOR, z_max=agent.parts()[modality].far)
         source = source_of(world, modality, None, "", None)

@@ -18,7 +18,7 @@ from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
 from mitigate.training.objective import OnSource, check_counts, check_share
 from mitigate.training.parts import OWN, TRAINABLE
-from mitigate.training.success import DrawsBySuccess
+from mitigate.training.success import DrawsBySuccess, ScheduledJob
 from mitigate.worlds.world import Corrupted, TrainingEpisodes, World
 
 PIECES = 4  # number of jobs into which the episodes of a step are divided (heuristic)
@@ -83,23 +83,24 @@ class Rollouts(DrawsBySuccess):
         # a user-defined source of episodes that reads no files needs no method identity()
         return dict(getattr(self.training, "identity", dict)())
 
-    def jobs(self, step: int, workers: int | None = None) -> list[tuple]:
-        """Return the jobs of a step (:meth:`divide`).
+    def jobs(self, step: int, workers: int | None = None) -> list[ScheduledJob]:
+        """Return the jobs of a step, whose items are episodes.
 
         If the schedule needs success rates, they are measured with ``workers`` processes at the
         first step and every ``refresh_every`` steps.
         """
         due = bool(self.refresh_every) and step % self.refresh_every == 0
-        return self.divide(step, self.episodes, self.pieces, workers, due)
+        self.refresh_if_needed(step, workers, due)
+        return self.scheduled_jobs(step, self.episodes, self.pieces)
 
-    def work(self, job: tuple) -> tuple[Any, np.ndarray | None]:
+    def work(self, job: ScheduledJob) -> tuple[Any, np.ndarray | None]:
         """Run the episodes of a job; return their decisions and a picture of the last frame."""
-        step, piece, pieces, count, state = job
-        self.schedule.load_state_dict(state)
-        rngs = [generator(self.seed, "rollout", step, piece, i) for i in range(count)]
-        episodes = [self.training.draw(rng, (piece, pieces)) for rng in rngs]
+        step, number, jobs, count, schedule_state = job
+        self.schedule.load_state_dict(schedule_state)
+        rngs = [generator(self.seed, "rollout", step, number, i) for i in range(count)]
+        episodes = [self.training.draw(rng, (number, jobs)) for rng in rngs]
         worlds = [
-            Corrupted(self.world(), self.schedule, self.seed, f"{step}-{piece}-{i}")
+            Corrupted(self.world(), self.schedule, self.seed, f"{step}-{number}-{i}")
             for i in range(count)
         ]
         decisions = self.agent.collect(
@@ -111,7 +112,8 @@ class Rollouts(DrawsBySuccess):
 
     def collate(self, pieces: list[tuple]) -> Decisions:
         """Join the decisions of all jobs."""
-        self.picture = pieces[0][1] if pieces[0][1] is not None else self.picture
+        _, first_picture = pieces[0]
+        self.picture = self.picture if first_picture is None else first_picture
         return self.agent.join([piece for piece, _ in pieces])
 
     def figures(self) -> dict[str, np.ndarray]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -11,10 +11,20 @@ from mitigate.core import workers as processes
 from mitigate.core.progress import Progress
 from mitigate.core.seeding import generator
 from mitigate.corruptions import Schedule
-from mitigate.evaluation.evaluator import WORTH, EpisodeTask
-from mitigate.training.objective import divided
+from mitigate.evaluation.evaluator import WORTH, EpisodeJob, EpisodeTask
+from mitigate.training.objective import divide
 from mitigate.training.parts import hold_statistics
 from mitigate.worlds.world import TrainingEpisodes
+
+
+class ScheduledJob(NamedTuple):
+    """A job (``objective.Job``) with the state of the schedule that samples its corruptions."""
+
+    step: int
+    number: int
+    jobs: int
+    items: int
+    schedule: dict[str, Any]
 
 
 class DrawsBySuccess:
@@ -27,22 +37,18 @@ class DrawsBySuccess:
     seed: int
     refresh_episodes: int
 
-    def divide(
-        self, step: int, count: int, pieces: int, workers: int | None, due: bool = False
-    ) -> list[tuple]:
-        """Divide ``count`` items of a step evenly among ``pieces`` jobs.
+    def refresh_if_needed(self, step: int, workers: int | None, due: bool = False) -> None:
+        """Measure success rates (:meth:`refresh`) if the schedule uses them.
 
-        If the schedule samples by success rate, the rates are first measured with ``workers``
-        processes. They are measured only if there are none yet, or if new ones are ``due``.
-
-        Returns:
-            One tuple per job: (step, index of the job, number of jobs, number of items, state of
-            the schedule).
+        They are measured only if there are none yet, or if new ones are ``due``.
         """
         if self.schedule.mode == "success_distributed" and (due or self.schedule.success is None):
             self.refresh(step, workers)
+
+    def scheduled_jobs(self, step: int, items: int, jobs: int) -> list[ScheduledJob]:
+        """Divide the ``items`` of a step evenly among ``jobs`` jobs."""
         state = self.schedule.state_dict()
-        return [(*job, state) for job in divided(step, count, pieces)]
+        return [ScheduledJob(*job, state) for job in divide(step, items, jobs)]
 
     def refresh(self, step: int, workers: int | None = None) -> None:
         """Measure the success rate under every corruption, and update the schedule.
@@ -60,8 +66,11 @@ class DrawsBySuccess:
         episodes = [self.training.draw(rng, (0, 1)) for _ in range(self.refresh_episodes)]
         corruptions = [self.schedule.corruption(name) for name in self.schedule.names]
         groups = [
-            [(e, c, {"corruption": c.name, "seed": self.seed}) for c in corruptions]
-            for e in episodes
+            [
+                EpisodeJob(episode, corruption, {"corruption": corruption.name, "seed": self.seed})
+                for corruption in corruptions
+            ]
+            for episode in episodes
         ]
         task = EpisodeTask(self.agent.eval(), self.world)
         on_gpu = any(p.device.type != "cpu" for p in self.agent.parameters())
@@ -73,16 +82,17 @@ class DrawsBySuccess:
         with Progress(f"success at step {step}", total, unit="episode") as progress:
             for item in processes.results(task, groups, started, progress):
                 if item is not None:
-                    successes[item[1]["corruption"]].append(item[1]["success"])
+                    _, row = item
+                    successes[row["corruption"]].append(row["success"])
                     progress.advance()
         self.schedule.refresh({name: float(np.mean(won)) for name, won in successes.items()})
         hold_statistics(self.agent.train())
 
 
-def refuse(schedule: Schedule | None) -> None:
+def reject_success_distributed(schedule: Schedule | None) -> None:
     """Raise ValueError if ``schedule`` samples by success rate.
 
-    The recipe that calls this function measures no success rates.
+    Objectives and sources that measure no success rates call this function.
     """
     if schedule is not None and schedule.mode == "success_distributed":
         raise ValueError(

@@ -22,7 +22,7 @@ from torch.optim import AdamW
 from torch.optim.lr_scheduler import LambdaLR
 
 from mitigate.core import checkpoint, seeding
-from mitigate.core.memory import give_back
+from mitigate.core.memory import release_memory
 from mitigate.core.precision import choose, computing, device_of, to_device
 from mitigate.core.progress import say
 from mitigate.core.signals import Ended, SignalDelay, delay_signals
@@ -115,8 +115,10 @@ class Trainer:
         if self.lag:
             fixed |= {"lag": self.lag, "save_every": self.save_every}
         self.config = states.as_json(self.config) | {"trainer": fixed}
-        groups = self.objective.parameter_groups()
-        groups = [{**g, "params": [p for p in g["params"] if p.requires_grad]} for g in groups]
+        groups = [
+            {**group, "params": [p for p in group["params"] if p.requires_grad]}
+            for group in self.objective.parameter_groups()
+        ]
         self.trained = [parameter for group in groups for parameter in group["params"]]
         if not self.trained:
             raise ValueError(
@@ -151,7 +153,8 @@ class Trainer:
             with computing(self.precision, self.device):
                 self.objective.start()
             self.objective.train()
-            # torchrun has terminated its ranks
+            # not with several ranks: torchrun ends them, and a rank that saves could wait for a
+            # second rank that has already ended
             with delay_signals(self.ranks.count == 1) as ending:
                 self._train(start, journal, ending)
                 self._finish(journal, ending)
@@ -160,14 +163,14 @@ class Trainer:
     def _train(self, start: int, journal: Journal, ending: SignalDelay) -> None:
         """Train from step ``start``, and save the last checkpoint as unfinished."""
         batches = Batches(
-            self.objective,
-            self.workers,
-            self.steps,
-            self.precision,
-            self.device,
-            self.ranks,
-            self.lag,
-            self.save_every,
+            objective=self.objective,
+            workers=self.workers,
+            steps=self.steps,
+            kind=self.precision,
+            device=self.device,
+            ranks=self.ranks,
+            lag=self.lag,
+            save_every=self.save_every,
         )
         for step in range(start, self.steps):
             done = step + 1
@@ -214,18 +217,21 @@ class Trainer:
             ending.check()
 
     def _due(self, every: int, done: int) -> bool:
+        """Return whether an action with the interval ``every`` is due after ``done`` steps."""
         return bool(every) and (done % every == 0 or done == self.steps)
 
     def _batch(self, step: int, batches: Batches) -> tuple[dict[str, Any], float]:
         """Return the batch of ``step``, and the time in seconds spent waiting for it."""
         began = time.monotonic()
-        # seeded per rank, because dropout must differ between ranks
+        # seeded per rank, because dropout must differ between ranks; the key of rank 0 has no rank,
+        # so that it equals the key of a training in a single process
         rank = (self.ranks.number,) if self.ranks.number else ()
         seeding.seed_everything(self.seed, "step", step, *rank)
         batch = to_device(batches.batch(step), self.device)
         return batch, time.monotonic() - began
 
     def _step(self, step: int, batch: dict[str, Any]) -> dict[str, float]:
+        """Update the weights once, and return the values to log."""
         self.optimizer.zero_grad(set_to_none=True)
         values = accumulate(self.objective, batch, self.precision, self.device)
         values = {name: value.float() for name, value in values.items()}
@@ -239,6 +245,7 @@ class Trainer:
         return {name: float(value) for name, value in {**values, "grad_norm": norm}.items()}
 
     def _diverged(self, step: int, loss: Tensor, norm: Tensor, batch: dict[str, Any]) -> str:
+        """Return the error message for a loss or a gradient that is not finite."""
         episodes = ", ".join(map(str, batch.get("episode_ids", [])[:16]))
         saved = states.checkpoints(self.folder)
         check = f", or check the episodes of that batch: {episodes}" if episodes else ""
@@ -250,7 +257,7 @@ class Trainer:
         )
 
     def _advice(self) -> str:
-        """Say how to avoid values that are not finite."""
+        """Return advice on how to avoid values that are not finite."""
         exact = "" if self.precision == "fp32" else ", or compute in fp32 (trainer.precision=fp32)"
         return (
             f"Lower the learning rate ({self._lr():g} now; trainer.lr on the command line, lr= in "
@@ -282,11 +289,11 @@ class Trainer:
         self._saved = done
         if not self.ranks.first:
             return
-        bad = checkpoint.not_finite(self.objective)
-        if bad:
+        invalid = checkpoint.not_finite(self.objective)
+        if invalid:
             raise LossNotFinite(
                 f"Training stopped: after step {done} of {self.name} the weights are not finite "
-                f"({', '.join(bad[:3])}), so that step was not saved. "
+                f"({', '.join(invalid[:3])}), so that step was not saved. "
                 f"{self._advice()}."
             )
         state = {
@@ -299,7 +306,7 @@ class Trainer:
             "config": self.config,
         }
         states.save(self.folder, state, keep=self.keep)
-        give_back()
+        release_memory()
 
     def _keep_precision(self, config: dict[str, Any]) -> None:
         """Keep the precision of the checkpoint, unless the user chose a precision."""
@@ -311,7 +318,8 @@ class Trainer:
             f"{self.precision}. To train in {self.precision}, start again in another folder "
             "(folder=...)."
         )
-        self.precision = self.config["trainer"]["precision"] = precision
+        self.precision = precision
+        self.config["trainer"]["precision"] = precision
 
     def _resume(self) -> int:
         """Load the newest intact checkpoint, if any, and return its number of updates."""

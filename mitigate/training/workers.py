@@ -20,7 +20,7 @@ from typing import Any
 import torch
 
 from mitigate.core import precision
-from mitigate.core.memory import give_back
+from mitigate.core.memory import release_memory
 from mitigate.core.progress import duration, say
 from mitigate.core.signals import leave_to_parent, start_worker
 from mitigate.core.workers import DEATHS, STUCK, WorkersDied, context, packed, portable
@@ -236,7 +236,7 @@ def _work(connection: Connection, messages: SimpleQueue) -> None:
             connection.send_bytes(_answer(objective, content[0], kind))
             done += 1
             if done % TRIM_EVERY == 0:
-                give_back()
+                release_memory()
 
 
 def _listen(connection: Connection, messages: SimpleQueue) -> None:

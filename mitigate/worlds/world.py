@@ -216,7 +216,7 @@ class WorldWrapper(World):
 
     def __init__(self, world: Any) -> None:
         self.world = world
-        self._inner = as_world(world)
+        self._inner = as_world(world)  # ``world`` with the defaults of World
 
     def __getattr__(self, name: str) -> Any:
         """Return an attribute of the inner world, such as rule, sensors, done or point()."""

@@ -131,7 +131,7 @@ def ghosts(fusion: dict | None, features: torch.Tensor, sightings: torch.Tensor)
     """
     model, batch = planner(fusion), collate([decision(4)], [0], [0])
     batch.sightings[0, : len(sightings)] = sightings
-    tokens = model.look(features)
+    tokens = model.embed_views(features)
     weights = None if fusion is None else tokens[..., -1:]
     first = 1 + batch.nodes.shape[1]
     return model._tokens(tokens[..., :16], weights, batch)[0, first : first + len(sightings)]
@@ -176,7 +176,7 @@ def test_planner_output_is_unchanged_by_untrained_reliability(features):
 
 def test_planner_trains_its_learned_reliability():
     model, step = planner({"learned": True}), decision(3)
-    looked = model.look(torch.rand(3, VIEWS, sum(model.widths)))
+    looked = model.embed_views(torch.rand(3, VIEWS, sum(model.widths)))
     out = model(model.read(torch.tensor([[2, 3, 4]])), looked, collate([step], [0], [0]))
     out["nodes"].square().sum().backward()
     assert model.fusion.score.weight.grad.abs().sum() > 0
@@ -186,7 +186,7 @@ def test_planner_with_fusion_gives_finite_scores():
     model, step = planner({}), decision(3)
     tokens = torch.tensor([[2, 3, 4]])
     with torch.no_grad():
-        looked = model.look(torch.rand(3, VIEWS, sum(model.widths)))
+        looked = model.embed_views(torch.rand(3, VIEWS, sum(model.widths)))
         out = model(model.read(tokens), looked, collate([step], [0], [0]))
     assert looked.shape == (3, VIEWS, 17)
     assert torch.isfinite(out["logits"][0, 0]) and torch.isfinite(out["nodes"]).all()

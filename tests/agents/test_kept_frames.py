@@ -83,9 +83,9 @@ def recurrent() -> list[dict[str, np.ndarray]]:
 def topological() -> list[dict[str, np.ndarray]]:
     walk = LiveWalk(Reusing(VIEWS), EPISODE, ["seen"], clean=True)
     for _ in range(3):
-        walk.look()
+        walk.record()
         walk.observation = walk.world.step(FORWARD)
-    return walk.looks
+    return walk.records
 
 
 @pytest.mark.parametrize("walked", [stepwise, recurrent, topological])

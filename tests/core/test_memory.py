@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from mitigate.core.memory import Memory, give_back
+from mitigate.core.memory import Memory, release_memory
 
 
 def compute(memory, key, log, size=8):
@@ -49,7 +49,7 @@ def test_freed_memory_returns_to_the_system():
     remaining = pieces[::100]
     del pieces
     before = resident()
-    give_back()
+    release_memory()
     assert resident() < before - 100_000_000 and len(remaining) == 30
 
 

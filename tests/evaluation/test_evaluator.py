@@ -23,7 +23,7 @@ from mitigate.corruptions import (
 from mitigate.evaluation import evaluator
 from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.episode import instruction, run_episode
-from mitigate.evaluation.evaluator import EpisodeTask, _together, evaluate
+from mitigate.evaluation.evaluator import EpisodeJob, EpisodeTask, _together, evaluate
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.guards.guard import Guards
 from mitigate.guards.opening import open_guards
@@ -367,6 +367,6 @@ def test_corrupted_prompt_disables_side_by_side():
     episode = load_episodes("val_seen")[0]
     task = EpisodeTask(agent, partial(ApartmentsWorld, 16))
     with task.ready():
-        jobs = [(episode, condition, {"seed": 0}) for condition in conditions]
+        jobs = [EpisodeJob(episode, condition, {"seed": 0}) for condition in conditions]
         assert len([*task.work(jobs)]) == 2
     assert len(agent.heard) == 2 and agent.system_prompt == Prompted.system_prompt

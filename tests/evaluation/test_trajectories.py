@@ -7,6 +7,7 @@ import pytest
 
 from mitigate.core.observation import DEPTH, POSE, RGB, Observation
 from mitigate.corruptions import Corruption
+from mitigate.corruptions.registry import title
 from mitigate.evaluation import trajectories
 from mitigate.evaluation.trajectories import (
     draw_episode,
@@ -59,7 +60,7 @@ def test_draw_episode_draws_clean_and_corrupted_runs(tmp_path, monkeypatch, name
     draw_episode(walks, world, episode, corruption, 0).savefig(out)
     assert cv2.imread(str(out)).std() > 10
     labels = [rest[1].split(":")[0] for _, rest in drawn]
-    displayed = trajectories.label(name)
+    displayed = title(name)
     assert labels == [
         "reference path",
         "base, clean",

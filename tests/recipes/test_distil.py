@@ -16,7 +16,7 @@ from mitigate.agents.topological import TopologicalAgent
 from mitigate.core import checkpoint, conf, seeding
 from mitigate.core.checkpoint import weights_sha
 from mitigate.corruptions import DEPTH, Schedule
-from mitigate.recipes.adapt import FRESH, HELD, Adapt, AdaptViews, differ
+from mitigate.recipes.adapt import FRESH, HELD, Adapt, AdaptViews, changed_views
 from mitigate.recipes.distil import Distil, DistilViews, feature_loss, policy_kl
 from mitigate.recipes.imitate import Imitate, imitation
 from mitigate.training.states import checkpoints
@@ -101,7 +101,7 @@ def test_loss_is_the_sum_of_its_terms(recipe, batch):
     with torch.no_grad():
         values = recipe(batch)
         out = recipe.agent.decide(batch["decisions"])
-        base = imitation(out, batch["decisions"], recipe.losses)
+        base = imitation(out, batch["decisions"], recipe.loss_weights)
     recipe.train()
     expected = recipe.w_il * base["loss"] + recipe.w_kl * recipe.temperature**2 * values["kl"]
     expected += recipe.w_feat * (values["feat_nodes"] + values["feat_views"])
@@ -234,7 +234,7 @@ def test_gate_learns_which_views_are_corrupted(tmp_path):
     agent = small(adapters={**ADAPTERS, "gates": ["rgb_encoder.stem"]})
     objective = assemble(AdaptViews, agent, modality="rgb", **VIEWS, own=True)
     batch = objective.batch(0)
-    (gate,), corrupted = objective.gates, differ(batch["frames"], batch["clean"])
+    (gate,), corrupted = objective.gates, changed_views(batch["frames"], batch["clean"])
     objective(batch)
     wrong = []
     with pytest.MonkeyPatch.context() as patch:
@@ -334,7 +334,7 @@ def test_views_differ_where_pixels_differ_and_holes_compare_equal():
     clean[0, 0, 0] = torch.nan
     frames = clean.clone()
     frames[1, 0, 2, 2] = 0.5
-    assert differ(frames, clean).tolist() == [False, False, True, False]
+    assert changed_views(frames, clean).tolist() == [False, False, True, False]
 
 
 def test_stage_may_draw_corruptions_of_its_sensor_only():

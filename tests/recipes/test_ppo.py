@@ -86,14 +86,14 @@ def test_ppo_trains_only_the_critic_in_the_first_rounds():
     assert all(p.grad is not None for p in task.actor.critic.parameters())
     assert all(p.grad is None for p in task.actor.policy.parameters())
     task.zero_grad()
-    task(task.batch(task.updates))["loss"].backward()
+    task(task.batch(task.steps_per_round))["loss"].backward()
     assert all(p.grad is not None for p in task.actor.policy.parameters())
     assert all(p.grad is None for p in task.behaviour.parameters())
 
 
 def test_ppo_uses_each_environment_step_once_per_epoch():
     task = objective()
-    batches = [task.batch(step) for step in range(task.updates)]
+    batches = [task.batch(step) for step in range(task.steps_per_round)]
     for epoch in (batches[:2], batches[2:]):
         log_probs = torch.cat([batch["log_prob"] for batch in epoch])
         assert torch.equal(log_probs.sort().values, task._rollouts["log_prob"].sort().values)
@@ -116,8 +116,8 @@ def test_ppo_repeats_an_interrupted_round_from_its_state():
     for name in ("action", "log_prob", "advantage"):
         assert torch.equal(batch[name], expected[name])
     assert batch["environment_steps"] == expected["environment_steps"] == 20
-    task.batch(task.updates)
-    assert task.batch(task.updates)["environment_steps"] == 40
+    task.batch(task.steps_per_round)
+    assert task.batch(task.steps_per_round)["environment_steps"] == 40
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ from mitigate.corruptions import Schedule
 from mitigate.encoders.sources import FolderFrames
 from mitigate.guards.frames.restorer import Restorer
 from mitigate.recipes.restore import Restore
-from mitigate.recipes.restore_gate import Judged, RestoreGate
+from mitigate.recipes.restore_gate import GateSamples, RestoreGate
 from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
@@ -90,7 +90,7 @@ def test_gate_target_rejects_blurred_right_pixels():
         torch.tensor([0.1, 0.1, 0.19, 0.1, 0.3]),
     )
     spent = torch.tensor([0.0, 0.5, 0.0, 0.5, 0.0])
-    hit, counted = Judged(nothing, nothing, before, after, spent).labels
+    hit, counted = GateSamples(nothing, nothing, before, after, spent).labels
     assert hit.tolist() == [True, False, False, False, False]
     assert counted.tolist() == [True, True, False, True, True]
 

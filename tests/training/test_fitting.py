@@ -192,11 +192,11 @@ def test_plan_keeps_the_camera_in_worlds_that_cannot_displace_it(monkeypatch, ca
             return super().put(xy, heading, views=views, rgb=rgb)
 
     cfg = load("recipe=harden")
-    plan.keep_cameras(cfg)
+    plan.disable_camera_share(cfg)
     shares = [stage.recipe["camera_share"] for stage in cfg.active_stages.values()]
     assert shares == [0.4, 0.4] and not capsys.readouterr().out
     monkeypatch.setattr(plan, "maker", lambda node: Fixed)
-    plan.keep_cameras(cfg)
+    plan.disable_camera_share(cfg)
     shares = [stage.recipe["camera_share"] for stage in cfg.active_stages.values()]
     assert shares == [0.0, 0.0]
     assert "views_depth: without displaced cameras, Fixed.put" in capsys.readouterr().out

@@ -16,7 +16,7 @@ from mitigate.evaluation.conditions import conditions
 from mitigate.evaluation.config import read
 from mitigate.evaluation.episode_lists import episodes
 from mitigate.evaluation.evaluate import load
-from mitigate.evaluation.evaluator import EpisodeTask, Job, evaluate, run_episode
+from mitigate.evaluation.evaluator import EpisodeJob, EpisodeTask, evaluate, run_episode
 
 CHECKPOINTS = ("checkpoints/base", "checkpoints/hardened/stacked")
 SEVERITY = 0.6
@@ -46,8 +46,8 @@ def paces(count: int) -> dict[str, Pace]:
     for weights in CHECKPOINTS:
         task = EpisodeTask(load(cfg.agent, weights), build.maker(cfg.env.world))
         suite = conditions(list(cfg.suite.conditions), SEVERITY, None)
-        groups: list[list[Job]] = [
-            [(episode, c, {"seed": 0, "corruption": c.name}) for c in suite]
+        groups: list[list[EpisodeJob]] = [
+            [EpisodeJob(episode, c, {"seed": 0, "corruption": c.name}) for c in suite]
             for episode in episodes(cfg.env, cfg.split, count + 1)
         ]
         with task.ready():
@@ -55,12 +55,15 @@ def paces(count: int) -> dict[str, Pace]:
     return by_checkpoint
 
 
-def _pace(task: EpisodeTask, groups: list[list[Job]]) -> Pace:
+def _pace(task: EpisodeTask, groups: list[list[EpisodeJob]]) -> Pace:
     """Measure the time of all groups of runs except the first group, which is a warm-up."""
 
-    def alone(group: list[Job]) -> list[dict[str, Any]]:
+    def alone(group: list[EpisodeJob]) -> list[dict[str, Any]]:
         assert task.world is not None
-        return [{**job, **run_episode(task.agent, task.world, e, c, 0)} for e, c, job in group]
+        return [
+            {**label, **run_episode(task.agent, task.world, episode, condition, 0)}
+            for episode, condition, label in group
+        ]
 
     ways: dict[str, Callable] = {"alone": alone, "together": lambda group: list(task.work(group))}
     seconds = dict.fromkeys(ways, 0.0)

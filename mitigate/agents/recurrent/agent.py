@@ -193,7 +193,10 @@ class RecurrentAgent(SideBySide, nn.Module):
             views = self._encode(frames)
             moves = torch.from_numpy(np.stack([walk.odometer.moves() for walk in here]))
             fresh = self.policy.step(
-                text.rows(rows), self.policy.look(views), moves.to(self.device), state.rows(rows)
+                text.rows(rows),
+                self.policy.embed_views(views),
+                moves.to(self.device),
+                state.rows(rows),
             )
             state.put(rows, fresh)
             logits = check_logits(self.policy.answer(fresh.hidden), self)
@@ -300,7 +303,7 @@ class RecurrentAgent(SideBySide, nn.Module):
             name: np.stack([checked.frame(seen, name, 1) for seen in observations])
             for name in self.sensors
         }
-        columns = self.policy.look(self._encode(frames))
+        columns = self.policy.embed_views(self._encode(frames))
         motions = [walk.odometer.moves() for walk in memories]
         moves = torch.from_numpy(np.stack(motions))
         text = Text(*map(torch.cat, zip(*(walk.text for walk in memories), strict=True)))
@@ -328,7 +331,7 @@ class RecurrentAgent(SideBySide, nn.Module):
         assert walk is not None and walk.before is not None, "act first"
         frames = {name: np.array(checked.frame(observation, name, 1)) for name in self.sensors}
         on = {name: torch.from_numpy(f)[None].to(self.device) for name, f in frames.items()}
-        columns = self.policy.look(self._perceive(on, {})[0])
+        columns = self.policy.embed_views(self._perceive(on, {})[0])
         before, motion = walk.before
         # copied, because tensors that were created in inference mode cannot be used with gradients
         text = Text(*(part.clone() for part in walk.text))

@@ -175,7 +175,7 @@ class Policy(TextReader):
         values, mask = super().read(tokens)
         return Text(self.keys(values), values, mask)
 
-    def look(self, views: Tensor) -> Tensor:
+    def embed_views(self, views: Tensor) -> Tensor:
         """Return the features of columns [..., 4, width] of encoded views [..., F]."""
         rgb, concepts, depth, free = views.split(self.sizes, -1)
         x = self.column
@@ -242,7 +242,7 @@ class Policy(TextReader):
             the goal divided by 5; "grounding" [E, T, 4], one logit per column, which predicts
             whether the column shows the goal's landmark; and "state" [E, T, width].
         """
-        columns = self.look(views)
+        columns = self.embed_views(views)
         inputs = self._inputs(columns, moves)
         state = State.start(text)
         states = []

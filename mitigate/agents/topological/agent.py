@@ -237,24 +237,25 @@ class TopologicalAgent(Agent, nn.Module):
         labels = ("concepts", "free", "goal") if trains else ("goal",)
         walks = [LiveWalk(w, e, labels, clean) for w, e in zip(worlds, episodes, strict=True)]
 
-        def look(here: list[LiveWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
-            for walk in here:
-                walk.look()
-            frames = (np.stack([walk.looks[-1][name] for walk in here]) for name in (RGB, DEPTH))
-            views, waypoints = self._perceived(*frames)
+        def perceive(running: list[LiveWalk]) -> list[tuple[np.ndarray, np.ndarray]]:
+            for walk in running:
+                walk.record()
+            newest = [walk.records[-1] for walk in running]
+            frames = (np.stack([record[name] for record in newest]) for name in (RGB, DEPTH))
+            views, waypoints = self._encode_arrays(*frames)
             return [(v, select(w)) for v, w in zip(views, waypoints, strict=True)]
 
         traces = roll_out(
             self.planner,
             self.tokens([e.instruction.text for e in episodes]),
             walks,
-            look,
-            follow_oracle=expert_share,
+            perceive,
+            expert_share=expert_share,
             rngs=rngs,
         )
-        looks = [look for walk in walks for look in walk.looks]
-        names = [name for name in looks[0] if trains or name not in (RGB, DEPTH)]
-        seen = {name: np.stack([look[name] for look in looks]) for name in names}
+        records = [record for walk in walks for record in walk.records]
+        names = [name for name in records[0] if trains or name not in (RGB, DEPTH)]
+        seen = {name: np.stack([record[name] for record in records]) for name in names}
         if not trains:
             seen["views"] = np.stack([view for trace in traces for view in trace.views])
         return Piece(traces, seen)
@@ -262,7 +263,7 @@ class TopologicalAgent(Agent, nn.Module):
     def precompute(self, piece: Piece, *, clean: bool) -> Piece:
         """If ``clean`` is true, replace the clean frames by their features."""
         if clean and CLEAN_RGB in piece.seen:
-            views, _ = self._perceived(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
+            views, _ = self._encode_arrays(piece.seen.pop(CLEAN_RGB), piece.seen.pop(CLEAN_DEPTH))
             piece.seen["clean_views"] = views
         return piece
 
@@ -275,9 +276,9 @@ class TopologicalAgent(Agent, nn.Module):
 
         The features are "views" [P, 12, F] and "nodes" [n, width].
         """
-        views, losses, figures = self._perception(decisions, clean)
+        views, losses, figures = self._features_of(decisions, clean)
         planner, valid = self.planner, decisions.valid
-        out = planner(planner.read(decisions.tokens), planner.look(views), decisions)
+        out = planner(planner.read(decisions.tokens), planner.embed_views(views), decisions)
         distance = F.smooth_l1_loss(out["distance"], decisions.metres / _SCALE, reduction="none")
         planner_losses = {"distance": (distance * valid).sum() / valid.sum()}
         if decisions.goal is not None:
@@ -300,40 +301,40 @@ class TopologicalAgent(Agent, nn.Module):
         return label_output(features, logits, sensor, truth)
 
     @torch.no_grad()
-    def _perceived(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    def _encode_arrays(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return view features and waypoint logits of panoramas, without gradients."""
         frames = (torch.from_numpy(array).to(self.device) for array in (rgb, depth))
         views, _, waypoints = self.perceive(*frames)
         return views.float().cpu().numpy(), waypoints.float().cpu().numpy()
 
-    def _perception(
-        self, seen: MapDecisions, clean: bool
+    def _features_of(
+        self, decisions: MapDecisions, clean: bool
     ) -> tuple[Tensor, dict[str, Tensor], dict[str, Tensor]]:
         """Return view features [P, 12, F], losses and metrics.
 
         Losses and metrics are empty unless perception is being trained.
         """
         if clean:
-            if seen.clean_views is not None:
-                return seen.clean_views, {}, {}
+            if decisions.clean_views is not None:
+                return decisions.clean_views, {}, {}
             # the objective keeps them if its constructor calls rollouts.keep_clean()
-            if seen.clean_rgb is None or seen.clean_depth is None:
+            if decisions.clean_rgb is None or decisions.clean_depth is None:
                 raise ValueError(
                     "The batch contains no clean frames. Call rollouts.keep_clean() in the "
                     "constructor of the objective."
                 )
-            return self.perceive(seen.clean_rgb, seen.clean_depth)[0], {}, {}
-        if seen.views is not None:
-            return seen.views, {}, {}
-        assert seen.rgb is not None and seen.depth is not None
-        views, concepts, waypoints = self.perceive(seen.rgb, seen.depth)
+            return self.perceive(decisions.clean_rgb, decisions.clean_depth)[0], {}, {}
+        if decisions.views is not None:
+            return decisions.views, {}, {}
+        assert decisions.rgb is not None and decisions.depth is not None
+        views, concepts, waypoints = self.perceive(decisions.rgb, decisions.depth)
         losses, figures = {}, {}
-        if seen.concepts is not None:
-            losses["concepts"] = presence_loss(concepts, seen.concepts)
-            figures["f1"] = f1(concepts[..., THINGS], seen.concepts[..., THINGS])
-        if seen.free is not None:
-            losses["waypoints"] = free_loss(waypoints, seen.free)
-            figures["iou"] = agreement(waypoints, seen.free)
+        if decisions.concepts is not None:
+            losses["concepts"] = presence_loss(concepts, decisions.concepts)
+            figures["f1"] = f1(concepts[..., THINGS], decisions.concepts[..., THINGS])
+        if decisions.free is not None:
+            losses["waypoints"] = free_loss(waypoints, decisions.free)
+            figures["iou"] = agreement(waypoints, decisions.free)
         return views, losses, figures
 
     # closed loop ------------------------------------------------------------------------------
@@ -361,7 +362,7 @@ class TopologicalAgent(Agent, nn.Module):
         self.map, self.controller = TopologicalMap(), Controller()
         self._started = True
         self.decisions = 0
-        self._views: list[Tensor] = []
+        self._view_tokens: list[Tensor] = []
         self._stop_scores: list[tuple[float, int]] = []
         self._chosen: int | None = None  # the ghost node to which the agent moves
         self._final = False
@@ -390,10 +391,10 @@ class TopologicalAgent(Agent, nn.Module):
         rgb, depth = (torch.from_numpy(np.array(f))[None] for f in checked.frames(observation))
         views = self.perceive(rgb.to(self.device), depth.to(self.device))[0]
         # these are copies, because tensors created in inference mode have no gradients
-        earlier = [view.clone() for view in self._views[:-1]]
+        earlier = [view.clone() for view in self._view_tokens[:-1]]
         text = tuple(part.clone() for part in self._text)
         batch = collate([self._decided], [0], [0]).to(self.device)
-        tokens = torch.cat([*earlier, self.planner.look(views)])
+        tokens = torch.cat([*earlier, self.planner.embed_views(views)])
         return entropy_of(self.planner(text, tokens, batch)["logits"][0])
 
     def taken(self, action: int, metres: float, radians: float) -> None:
@@ -410,8 +411,8 @@ class TopologicalAgent(Agent, nn.Module):
     @torch.inference_mode()
     def _decide(self, observation: Mapping[str, np.ndarray]) -> bool:
         """Make one decision: start a route and return True, or return False to stop."""
-        views, waypoints = self._see(*checked.frames(observation))
-        self._views.append(self.planner.look(views))
+        views, waypoints = self._encode_panorama(*checked.frames(observation))
+        self._view_tokens.append(self.planner.embed_views(views))
         pose = checked.pose(observation).astype(np.float64)
         if self._chosen is not None:
             self.map.arrive(self._chosen)
@@ -419,7 +420,7 @@ class TopologicalAgent(Agent, nn.Module):
         self.map.add(pose, waypoints)
         decision = self._decided = self.map.decision(pose)
         logits = self.planner(
-            self._text, torch.cat(self._views), collate([decision], [0], [0]).to(self.device)
+            self._text, torch.cat(self._view_tokens), collate([decision], [0], [0]).to(self.device)
         )["logits"][0]
         self.decisions += 1
         self._stop_scores.append((float(logits.softmax(0)[0]), self.map.current))
@@ -436,14 +437,16 @@ class TopologicalAgent(Agent, nn.Module):
         self._chosen = ghost
         return True
 
-    def _see(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
+    def _encode_panorama(self, rgb: np.ndarray, depth: np.ndarray) -> tuple[Tensor, np.ndarray]:
         """Return view features [1, 12, ...] and waypoints [n, 2] of one panorama."""
-        features, concepts = self._once("rgb", rgb, self.encode_rgb)
-        depth_features, waypoints = self._once("depth", depth, self.encode_depth)
+        features, concepts = self._encode_once("rgb", rgb, self.encode_rgb)
+        depth_features, waypoints = self._encode_once("depth", depth, self.encode_depth)
         views = torch.cat([features, concepts.sigmoid(), depth_features], -1)
         return views, select(waypoints[0].float().cpu().numpy())
 
-    def _once(self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]) -> tuple:
+    def _encode_once(
+        self, sensor: str, frames: np.ndarray, encode: Callable[[Tensor], tuple]
+    ) -> tuple:
         """Apply ``encode`` to frames [12, H, H, c]; use the cache of :meth:`remembering`."""
         frames = np.zeros_like(frames) if sensor in self.blind else frames
 

@@ -52,7 +52,7 @@ class TopologicalMap:
     panoramas: int = 0
     node_panorama: list[int] = field(default_factory=list)
     current: int = -1
-    _born: int = 0
+    _next_ghost: int = 0  # id of the next ghost
 
     def add(self, pose: np.ndarray, waypoints: np.ndarray) -> None:
         """Add a panorama at ``pose`` [3] with ``waypoints`` [n, 2] (clockwise yaw, metres)."""
@@ -118,6 +118,10 @@ class TopologicalMap:
         return out
 
     def _visit(self, position: np.ndarray) -> int:
+        """Return the node at ``position``, which is added if no node is near.
+
+        The node is joined to the previous node, and replaces all ghosts near it.
+        """
         gaps = [float(np.hypot(*(p - position))) for p in self.positions]
         if gaps and min(gaps) < MERGE / 2:
             node = int(np.argmin(gaps))
@@ -130,28 +134,29 @@ class TopologicalMap:
         if self.current >= 0 and node != self.current:
             self._join(self.current, node)
         self.current = node
-        for ghost, item in [*self.ghosts.items()]:
-            if np.hypot(*(item.position - position)) < MERGE:
-                for parent in item.parents:
+        for ghost_id, ghost in [*self.ghosts.items()]:
+            if np.hypot(*(ghost.position - position)) < MERGE:
+                for parent in ghost.parents:
                     self._join(parent, node)
-                del self.ghosts[ghost]
+                del self.ghosts[ghost_id]
         return node
 
     def _sight(self, node: int, where: np.ndarray, sighting: tuple[int, int]) -> None:
+        """Merge a waypoint seen from ``node`` into a near node or ghost, or add a ghost."""
         gaps = [float(np.hypot(*(p - where))) for p in self.positions]
         if min(gaps) < MERGE:
             self._join(node, int(np.argmin(gaps)))
             return
-        for item in self.ghosts.values():
-            if np.hypot(*(item.position - where)) < MERGE:
-                item.position = (item.position * item.count + where) / (item.count + 1)
-                item.count += 1
-                item.sightings.append(sighting)
-                if node not in item.parents:
-                    item.parents.append(node)
+        for ghost in self.ghosts.values():
+            if np.hypot(*(ghost.position - where)) < MERGE:
+                ghost.position = (ghost.position * ghost.count + where) / (ghost.count + 1)
+                ghost.count += 1
+                ghost.sightings.append(sighting)
+                if node not in ghost.parents:
+                    ghost.parents.append(node)
                 return
-        self.ghosts[self._born] = Ghost(where, [node], [sighting])
-        self._born += 1
+        self.ghosts[self._next_ghost] = Ghost(where, [node], [sighting])
+        self._next_ghost += 1
 
     def _join(self, a: int, b: int) -> None:
         if a != b:

@@ -31,8 +31,8 @@ from mitigate.core.observation import VIEWS
 ANGLES = 120
 _PER_VIEW = ANGLES // VIEWS
 YAWS = np.radians(3.0 * (np.arange(ANGLES) + 0.5) - 15.0)  # angles are clockwise from the heading
-# the maximum number of waypoints, and the minimum number of bins between two waypoints (24 degrees)
-COUNT, SEPARATION = 6, 8
+MAX_WAYPOINTS = 6
+SEPARATION = 8  # minimum number of bins between two waypoints (24 degrees)
 SHORTEST, LONGEST = 0.5, 2.25  # range of the distance to a waypoint, in metres
 _MARGIN = 0.25  # distance in metres between a waypoint and an obstacle
 
@@ -68,12 +68,12 @@ def select(logits: np.ndarray) -> np.ndarray:
     length = STEP * np.cumprod(probability > 0.5, axis=1).sum(1)
     soft = STEP * np.cumprod(probability, axis=1).sum(1)
     score = (soft + 0.5 * (np.roll(soft, 1) + np.roll(soft, -1))) / 2
-    left = np.where(length - _MARGIN >= SHORTEST, score, -1.0)
+    remaining = np.where(length - _MARGIN >= SHORTEST, score, -1.0)
     chosen: list[tuple[float, float]] = []
-    while len(chosen) < COUNT and left.max() > 0:
-        best = int(left.argmax())
+    while len(chosen) < MAX_WAYPOINTS and remaining.max() > 0:
+        best = int(remaining.argmax())
         chosen.append((YAWS[best], min(float(length[best]) - _MARGIN, LONGEST)))
-        left[(best + np.arange(-SEPARATION, SEPARATION + 1)) % ANGLES] = -1.0
+        remaining[(best + np.arange(-SEPARATION, SEPARATION + 1)) % ANGLES] = -1.0
     return np.array(chosen, np.float32).reshape(-1, 2)
 
 

@@ -122,11 +122,11 @@ class Planner(TextReader):
         )
 
     @property
-    def looked_width(self) -> int:
-        """The number of output channels of :meth:`look`."""
+    def embedding_width(self) -> int:
+        """The number of output channels of :meth:`embed_views`."""
         return self.view_kind.numel() + (self.fusion is not None)
 
-    def look(self, views: Tensor) -> Tensor:
+    def embed_views(self, views: Tensor) -> Tensor:
         """Return view tokens [P, 12, width] of view features [P, 12, view_width].
 
         With ``fusion``, one more channel holds the reliability of each view.
@@ -149,7 +149,7 @@ class Planner(TextReader):
 
         Args:
             text: the result of ``read``.
-            views: [P, 12, ...], the result of ``look``.
+            views: [P, 12, ...], the result of ``embed_views``.
             batch: the padded decisions.
 
         Returns:

@@ -49,7 +49,7 @@ class Walk(Protocol):
 
 
 # function that returns, for each of several walks, view features [12, F] and waypoints [n, 2]
-Look = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
+Perceive = Callable[[list], list[tuple[np.ndarray, np.ndarray]]]
 
 
 @dataclass
@@ -108,7 +108,7 @@ def oracle(walk: Walk, graph: TopologicalMap, decision: Decision) -> Step:
 class LiveWalk:
     """A rollout in a world, from the start of ``episode``.
 
-    ``looks`` holds the frames and labels of each decision, by name.
+    ``records`` holds the frames and labels of each decision, by name.
 
     Args:
         world: any world.
@@ -123,13 +123,16 @@ class LiveWalk:
     def __init__(
         self, world: World, episode: Episode, labels: Sequence[str] = (), clean: bool = False
     ) -> None:
-        self.world, self.episode, self.labels, self.clean = world, episode, labels, clean
+        self.world = world
+        self.episode = episode
+        self.labels = labels
+        self.clean = clean
         self.observation = world.reset(episode)
         self.expert = expert_of(world)
-        self.looks: list[dict[str, np.ndarray]] = []
+        self.records: list[dict[str, np.ndarray]] = []
 
-    def look(self) -> None:
-        """Add the current frames and labels to ``looks``."""
+    def record(self) -> None:
+        """Add the current frames and labels to ``records``."""
         entries = dict(zip((RGB, DEPTH), checked.frames(self.observation), strict=True))
         if self.clean:
             clean = checked.frames(self.observation.clean)
@@ -137,7 +140,7 @@ class LiveWalk:
         truth: Mapping[str, np.ndarray] = self.world.truth() if self.labels else {}
         entries |= {name: truth[name] for name in self.labels if name in truth}
         # these are copies, because a world may reuse its arrays
-        self.looks.append({name: np.array(value) for name, value in entries.items()})
+        self.records.append({name: np.array(value) for name, value in entries.items()})
 
     def pose(self) -> np.ndarray:
         return checked.pose(self.observation).astype(np.float64)
@@ -159,15 +162,15 @@ def roll_out(
     planner: Planner,
     tokens: Tensor,
     walks: Sequence[Walk],
-    look: Look,
+    perceive: Perceive,
     *,
-    follow_oracle: float,
+    expert_share: float,
     rngs: Sequence[np.random.Generator],
     limit: int = 12,
 ) -> list[Trace]:
     """Run all episodes; each runs until the oracle stops, the limit is reached or the episode ends.
 
-    Each decision follows the oracle with probability ``follow_oracle``; otherwise it is sampled
+    Each decision follows the oracle with probability ``expert_share``; otherwise it is sampled
     from the planner's distribution over ghosts. The planner cannot choose to stop, so that a
     trace continues until the oracle stops.
 
@@ -175,32 +178,32 @@ def roll_out(
         planner: the planner.
         tokens: int64 [E, L], the instructions.
         walks: one :class:`Walk` per episode.
-        look: function that encodes the current panorama of each walk.
-        follow_oracle: probability of following the oracle.
+        perceive: function that encodes the current panorama of each walk.
+        expert_share: probability of following the oracle.
         rngs: one random generator per walk, so that its samples do not depend on the other walks.
         limit: maximum number of decisions.
     """
     graphs = [TopologicalMap() for _ in walks]
     traces = [Trace(walk.episode) for walk in walks]
     text = planner.read(tokens)
-    tokens_of: list[list[Tensor]] = [[] for _ in walks]
+    view_tokens: list[list[Tensor]] = [[] for _ in walks]  # of all decisions, by walk
     running = list(range(len(walks)))
     for _ in range(limit):
-        seen = look([walks[i] for i in running])
-        for i, (views, waypoints) in zip(running, seen, strict=True):
+        perceived = perceive([walks[i] for i in running])
+        for i, (views, waypoints) in zip(running, perceived, strict=True):
             traces[i].views.append(views)
             graphs[i].add(walks[i].pose(), waypoints)
             traces[i].steps.append(oracle(walks[i], graphs[i], graphs[i].decision(walks[i].pose())))
         running = [i for i in running if traces[i].steps[-1].target[0] < 1.0]
-        by_planner = [i for i in running if rngs[i].random() >= follow_oracle]
+        by_planner = [i for i in running if rngs[i].random() >= expert_share]
         chosen = {i: sample(traces[i].steps[-1].target[1:], rngs[i]) for i in running}
-        if follow_oracle < 1.0 and running:
+        if expert_share < 1.0 and running:
             current = torch.from_numpy(np.stack([traces[i].views[-1] for i in running]))
-            view_tokens = planner.look(current.to(tokens.device))
+            embedded = planner.embed_views(current.to(tokens.device))
             for row, i in enumerate(running):
-                tokens_of[i].append(view_tokens[row])
+                view_tokens[i].append(embedded[row])
         if by_planner:
-            sampled = _sample_ghosts(planner, text, by_planner, traces, tokens_of, rngs)
+            sampled = _sample_ghosts(planner, text, by_planner, traces, view_tokens, rngs)
             chosen.update(zip(by_planner, sampled, strict=True))
         for i in running:
             ghost = traces[i].steps[-1].decision.ghosts[chosen[i]]
@@ -218,12 +221,12 @@ def _sample_ghosts(
     text: Any,
     rows: list[int],
     traces: list[Trace],
-    tokens_of: list[list[Tensor]],
+    view_tokens: list[list[Tensor]],
     rngs: Sequence[np.random.Generator],
 ) -> list[int]:
     """Sample a ghost node from the planner's distribution for each episode in ``rows``."""
-    offsets = np.cumsum([0, *(len(tokens_of[i]) for i in rows)])[:-1]
-    views = torch.stack([t for i in rows for t in tokens_of[i]])
+    offsets = np.cumsum([0, *(len(view_tokens[i]) for i in rows)])[:-1]
+    views = torch.stack([token for i in rows for token in view_tokens[i]])
     decisions = [traces[i].steps[-1].decision for i in rows]
     batch = collate(decisions, rows, list(offsets)).to(views.device)
     logits = planner(text, views, batch)["logits"]

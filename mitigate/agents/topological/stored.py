@@ -25,7 +25,7 @@ from scipy.spatial import cKDTree
 from tensordict import tensorclass
 from torch import Tensor
 
-from mitigate.agents.topological.perception import COUNT, select
+from mitigate.agents.topological.perception import MAX_WAYPOINTS, select
 from mitigate.agents.topological.rollout import Piece, roll_out
 from mitigate.core import precision
 from mitigate.core import workers as processes
@@ -114,7 +114,7 @@ class StoredWalk:
         self.landmarks = np.uint64(sum(1 << i for i in world.landmarks(episode)))
         self.landmark_views: list[np.ndarray] = []
 
-    def look(self) -> tuple[np.ndarray, np.ndarray]:
+    def perceive(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the view features and waypoints at the current pose."""
         features = self.features
         waypoints = features.waypoints[self.index]
@@ -207,8 +207,8 @@ class ScenesTask:
         for number, (rgb, depth, seen) in enumerate(frames):
             # the corruption may depend on the heading, as a lens flare does
             observation = {RGB: rgb, DEPTH: depth, POSE: np.zeros(3, np.float32)}
-            drawn = schedule.draw(self.seed, name, number)
-            result = corrupt_observation(observation, *drawn, sensor)
+            corruption, key = schedule.draw(self.seed, name, number)
+            result = corrupt_observation(observation, corruption, key, sensor)
             corrupted.append((result[RGB], result[DEPTH], seen))
         return corrupted
 
@@ -242,21 +242,22 @@ def _features(
     features = {"seen": np.stack(seen).view(np.int64)}  # torch cannot map uint64
     known_rgb, known_depth, _ = zip(*known, strict=True) if known else ((), (), ())
     if [*map(id, rgb)] != [*map(id, known_rgb)]:
-        parts = [agent.encode_rgb(part) for part in _parts(agent, rgb)]
-        views = [torch.cat([view, concepts.sigmoid()], -1) for view, concepts in parts]
+        outputs = [agent.encode_rgb(batch) for batch in _batches(agent, rgb)]
+        views = [torch.cat([view, concepts.sigmoid()], -1) for view, concepts in outputs]
         features[RGB] = torch.cat(views).half().cpu().numpy()
     if [*map(id, depth)] != [*map(id, known_depth)]:
-        parts = [agent.encode_depth(part) for part in _parts(agent, depth)]
-        features[DEPTH] = torch.cat([views for views, _ in parts]).half().cpu().numpy()
-        grids = torch.cat([logits for _, logits in parts]).float().cpu().numpy()
-        features["waypoints"] = np.zeros((len(frames), COUNT, 2), np.float32)
+        outputs = [agent.encode_depth(batch) for batch in _batches(agent, depth)]
+        features[DEPTH] = torch.cat([views for views, _ in outputs]).half().cpu().numpy()
+        grids = torch.cat([logits for _, logits in outputs]).float().cpu().numpy()
+        features["waypoints"] = np.zeros((len(frames), MAX_WAYPOINTS, 2), np.float32)
         for row, grid in enumerate(grids):
             chosen = select(grid)
             features["waypoints"][row, : len(chosen)] = chosen
     return features
 
 
-def _parts(agent: Any, frames: Sequence[np.ndarray]) -> Iterator[Tensor]:
+def _batches(agent: Any, frames: Sequence[np.ndarray]) -> Iterator[Tensor]:
+    """Yield the frames in batches on the agent's device."""
     for first in range(0, len(frames), _BATCH):
         yield torch.from_numpy(np.stack(frames[first : first + _BATCH])).to(agent.device)
 
@@ -293,8 +294,11 @@ class Store:
                 f"variants must be 0 if the schedule has no corruptions, got {variants}. Set a "
                 "schedule such as per_episode."
             )
-        self.agent, self.make_world = agent, world
-        self.schedule, self.variants, self.seed = schedule, variants, seed
+        self.agent = agent
+        self.make_world = world
+        self.schedule = schedule
+        self.variants = variants
+        self.seed = seed
         self.world = world()
         self.size = self.world.sensors[RGB].shape[1]
         perception = (agent.rgb_encoder, agent.depth_encoder, agent.waypoint_head)
@@ -331,8 +335,8 @@ class Store:
         started = processes.count(1 if workers == 0 else workers, len(jobs), WORTH)
         if self.agent.device.type != "cpu":
             started = min(started, ON_GPU)
-        done = len(scenes) - len(jobs)
-        with Progress("stored features", len(scenes), unit="scene", start=done) as progress:
+        stored = len(scenes) - len(jobs)
+        with Progress("stored features", len(scenes), unit="scene", start=stored) as progress:
             for item in processes.results(task, [[job] for job in jobs], started, progress):
                 if item is None:
                     continue
@@ -378,8 +382,8 @@ class Store:
             self.agent.planner,
             self.agent.tokens([e.instruction.text for e in episodes]),
             walks,
-            lambda running: [walk.look() for walk in running],
-            follow_oracle=expert_share,
+            lambda running: [walk.perceive() for walk in running],
+            expert_share=expert_share,
             rngs=rngs,
         )
         goal = np.stack([view for walk in walks for view in walk.landmark_views])

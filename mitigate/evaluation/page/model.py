@@ -14,11 +14,12 @@ from typing import Any
 
 import numpy as np
 
+from mitigate.corruptions import registry
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import LEVEL, NO_WIDTH, RESAMPLES, ROUNDING, Estimate
 from mitigate.evaluation.curves import Curve, curves
 from mitigate.evaluation.grid import METRICS, STEPS
-from mitigate.evaluation.sections import Retained, Section, label
+from mitigate.evaluation.sections import Retained, Section
 
 BASELINES = 12  # maximum number of columns, from the left, that can be the baseline (heuristic)
 # A column has a fixed cost, so it counts as at least this number of values (heuristic).
@@ -73,7 +74,7 @@ def section_data(section: Section) -> dict[str, Any]:
         "corruptions": [
             {
                 "name": name,
-                "title": "Clean" if name == CLEAN else label(name),
+                "title": "Clean" if name == CLEAN else registry.title(name),
                 "block": block,
                 "at": str(0.0 if name == CLEAN else float(at)),
             }
@@ -246,7 +247,11 @@ def curve_figures(parts: Sequence[Section]) -> list[dict[str, Any]]:
     figures: list[dict[str, Any]] = []
     for grid, kind in {id(part.grid): (part.grid, part.kind) for part in parts}.values():
         panels: list[dict[str, Any]] = [
-            {"name": name, "title": label(name), "lines": [_line(curve) for curve in lines]}
+            {
+                "name": name,
+                "title": registry.title(name),
+                "lines": [_line(curve) for curve in lines],
+            }
             for name in grid.corruptions
             if (lines := curves(grid, name, least=2))
         ]

@@ -19,11 +19,10 @@ from matplotlib.figure import Figure
 from mitigate.agents.agent import Agent
 from mitigate.agents.fingerprint import fingerprint
 from mitigate.core.observation import POSE
-from mitigate.corruptions import Corruption
+from mitigate.corruptions import Corruption, registry
 from mitigate.evaluation.episode import instruction
 from mitigate.evaluation.episode_lists import GOLDEN
 from mitigate.evaluation.rows import Row
-from mitigate.evaluation.sections import label
 from mitigate.evaluation.trajectories import DPI, Walk, draw_episode, run_agents
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World, as_world
@@ -138,7 +137,7 @@ def walk_again(
                 "instruction": episode.instruction.text,
                 "heard": instruction(episode, corruption, seed),
                 "corruption": corruption.name,
-                "title": label(corruption.name),
+                "title": registry.title(corruption.name),
                 "severity": corruption.severity,
                 "kind": outcome([walk.won for walk in walks[1:]]),
                 "walks": [

@@ -41,7 +41,9 @@ def views(planner: Planner, panoramas: int) -> torch.Tensor:
 @torch.no_grad()
 def score(planner, decisions, rows, offsets, panoramas, tokens) -> torch.Tensor:
     batch = collate(decisions, rows, offsets)
-    return planner(planner.read(tokens), planner.look(views(planner, panoramas)), batch)["logits"]
+    return planner(planner.read(tokens), planner.embed_views(views(planner, panoramas)), batch)[
+        "logits"
+    ]
 
 
 def split(logits: torch.Tensor, output: Decision, nodes: int) -> tuple[torch.Tensor, torch.Tensor]:

@@ -55,24 +55,24 @@ class RoomWorld:
         return metres < self.rule_metres
 
 
-def look(worlds: list[RoomWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
+def perceive(worlds: list[RoomWorld]) -> list[tuple[torch.Tensor, np.ndarray]]:
     return [(w.views, select(sure(w.space, w.xy, w.heading))) for w in worlds]
 
 
-def traces_of(follow_oracle: float, seed: int = 0, limit: int = 12):
+def traces_of(expert_share: float, seed: int = 0, limit: int = 12):
     agent = wanderer()
     worlds = [RoomWorld(n, sum(agent.planner.widths)) for n in range(5)]
     tokens = Vocabulary().batch([w.episode.instruction.text for w in worlds])
     rngs = [np.random.default_rng([seed, i]) for i in range(len(worlds))]
     output = roll_out(
-        agent.planner, tokens, worlds, look, follow_oracle=follow_oracle, rngs=rngs, limit=limit
+        agent.planner, tokens, worlds, perceive, expert_share=expert_share, rngs=rngs, limit=limit
     )
     return output, worlds
 
 
-@pytest.mark.parametrize("follow_oracle", [1.0, 0.3, 0.0])
-def test_oracle_targets_sum_to_one(follow_oracle):
-    traces, _ = traces_of(follow_oracle)
+@pytest.mark.parametrize("expert_share", [1.0, 0.3, 0.0])
+def test_oracle_targets_sum_to_one(expert_share):
+    traces, _ = traces_of(expert_share)
     assert len(traces) == 5
     for trace in traces:
         assert len(trace.views) == len(trace.steps) > 0
@@ -152,7 +152,7 @@ def test_stored_views_equal_rendered_views(stored):
         rgb, depth, _ = renderer.render(x, y, heading)
         with torch.no_grad():
             seen, _, _ = agent.perceive(*(torch.from_numpy(a)[None] for a in (rgb, depth)))
-        views, _ = world.look()
+        views, _ = world.perceive()
         errors = [
             float(np.abs(np.roll(views, k, 0) - seen[0].float().numpy()).mean())
             for k in range(VIEWS)
@@ -166,7 +166,7 @@ def test_stored_waypoints_do_not_depend_on_the_heading(stored):
     world = StoredWalk(episode, features, ApartmentsWorld(SIZE))
 
     def ends() -> np.ndarray:
-        _, waypoints = world.look()
+        _, waypoints = world.perceive()
         angles = world.pose()[2] - waypoints[:, 0]
         return waypoints[:, 1:] * np.stack([-np.sin(angles), np.cos(angles)], 1)
 

@@ -9,8 +9,8 @@ import pytest
 from mitigate.agents.controller import Controller
 from mitigate.agents.topological.perception import (
     ANGLES,
-    COUNT,
     LONGEST,
+    MAX_WAYPOINTS,
     SHORTEST,
     YAWS,
     select,
@@ -94,7 +94,7 @@ def test_free_directions_turns_against_the_heading(quarters):
 def test_select_gives_free_separate_waypoints(heading):
     space, xy = room(6, 4), np.array([2.0, 1.5])
     chosen = select(sure(space, xy, heading))
-    assert 3 <= len(chosen) <= COUNT and chosen.dtype == np.float32
+    assert 3 <= len(chosen) <= MAX_WAYPOINTS and chosen.dtype == np.float32
     for yaw, metres in chosen:
         assert SHORTEST <= metres <= LONGEST
         angle = heading - yaw

@@ -13,7 +13,7 @@ from mitigate.core import checkpoint
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.episode import run_episode
 from mitigate.evaluation.episode_lists import training_episodes
-from mitigate.evaluation.evaluator import EpisodeTask
+from mitigate.evaluation.evaluator import EpisodeJob, EpisodeTask
 from mitigate.guards.adaptation.norm import Norm
 from mitigate.guards.adaptation.recentre import Recentre
 from mitigate.guards.adaptation.tent import Tent
@@ -245,7 +245,8 @@ def test_agent_caches_no_features_while_a_guard_adapts_it():
     agent.remembering = lambda: pytest.fail("the agent caches features")
     task = EpisodeTask(agent, world, Guards([Norm()]))
     with task.ready():
-        assert [row["steps"] for row in task.work([(EPISODES[0], DARK, {"seed": 0})])] == [5]
+        jobs = [EpisodeJob(EPISODES[0], DARK, {"seed": 0})]
+        assert [row["steps"] for row in task.work(jobs)] == [5]
 
 
 ARGUMENTS = {"world": world, "listed": EPISODES, "suite": ["low_light", "spatter"], "severity": 0.8}
