@@ -209,18 +209,18 @@ def _entry(line: str, folder: Path, agent: Any, around: list[str]) -> Entry:
     turns = stored.get("conversations")
     if not isinstance(turns, list) or [_part(turn, "from") for turn in turns] != ["human", "gpt"]:
         raise ValueError("'conversations' must hold one question (human) and one answer (gpt).")
-    asked, answered = (_part(turn, "value") for turn in turns)
-    if asked.count(IMAGE) not in (0, len(images)):
+    user_text, answered = (_part(turn, "value") for turn in turns)
+    if user_text.count(IMAGE) not in (0, len(images)):
         raise ValueError(
-            f"the question has {asked.count(IMAGE)} times {IMAGE} for {len(images)} images."
+            f"the question has {user_text.count(IMAGE)} times {IMAGE} for {len(images)} images."
         )
     before, after = around
-    text = asked.replace(IMAGE, "").strip()
+    text = user_text.replace(IMAGE, "").strip()
     fits = len(text) >= len(before) + len(after)
     if not (fits and text.startswith(before) and text.endswith(after)):
         raise ValueError(
             f"the question does not fit agent.task. Set agent.task to the text of the questions, "
-            f"with {{instruction}}. The question is {json.dumps(asked)[:300]}"
+            f"with {{instruction}}. The question is {json.dumps(user_text)[:300]}"
         )
     instruction = text[len(before) : len(text) - len(after)].strip()
     if len(instruction) > MOST_TEXT:

@@ -77,14 +77,14 @@ def _negative(value: str) -> str:
     return number[1:] if number.startswith("-") else f"-{number}" if number[0].isdigit() else number
 
 
-def _rounds(shown: str, full: str) -> bool:
-    """Return whether ``shown`` is ``full``, perhaps with fewer decimal places."""
+def _rounds(printed: str, full: str) -> bool:
+    """Return whether ``printed`` is ``full``, perhaps with fewer decimal places."""
     bounds = "<>≤≥"
-    if (shown[0] in bounds or full[0] in bounds) and shown[0] != full[0]:
+    if (printed[0] in bounds or full[0] in bounds) and printed[0] != full[0]:
         return False
-    shown, full = shown.lstrip(f"{bounds} "), full.lstrip(f"{bounds} ")
-    places = len(shown.partition(".")[2])
-    return abs(float(shown) - float(full)) <= 0.5 * 10.0**-places + 1e-9
+    printed, full = printed.lstrip(f"{bounds} "), full.lstrip(f"{bounds} ")
+    places = len(printed.partition(".")[2])
+    return abs(float(printed) - float(full)) <= 0.5 * 10.0**-places + 1e-9
 
 
 def figures(text: str) -> list[Figure]:
@@ -95,8 +95,8 @@ def figures(text: str) -> list[Figure]:
 
 def commands(text: str) -> list[str]:
     """Return the commands in a text that print tables of stored rows."""
-    found = (COMMAND.match(line) for line in text.splitlines())
-    return [match[1].partition("  #")[0].strip() for match in found if match]
+    matches = (COMMAND.match(line) for line in text.splitlines())
+    return [match[1].partition("  #")[0].strip() for match in matches if match]
 
 
 def run(command: str) -> list[Figure]:

@@ -334,8 +334,8 @@ class Connection:
         indices = None if chosen is None else chosen.keep(names, least)
         number = count if indices is None else len(indices)
         # with least == 0, the names come from ``wanted``: the program runs exactly these episodes
-        wanted = None if least else number
-        write_event(self.folder, event="dataset", episodes=count, wanted=wanted)
+        expected = None if least else number
+        write_event(self.folder, event="dataset", episodes=count, wanted=expected)
         return {"keep": indices}
 
     def on_adapted(self, message: Mapping[str, Any]) -> dict[str, Any]:

@@ -294,11 +294,11 @@ def _episodes(
     split: str | None,
     count: int | EllipsisType | None,
     listed: Sequence[Episode] | Path | str | None,
-    own: bool,
+    is_own: bool,
 ) -> tuple[str, list[Episode]]:
-    """Return the split and the episodes to run; ``own`` is the result of :func:`_is_own`."""
-    split = split or (provenance.name_of(world) if own else config.split)
-    if listed is None and own:
+    """Return the split and the episodes to run; ``is_own`` is the result of :func:`_is_own`."""
+    split = split or (provenance.name_of(world) if is_own else config.split)
+    if listed is None and is_own:
         raise ValueError(
             f"The episodes of {config.env.name} cannot run in {provenance.name_of(world)}. Pass "
             'episodes of your world: listed="mine.json", or a list of Episode (docs/bring-your-own'

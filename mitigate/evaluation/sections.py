@@ -221,9 +221,9 @@ class Section:
         pair, severity, key = (column, self.reference), self.severity, METRICS["SR"]
         changes = {}
         if retentions := self.grid.retention([column], (corruption,), severity, key):
-            own = retentions[0]
-            change = bootstrap.mean(own.corrupted[0] - own.clean, units=own.units)
-            changes["clean"] = Retained(change, own.corruptions, len(own.clean), False)
+            pairs = retentions[0]
+            change = bootstrap.mean(pairs.corrupted[0] - pairs.clean, units=pairs.units)
+            changes["clean"] = Retained(change, pairs.corruptions, len(pairs.clean), False)
         both = self.grid.paired(pair, severity) if column != self.reference else None
         if both and (retentions := both.retention(pair, (corruption,), severity, key)):
             changes[self.reference] = _mean_sr(retentions)

@@ -305,8 +305,10 @@ def _check_settings(method: str, settings: Iterable[str]) -> None:
     """Raise ValueError for a name in ``settings`` that the class of ``method`` does not take."""
     known = [name for name in signature(METHODS[method]).parameters if name not in OWN]
     if others := sorted(set(settings) - set(known)):
-        own = [name for name in signature(harden).parameters if name != "settings"]
-        raise ValueError(unknown(f"argument of harden(method={method!r})", others[0], own + known))
+        shared = [name for name in signature(harden).parameters if name != "settings"]
+        raise ValueError(
+            unknown(f"argument of harden(method={method!r})", others[0], shared + known)
+        )
 
 
 def _advise(report: Comparison, chosen: str, tune: str) -> None:

@@ -23,7 +23,7 @@ from mitigate.evaluation import rows as result_rows
 from mitigate.evaluation.leaderboard.entry import LeaderboardEntry, load
 from mitigate.evaluation.leaderboard.figures import entry_of, left_out
 from mitigate.evaluation.page import document
-from mitigate.evaluation.page.command import written
+from mitigate.evaluation.page.command import description
 from mitigate.evaluation.rows import Row
 
 FOLDER = "docs/leaderboard"
@@ -222,5 +222,5 @@ def main(argv: Sequence[str] | None = None) -> int:
         wrong = check(**options)
         print("\n".join(wrong), end="\n" * bool(wrong))
         return int(bool(wrong))
-    print(written(show(**options) if what == "show" else add(**options)))
+    print(description(show(**options) if what == "show" else add(**options)))
     return 0

@@ -160,10 +160,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         if not shipped.is_dir():
             raise FileNotFoundError(f"There is no folder {ROWS}. Name row files or run folders.")
         paths = [shipped]
-    print(written(run(paths, options=options, **arguments)))
+    print(description(run(paths, options=options, **arguments)))
     return 0
 
 
-def written(page: Path) -> str:
+def description(page: Path) -> str:
     """Return a text that states the path and the size of a page."""
     return f"wrote {page} ({page.stat().st_size / 1e6:.1f} MB)"

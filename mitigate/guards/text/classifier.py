@@ -37,12 +37,12 @@ _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")
 _SIGNS = re.compile(r"[<>{}\[\]|=_\\`#]|//|\(\)")
 
 
-def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
+def terms(clause: Decoded, original: str, block: bool) -> Counter[int]:
     """Return the counts of a clause's hashed terms.
 
     Terms are words, pairs of words, groups of letters, punctuation, and marks of hidden text.
     """
-    lower = said.text.lower().replace("’", "'")
+    lower = clause.text.lower().replace("’", "'")
     tokens = [
         t if not t.isdigit() else ("#" if len(t) < 3 else "###") for t in _TOKEN.findall(lower)
     ]
@@ -50,7 +50,7 @@ def terms(said: Decoded, original: str, block: bool) -> Counter[int]:
     names = [f"p {a} {b}" for a, b in zip(["^", *words], [*words, "$"], strict=True)]
     names += [f"s {a} {c}" for a, c in zip(words, words[2:], strict=False)]
     names += [f"m {t}" for t in tokens if not t[0].isalnum()]
-    names += [f"= {mark}" for mark in said.marks]
+    names += [f"= {mark}" for mark in clause.marks]
     if block:
         names.append("= block")
     if len(_CAPITALS.findall(original)) > 1:
@@ -163,10 +163,10 @@ class Classifier:
         return float(self.arrays["style"][index] @ value) / norm + self.style_bias > 0
 
 
-def weighted(found: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the indices of the terms in ``found`` and their TF-IDF values."""
-    index = np.fromiter(found, np.int64, len(found))
-    count = np.fromiter(found.values(), np.float32, len(found))
+def weighted(counts: Mapping[int, int], idf: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the indices of the terms in ``counts`` and their TF-IDF values."""
+    index = np.fromiter(counts, np.int64, len(counts))
+    count = np.fromiter(counts.values(), np.float32, len(counts))
     return index, (1 + np.log(count)) * idf[index] if len(index) else count
 
 

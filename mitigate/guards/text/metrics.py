@@ -66,7 +66,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
     problems = [bool(check(r.clean, r.repaired)) for r in repairs]
     directions = [facts(r.clean).directions == facts(r.repaired).directions for r in repairs]
     landmark_counts = [_landmarks_kept(r) for r in repairs]
-    kept = sum(part for part, _ in landmark_counts)
+    kept_count = sum(part for part, _ in landmark_counts)
     landmarks = sum(total for _, total in landmark_counts)
     removed = [left(text, r.repaired) < REMAINS for r in repairs for text in r.injected]
     clean = [problem for r, problem in zip(repairs, problems, strict=True) if r.family == CLEAN]
@@ -76,7 +76,7 @@ def score(repairs: Sequence[Repair]) -> Scores:
         token_f1=_mean([token_f1(r.clean, r.repaired) for r in repairs]),
         chrf=chrf.score / 100,
         directions=_mean(directions),
-        landmarks=kept / landmarks if landmarks else None,
+        landmarks=kept_count / landmarks if landmarks else None,
         faithful=1 - _mean(problems),
         removed=_mean(removed) if removed else None,
         changed=_mean(clean) if clean else None,

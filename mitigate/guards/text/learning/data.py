@@ -113,7 +113,7 @@ def _attacked(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
 def _styled(clean: str, key: Key, rng: np.random.Generator) -> Pair | None:
     manner = str(rng.choice(MANNERS))
     source = corrupt_instruction(clean, manner, 1.0, key, split="train")
-    commands = [_told(clause) for clause in clauses(clean)]
+    commands = [_sentence(clause) for clause in clauses(clean)]
     if source == clean or holds_held_out(source, manner):
         return None
     aligned = _align(commands, _SENTENCE.split(source))
@@ -175,7 +175,7 @@ def held_out(manner: str) -> list[re.Pattern[str]]:
     ]
 
 
-def _told(clause: Any) -> str:
+def _sentence(clause: Any) -> str:
     text = f"{clause.when}, {clause.main}" if clause.when else clause.main
     return text[:1].upper() + text[1:] + "."
 

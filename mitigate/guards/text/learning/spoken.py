@@ -43,7 +43,9 @@ def texts() -> tuple[Parts, ...]:
     """Return the parts of each training text."""
     files = [file for file in sorted(find(FOLDER).glob("*.jsonl")) if file.stem not in EXCLUDED]
     lines = [line for file in files for line in file.read_text(encoding="utf-8").splitlines()]
-    return tuple(tuple((said, plain) for said, plain in json.loads(x)["parts"]) for x in lines)
+    return tuple(
+        tuple((original, plain) for original, plain in json.loads(x)["parts"]) for x in lines
+    )
 
 
 def passage(rng: np.random.Generator) -> tuple[str, str]:

@@ -68,10 +68,10 @@ def draw_styled(rng: np.random.Generator) -> str:
         text += "?"
     text = re.sub(r"(^|[.!?]\s+)([a-z])", lambda m: m[1] + m[2].upper(), text)
     text += "" if could_ask or rng.random() < 0.15 else one((".", ".", ".", "!"))
-    return _written(text, rng.random(), rng)
+    return _typed(text, rng.random(), rng)
 
 
-def _written(text: str, draw: float, rng: np.random.Generator) -> str:
+def _typed(text: str, draw: float, rng: np.random.Generator) -> str:
     """Imitate telegrams, chat messages or careless writing."""
     if draw < 0.08:
         return text.upper()
