@@ -146,7 +146,7 @@ def test_evaluations_can_be_selected(tmp_path, option):
     ],
 )
 def test_error_is_reported_once_before_any_cell_runs(tmp_path, monkeypatch, option, message):
-    monkeypatch.setattr(tables, "make", lambda output, cfg: pytest.fail("cells are run"))
+    monkeypatch.setattr(tables, "_make_cells", lambda output, cfg: pytest.fail("cells are run"))
     cfg = load("table1", f"out={tmp_path / 'out'}", option, *less("table1", KEPT))
     with pytest.raises(ValueError, match=message):
         tables.make_table(cfg)
