@@ -198,11 +198,14 @@ def hole_map(value: int, severity: float, height: int, width: int) -> np.ndarray
     return np.tile(holes.astype(np.uint8) + far, 2)
 
 
+@lru_cache(maxsize=64)  # several frames have the same holes
+def _hole_streams(seed: int, episode: str, placement: int, views: int) -> np.ndarray:
+    return view_streams(Key(seed, episode, placement), "missing_offset", views)
+
+
 def hole_streams(key: Key, views: int) -> np.ndarray:
     """Return the digest that determines the offset of ``hole_map`` in each view, uint64 [views]."""
-    # the offset is the same for HOLE_FRAMES frames
-    placement = Key(key.seed, key.episode, int(key.frame) // HOLE_FRAMES)
-    return view_streams(placement, "missing_offset", views)
+    return _hole_streams(int(key.seed), str(key.episode), int(key.frame) // HOLE_FRAMES, views)
 
 
 @njit(cache=True)

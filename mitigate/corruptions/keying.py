@@ -166,10 +166,17 @@ def mix(value, counter):
     return z ^ (z >> _S31)
 
 
+@njit(cache=True)
+def _fill_streams(value, out):
+    for view in range(out.size):
+        out[view] = mix(value, _U(view))
+
+
 def view_streams(key: Key, name: str, views: int) -> np.ndarray:
     """Return one seed per view of a frame for the random stream ``name``, uint64 [views]."""
-    value = digest(key, name, frame=True)
-    return np.array([scramble(value, view) for view in range(views)], np.uint64)
+    out = np.empty(views, np.uint64)
+    _fill_streams(_U(digest(key, name, frame=True)), out)
+    return out
 
 
 def unit_normals(bits: int) -> np.ndarray:
