@@ -216,7 +216,7 @@ class OnViews(OnSource):
 
     sources: ClassVar[Mapping[str, Callable[..., Any]]] = {"poses": Poses}
     ahead = True
-    needs = SEEING
+    needs: ClassVar[tuple[str, ...]] = SEEING
     otherwise = VIEWS_ALONE
     poses: Poses
 

@@ -11,6 +11,7 @@ from __future__ import annotations
 import copy
 import re
 from collections.abc import Mapping, Sequence
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
@@ -46,7 +47,7 @@ from mitigate.core.pretrained import (
     load_network,
     local_folder,
 )
-from mitigate.core.progress import Progress
+from mitigate.core.progress import Progress, say
 from mitigate.worlds.episodes import Episode
 from mitigate.worlds.world import World
 
@@ -54,6 +55,7 @@ INSTALL = "pip install -e '.[train,vlm]'"
 CONFIG, BASE = "adapter_config.json", "base.json"  # files of a saved agent, next to its weights
 # maximum number of decisions in a training rollout (heuristic), as for the recurrent agent
 LIMIT = 90
+ALL_LINEAR = "all-linear"  # PEFT's name for all linear modules, instead of a list
 
 
 class VLMAgent(AnsweringAgent, nn.Module):
@@ -67,7 +69,9 @@ class VLMAgent(AnsweringAgent, nn.Module):
         precision: precision of the frozen weights, one of ``PRECISIONS`` ("int8" and "nf4" need
             bitsandbytes).
         lora: ``r``, ``alpha``, ``dropout``, and names of linear modules: ``language`` lists modules
-            of the language model, and ``vision`` lists other modules. If None, no LoRA is added.
+            of the language model, and ``vision`` lists modules of the image encoder and the
+            projector. Instead of a list, "all-linear" selects all of them. If None, no LoRA is
+            added.
         answers, history, task, system_prompt: see ``AnsweringAgent``.
         images: keyword arguments of the image processor, such as ``{"max_pixels": 100352}``.
         checkpointing: whether the backward pass computes each decision a second time, so that
@@ -103,7 +107,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
         if adapters:
             raise ValueError(
                 "A vision-language agent trains LoRA weights (agent.lora) instead of adapters, so "
-                "recipe=harden, conv_adapter and stacked do not fit (docs/vlm.md)."
+                "recipe=harden, conv_adapter and stacked do not fit. Choose recipe=harden_vlm "
+                "(docs/vlm.md)."
             )
         if not model:
             raise ValueError(
@@ -193,11 +198,13 @@ class VLMAgent(AnsweringAgent, nn.Module):
             raise ValueError(
                 f"{self.model} has no chat template: choose an instruction-tuned model."
             )
+        # the processor logs a warning if its template does not use the date
+        uses_date = "date_string" in str(self.processor.chat_template)
         text = self.processor.apply_chat_template(
             messages,
             tokenize=False,
             add_generation_prompt=generation,
-            date_string=TEMPLATE_DATE,
+            **({"date_string": TEMPLATE_DATE} if uses_date else {}),
         )
         return str(text)
 
@@ -290,6 +297,28 @@ class VLMAgent(AnsweringAgent, nn.Module):
         logits = torch.stack(rows)
         return Output(logits, figures=stop_figures(logits, decisions.target))
 
+    def image_tokens(self, frames: Tensor) -> Tensor:
+        """Return the tokens [n, d] that the language model receives for ``frames``.
+
+        Args:
+            frames: uint8 [V, H, W, 3].
+        """
+        # the processor accepts images only together with a prompt
+        inputs = self._inputs("", None, list(frames.cpu().numpy()))
+        encode = self.network.get_image_features
+        accepted = signature(encode).parameters
+        output = encode(**{name: value for name, value in inputs.items() if name in accepted})
+        tokens = output if isinstance(output, Tensor | list | tuple) else output.pooler_output
+        if isinstance(tokens, Tensor):
+            return tokens.flatten(0, -2)
+        return torch.cat([each.flatten(0, -2) for each in tokens])  # one tensor per image
+
+    def image_lora(self) -> list[nn.Parameter]:
+        """Return the LoRA weights of the image encoder and the projector."""
+        language = {id(p) for p in self.network.get_decoder().parameters()}
+        named = self.network.named_parameters()
+        return [p for name, p in named if LORA in name and id(p) not in language]
+
     def as_teacher(self) -> VLMAgent:
         """Return a copy of the agent that shares the frozen weights and the processor."""
         frozen = [p for name, p in self.network.named_parameters() if LORA not in name]
@@ -315,6 +344,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
     def load(self, folder: str | Path) -> None:
         """Load LoRA weights from a PEFT folder.
 
+        Modules of ``agent.lora`` without weights in the folder keep their original output.
+
         Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
         weights are damaged, or were trained for a different base model or for other modules.
         """
@@ -335,17 +366,25 @@ class VLMAgent(AnsweringAgent, nn.Module):
                     f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to the "
                     "model on which the adapter was trained."
                 )
-        tensors = load_tensors(file)
-        shapes, expected = (
-            {(name, value.shape) for name, value in each.items()}
-            for each in (tensors, self._adapter())
-        )
-        if wrong := sorted({name for name, _ in shapes ^ expected}):
+        tensors, expected = load_tensors(file), self._adapter()
+        added = expected.keys() - tensors.keys()
+        wrong = {name for name in tensors if name not in expected}
+        wrong |= {n for n in tensors.keys() & expected if tensors[n].shape != expected[n].shape}
+        # the two matrices of a module must both be present or both be missing
+        wrong |= {name for name in added if _partner(name) not in added}
+        if wrong or not tensors:
             raise ValueError(
                 f"{file} does not fit agent.lora: {len(wrong)} tensors are missing, unknown or of "
-                f"another shape ({', '.join(wrong[:3])} ...). Copy r and modules from its {CONFIG}."
+                f"another shape ({', '.join(sorted(wrong)[:3])} ...). Copy r and modules from its "
+                f"{CONFIG}."
             )
-        set_peft_model_state_dict(self.network, tensors)
+        if added:
+            say(
+                f"{folder} has no LoRA weights for {len(added) // 2} modules of agent.lora; these "
+                "start without an effect"
+            )
+        new = {n: torch.zeros_like(expected[n]) if "lora_B" in n else expected[n] for n in added}
+        set_peft_model_state_dict(self.network, {**tensors, **new})
 
     def _base(self) -> str:
         return bytes(self.base_sha256.tolist()).hex()
@@ -409,8 +448,14 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
     return (each * mask).sum(-1)
 
 
+def _partner(name: str) -> str:
+    """Return the name of a LoRA module's other matrix."""
+    other = {"lora_A": "lora_B", "lora_B": "lora_A"}
+    return re.sub("lora_[AB]", lambda match: other[match[0]], name)
+
+
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
-    """Add LoRA to those linear modules of ``network`` whose names are listed in ``lora``.
+    """Add LoRA to the linear modules of ``network`` that ``lora`` selects.
 
     Raises ValueError if a name matches no module.
     """
@@ -424,6 +469,9 @@ def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:
         inside = [
             n for n, m in linear if m is not head and (id(m) in language) == (part == "language")
         ]
+        if lora.get(part) == ALL_LINEAR:
+            targets += inside
+            continue
         for name in lora.get(part) or ():
             matching = [place for place in inside if place.rpartition(".")[2] == name]
             if not matching:

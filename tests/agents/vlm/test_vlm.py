@@ -287,6 +287,26 @@ def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model
         agent.load(tmp_path)
 
 
+def test_modules_without_weights_in_the_folder_start_without_an_effect(model, tmp_path, capfd):
+    agent = build(model)
+    with torch.no_grad():
+        for name, parameter in agent.named_parameters():
+            if "lora_B" in name:
+                parameter.fill_(0.1)
+    agent.save(tmp_path / "a")
+    wider = VLMAgent(model, lora={**LORA, "vision": "all-linear"}, history=2).eval()
+    with torch.no_grad():
+        for parameter in wider.image_lora():
+            parameter.fill_(0.1)
+    wider.load(tmp_path / "a")
+    assert "no LoRA weights for 13 modules" in capfd.readouterr().out
+    with torch.no_grad():
+        assert torch.equal(wider.logits(memory(3)), agent.logits(memory(3)))
+    wider.save(tmp_path / "b")
+    with pytest.raises(ValueError, match="does not fit agent.lora"):
+        agent.load(tmp_path / "b")  # it would lose the weights of the image encoder
+
+
 @pytest.mark.slow
 def test_load_fills_an_agent_of_python_and_explains_a_missing_one(model, tmp_path):
     agent = build(model)
