@@ -30,6 +30,11 @@ _POLITE = re.compile(
     r"|\b(?:grateful|glad|obliged|kind|delighted|appreciate it) (?:if|enough)\b|\bonce more\b"
     r"|\bbefore (?:you|too long|i forget)\b(?= (?:go|start|know))"
 )
+# "after this, turn left" means "then turn left"; "after this door" is a condition
+_NEXT = re.compile(
+    r"\bafter (?:this|that|which|doing so)"
+    r"(?=,|;| (?:you|we|please|kindly|just|simply)\b)"
+)
 
 
 def words(text: str) -> list[str]:
@@ -73,7 +78,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     problems = [p for p in check(plain, rewrite) if not _is_aside(p, plain)]
     if problems:
         return problems[0]
-    before = Counter(words(_POLITE.sub(" ", plain.lower())))
+    before = Counter(words(_NEXT.sub(" ", _POLITE.sub(" ", plain.lower()))))
     lost = [word for word in sorted(_CONDITIONS) if before[word] > Counter(words(rewrite))[word]]
     return f"condition lost: {', '.join(lost)}" if lost else ""
 

@@ -46,6 +46,18 @@ def test_rewrite_refused_keeps_conditions_and_the_last_stop():
     assert "directions" in rewrite_refused("And there is your sofa.", "Stop at the sofa.")
 
 
+def test_rewrite_refused_distinguishes_after_this_from_after_a_landmark():
+    for text in (
+        "After this, turn left.",
+        "After that you make a left.",
+        "Following this, go left.",
+    ):
+        assert rewrite_refused(text, "Turn left.") == ""
+    assert "condition" in rewrite_refused(
+        "After this door, turn left at it.", "Turn left at the door."
+    )
+
+
 def test_rewrite_accepts_empty_answer_only_without_facts():
     assert rewrite_refused("Hello there, my friend!", "") == ""
     assert rewrite_refused("Turn left, my friend!", "")
