@@ -26,8 +26,8 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the repair rules; increase it whenever the repair of any text changes
-VERSION = "15"
-ANSWERS = "3"  # version of the rules for accepting answers of a language model
+VERSION = "16"
+ANSWERS = "4"  # version of the rules for accepting answers of a language model
 
 
 def current(choice: str) -> str:

@@ -152,6 +152,11 @@ class _Draft:
         if len(text) > READ:
             text = _beginning(text)
             self.reasons.append(f"longer than {READ:,} characters: only the beginning is kept")
+        # before the search for attacks, because the classifier takes many masks for an attack
+        filled = rules.fill_masks(text) if rules.MASK.search(text) else text
+        if filled != text:
+            self.reasons.append("masks filled by rule")
+            text = filled
         text, removed, refusals = take_out(text, classifier)
         self.reasons += refusals
         if removed:
@@ -197,15 +202,10 @@ class _Draft:
             self.text = text
 
     def decision(self, seconds: float) -> Decision:
-        text = self.text
-        if rules.MASK.search(text):
-            text = rules.fill_masks(text)
-            if text != self.text:
-                self.reasons.append("masks filled by rule")
         route = "model" if self.accepted else "fallback" if self.requested else "classifier"
-        if text == self.original and not self.requested:
+        if self.text == self.original and not self.requested:
             route = "clean"
-        return Decision(self.original, text, route, tuple(self.reasons), seconds)
+        return Decision(self.original, self.text, route, tuple(self.reasons), seconds)
 
 
 def _beginning(text: str) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import time
+from pathlib import Path
 
 import pytest
 
@@ -201,6 +202,17 @@ def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
     hidden = "Turn [MASK] at the sofa, then stop."
     # the masked word is a direction, which no function word can replace
     assert safeguard.canonicalise(hidden).text == hidden
+
+
+@pytest.mark.parametrize("kind", ["mask", "capitalize"])
+def test_canonicalise_keeps_routes_with_masked_words_or_capitals(safeguard, kind):
+    lines = (Path(__file__).parent / "handwritten.txt").read_text("utf-8").splitlines()
+    routes = [line for line in lines if not line.startswith("#")]
+    for severity in (0.5, 1.0):
+        heard = [corrupt_instruction(r, kind, severity, str(i)) for i, r in enumerate(routes)]
+        decisions = safeguard.canonicalise_all(heard)
+        cut = [d.original for d in decisions if any("removed" in r for r in d.reasons)]
+        assert len(cut) <= 0.03 * len(routes), cut
 
 
 def test_canonicalise_repairs_the_suites_attacks(safeguard):
