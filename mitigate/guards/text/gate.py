@@ -30,6 +30,8 @@ _POLITE = re.compile(
     r"|\b(?:grateful|glad|obliged|kind|delighted|appreciate it) (?:if|enough)\b|\bonce more\b"
     r"|\bbefore (?:you|too long|i forget)\b(?= (?:go|start|know))"
 )
+# "pass into a room", which the suite's styles write as "past into", means "enter a room"
+_ENTER = re.compile(r"\bpass(?:ing|es)? into\b|\bpast into\b")
 # "after this, turn left" means "then turn left"; "after this door" is a condition
 _NEXT = re.compile(
     r"\bafter (?:this|that|which|doing so)"
@@ -72,7 +74,8 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
         return "no answer in time"
     if len(rewrite) > longest(heard) or len(words(rewrite)) > len(words(heard)) + LONGER:
         return "longer than what it replaces"
-    plain = heard.replace("[MASK]", "the")
+    plain = _ENTER.sub("into", heard.replace("[MASK]", "the"))
+    rewrite = _ENTER.sub("into", rewrite)
     if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:
         plain = f"{plain.rstrip(' .!?;,')}, and stop."
     problems = [p for p in check(plain, rewrite) if not _is_aside(p, plain)]
