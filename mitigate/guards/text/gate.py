@@ -32,6 +32,7 @@ _POLITE = re.compile(
 )
 # "pass into a room", which the suite's styles write as "past into", means "enter a room"
 _ENTER = re.compile(r"\bpass(?:ing|es)? into\b|\bpast into\b")
+_LEAVE = re.compile(r"\b(?:exit|egress|depart|leave)(?:s|ing)?\b")
 # "after this, turn left" means "then turn left"; "after this door" is a condition
 _NEXT = re.compile(
     r"\bafter (?:this|that|which|doing so)"
@@ -78,7 +79,7 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     rewrite = _ENTER.sub("into", rewrite)
     if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:
         plain = f"{plain.rstrip(' .!?;,')}, and stop."
-    problems = [p for p in check(plain, rewrite) if not _is_aside(p, plain)]
+    problems = [p for p in check(plain, rewrite) if not _is_harmless(p, plain)]
     if problems:
         return problems[0]
     before = Counter(words(_NEXT.sub(" ", _POLITE.sub(" ", plain.lower()))))
@@ -86,11 +87,14 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     return f"condition lost: {', '.join(lost)}" if lost else ""
 
 
-def _is_aside(problem: str, heard: str) -> bool:
-    """Return whether ``problem`` reports a lost word that is probably not a landmark.
+def _is_harmless(problem: str, heard: str) -> bool:
+    """Return whether ``problem`` does not change the meaning.
 
-    A lost word is probably not a landmark if it is unknown and no article precedes it.
+    A lost word is probably not a landmark if it is unknown and no article precedes it. Verbs such
+    as "exit" imply "out".
     """
+    if problem == "relation invented: out":
+        return bool(_LEAVE.search(heard.lower()))
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False

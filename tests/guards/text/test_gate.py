@@ -65,6 +65,11 @@ def test_rewrite_refused_reads_pass_into_as_enter():
     assert "relation" in rewrite_refused("Walk past the office.", "Walk into the office.")
 
 
+def test_rewrite_refused_accepts_out_only_for_verbs_of_leaving():
+    assert rewrite_refused("Egress through the doorway.", "Go out through the doorway.") == ""
+    assert "relation" in rewrite_refused("Go through the doorway.", "Go out through the doorway.")
+
+
 def test_rewrite_accepts_empty_answer_only_without_facts():
     assert rewrite_refused("Hello there, my friend!", "") == ""
     assert rewrite_refused("Turn left, my friend!", "")
