@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
 from typing import Any
 
 import torch
 from torch import nn
 
 from mitigate.training.objective import Objective, split_arguments
+from mitigate.training.trainer import Trainer
 
 
 class TinyAgent(nn.Module):
@@ -68,3 +70,16 @@ def assemble(kind: type[Objective], agent: Any, **arguments: Any) -> Any:
     if parameter:
         own_value[parameter] = kind.sources[parameter](agent=agent, **others)
     return kind(agent=agent, **own_value)
+
+
+def fit(objective: Any, folder: Path, steps: int, *, stop: int | None = None, lr: float) -> Any:
+    """Train on the CPU in fp32, save at every step, and return the agent.
+
+    With ``stop``, training ends after this step, as if it was interrupted.
+    """
+    trainer = Trainer(
+        objective, steps=steps, folder=folder, lr=lr, device="cpu", precision="fp32", save_every=1
+    )
+    trainer.steps = stop or steps
+    trainer.fit()
+    return objective.agent.eval()

@@ -14,11 +14,10 @@ from mitigate.core.seeding import seed_everything
 from mitigate.corruptions import Schedule
 from mitigate.recipes.distil_images import DistilImages
 from mitigate.training import train
-from mitigate.training.trainer import Trainer
 from mitigate.worlds.apartments.tasks import DrawnEpisodes
 from mitigate.worlds.apartments.world import ApartmentsWorld
 from tests.agents.vlm.tiny_models import ARCHITECTURES, write_model
-from tests.tiny import assemble
+from tests.tiny import assemble, fit
 
 LORA = {"r": 4, "alpha": 4, "language": ["q_proj"], "vision": "all-linear"}
 
@@ -52,14 +51,8 @@ def objective(agent, **arguments):
     )
 
 
-def fit(agent, folder, steps: int, stop: int | None = None):
-    trainer = Trainer(
-        objective(agent), steps=steps, folder=folder, lr=5e-3, device="cpu", precision="fp32",
-        save_every=1,
-    )  # fmt: skip
-    trainer.steps = stop or steps
-    trainer.fit()
-    return agent.eval()
+def train_images(agent, folder, steps: int, stop: int | None = None):
+    return fit(objective(agent), folder, steps, stop=stop, lr=5e-3)
 
 
 @pytest.mark.parametrize(
@@ -72,7 +65,7 @@ def test_corrupted_views_come_closer_to_the_clean_image_tokens(folder_of, name, 
     with torch.no_grad():
         first = objective(agent)(unseen)["feat"]
     assert first > 0  # the teacher sees clean views, and the student corrupted ones
-    fit(agent, tmp_path, 12)
+    train_images(agent, tmp_path, 12)
     moved = {n for n, p in agent.named_parameters() if not torch.equal(p, before[n])}
     images = {id(p) for p in agent.image_lora()}
     assert moved and moved <= {n for n, p in agent.named_parameters() if id(p) in images}
@@ -102,9 +95,9 @@ def test_image_tokens_are_those_that_the_language_model_receives(folder_of, monk
 @pytest.mark.slow
 def test_resumed_training_gives_the_same_bits(folder_of, tmp_path):
     model = folder_of("idefics3")
-    whole = fit(build(model), tmp_path / "whole", 2)
-    fit(build(model), tmp_path / "parts", 2, stop=1)
-    resumed = fit(build(model), tmp_path / "parts", 2)
+    whole = train_images(build(model), tmp_path / "whole", 2)
+    train_images(build(model), tmp_path / "parts", 2, stop=1)
+    resumed = train_images(build(model), tmp_path / "parts", 2)
     assert checkpoint.weights_sha(resumed) == checkpoint.weights_sha(whole)
 
 

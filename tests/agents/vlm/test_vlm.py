@@ -24,11 +24,10 @@ from mitigate.corruptions import CLEAN, Corruption, Schedule
 from mitigate.evaluation.episode import run_episode
 from mitigate.recipes.distil import Distil, policy_kl
 from mitigate.recipes.imitate import Imitate
-from mitigate.training.trainer import Trainer
 from mitigate.worlds.world import Corrupted
 from tests.agents.vlm.corridor import Corridor, Drawn, episode
 from tests.agents.vlm.tiny_models import ARCHITECTURES, write_model
-from tests.tiny import assemble
+from tests.tiny import assemble, fit
 
 LORA = {"r": 2, "alpha": 4, "language": ["q_proj", "v_proj"]}
 FRAME = Corridor().reset(episode(2, 5))["rgb"]
@@ -70,13 +69,7 @@ def objective(agent, kind=Imitate, **arguments):
 
 
 def train(agent, folder, steps: int, stop: int | None = None, kind=Imitate, **arguments):
-    trainer = Trainer(
-        objective(agent, kind, **arguments), steps=steps, folder=folder, lr=1e-2, device="cpu",
-        precision="fp32", save_every=1,
-    )  # fmt: skip
-    trainer.steps = stop or steps
-    trainer.fit()
-    return agent.eval()
+    return fit(objective(agent, kind, **arguments), folder, steps, stop=stop, lr=1e-2)
 
 
 @pytest.mark.parametrize(
