@@ -35,8 +35,11 @@ PASSAGE = 12
 # a text with more characters is not rewritten (heuristic; 600 words have about 3,300)
 TOO_LARGE = 6000
 TOO_LONG = 600  # a text with more words is not rewritten; the longest texts of RxR have about 500
+# marks of bold and coloured words, and of the items of a list
 LOOKS = re.compile(
-    r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*", re.I
+    r"</?(?:b|i|u|em|strong|span|mark|small|big|font)\b[^<>]{0,80}>|\*\*(?=\S)|(?<=\S)\*\*"
+    r"|^[ \t]*[-*•][ \t]+",
+    re.IGNORECASE | re.MULTILINE,
 )
 
 
