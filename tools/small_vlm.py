@@ -10,12 +10,12 @@ image encoder (a vision transformer) and the projector are random; train them wi
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import Any
 
 import torch
 
+from mitigate.core.files import write_json, write_text
 from mitigate.guards.text.language_models.base import SMOLLM2, load_base
 
 SIDE, PATCH = 64, 8  # side of images and of patches, in pixels
@@ -82,10 +82,10 @@ def write_model(folder: Path, layers: int) -> None:
     )
     images.save_pretrained(folder)
     words.save_pretrained(folder)
-    (folder / "chat_template.jinja").write_text(TEMPLATE, "utf-8")
+    write_text(folder / "chat_template.jinja", TEMPLATE)
     tokens = (SIDE // PATCH // SCALE) ** 2
     settings = {"processor_class": "Idefics3Processor", "image_seq_len": tokens}
-    (folder / "processor_config.json").write_text(json.dumps(settings), "utf-8")
+    write_json(folder / "processor_config.json", settings)
 
 
 def _layer(name: str) -> int:

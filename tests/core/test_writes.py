@@ -76,6 +76,7 @@ ALLOWED = {
     ("tools/third_party/ppo.py", "mkdir"): "the folder of the weights in a checkout",
     ("tools/third_party/torchrl_ppo.py", "save_file"): "weights in a checkout",
     ("tools/third_party/mujoco_reacher.py", "save_file"): "weights in a checkout",
+    ("tools/small_vlm.py", "save_pretrained"): "a new model folder that the user names",
     ("tools/faults/evaluation.py", "copytree"): "breaks a run on purpose",
     ("tools/faults/evaluation.py", "write_bytes"): "breaks a run on purpose",
     ("tools/faults/evaluation.py", "symlink_to"): "breaks a run on purpose",
