@@ -2,8 +2,7 @@
 tokens as clean views.
 
 Only LoRA weights of the image encoder and the projector are trained. The language model does not
-run, so a step needs little memory compared with training on decisions. Neither an expert nor
-labels are used.
+run. Neither an expert nor labels are used.
 """
 
 from __future__ import annotations
@@ -30,7 +29,8 @@ class DistilImages(OnViews):
     Args:
         agent: a vision-language agent (``agents/vlm``), which is trained in place.
         poses: the source of views.
-        teacher: weights, or "start" for a copy of ``agent`` at the start of the stage.
+        teacher: weights, or "start" for a copy of ``agent`` at the start of the stage, with its
+            LoRA weights.
 
     Raises:
         FileNotFoundError: If the teacher is missing.

@@ -50,9 +50,9 @@ def write_model(folder: Path, layers: int) -> None:
         Idefics3ImageProcessorPil,
     )
 
-    words, language = load_base(SMOLLM2, "fp32")
-    words.add_special_tokens({"additional_special_tokens": SPECIAL})
-    words.chat_template = None  # replaced by TEMPLATE
+    tokenizer, language = load_base(SMOLLM2, "fp32")
+    tokenizer.add_special_tokens({"additional_special_tokens": SPECIAL})
+    tokenizer.chat_template = None  # replaced by TEMPLATE
     text: dict[str, Any] = {**language.config.to_dict(), "num_hidden_layers": layers}
     for name in ("quantization_config", "architectures", "dtype"):
         text.pop(name, None)
@@ -61,10 +61,10 @@ def write_model(folder: Path, layers: int) -> None:
         Idefics3Config(
             text_config=text,
             vision_config=VISION,
-            image_token_id=words.convert_tokens_to_ids("<image>"),
+            image_token_id=tokenizer.convert_tokens_to_ids("<image>"),
             scale_factor=SCALE,
             tie_word_embeddings=True,
-            pad_token_id=words.pad_token_id,
+            pad_token_id=tokenizer.pad_token_id,
         )
     )
     network.model.text_model.load_state_dict(
@@ -74,14 +74,14 @@ def write_model(folder: Path, layers: int) -> None:
             if name.startswith("model.") and _layer(name) < layers
         }
     )
-    network.resize_token_embeddings(len(words))  # ``SPECIAL`` adds tokens
+    network.resize_token_embeddings(len(tokenizer))  # ``SPECIAL`` adds tokens
     network.tie_weights()
     network.save_pretrained(folder)
-    images = Idefics3ImageProcessorPil(
+    image_processor = Idefics3ImageProcessorPil(
         size={"longest_edge": SIDE}, max_image_size={"longest_edge": SIDE}, do_image_splitting=False
     )
-    images.save_pretrained(folder)
-    words.save_pretrained(folder)
+    image_processor.save_pretrained(folder)
+    tokenizer.save_pretrained(folder)
     write_text(folder / "chat_template.jinja", TEMPLATE)
     tokens = (SIDE // PATCH // SCALE) ** 2
     settings = {"processor_class": "Idefics3Processor", "image_seq_len": tokens}

@@ -226,6 +226,6 @@ class OnViews(OnSource):
     def weight(self, batch: dict[str, Any]) -> float:
         """Return the number of panoramas in the batch.
 
-        With a single camera, this is the number of views.
+        With a single camera, the views of one position count as a panorama.
         """
         return float(len(batch["frames"]))

@@ -347,7 +347,8 @@ class VLMAgent(AnsweringAgent, nn.Module):
         Modules of ``agent.lora`` without weights in the folder keep their original output.
 
         Raises FileNotFoundError if the folder contains no LoRA weights. Raises ValueError if the
-        weights are damaged, or were trained for a different base model or for other modules.
+        weights are damaged, or were trained for a different base model, for modules that
+        ``agent.lora`` lacks, or with another rank or alpha.
         """
         from peft import set_peft_model_state_dict
 
@@ -366,25 +367,41 @@ class VLMAgent(AnsweringAgent, nn.Module):
                     f"whose sha256 differs from the sha256 of {self.model}. Set agent.model to the "
                     "model on which the adapter was trained."
                 )
-        tensors, expected = load_tensors(file), self._adapter()
-        added = expected.keys() - tensors.keys()
-        wrong = {name for name in tensors if name not in expected}
-        wrong |= {n for n in tensors.keys() & expected if tensors[n].shape != expected[n].shape}
-        # the two matrices of a module must both be present or both be missing
-        wrong |= {name for name in added if _partner(name) not in added}
-        if wrong or not tensors:
+        tensors = load_tensors(file)
+        expected = self._adapter()
+        absent = expected.keys() - tensors.keys()
+        invalid = {name for name in tensors if name not in expected}
+        invalid |= {n for n in tensors.keys() & expected if tensors[n].shape != expected[n].shape}
+        # the two matrices of a module must both be present or both be absent
+        invalid |= {name for name in absent if _other_matrix(name) not in absent}
+        if invalid or not tensors:
             raise ValueError(
-                f"{file} does not fit agent.lora: {len(wrong)} tensors are missing, unknown or of "
-                f"another shape ({', '.join(sorted(wrong)[:3])} ...). Copy r and modules from its "
-                f"{CONFIG}."
+                f"{file} does not fit agent.lora: {len(invalid)} tensors are missing, unknown or "
+                f"of another shape ({', '.join(sorted(invalid)[:3])} ...). Copy r and modules from "
+                f"its {CONFIG}."
             )
-        if added:
+        self._check_scale(file.parent / CONFIG)
+        if absent:
             say(
-                f"{folder} has no LoRA weights for {len(added) // 2} modules of agent.lora; these "
-                "start without an effect"
+                f"{folder} has no LoRA weights for {len(absent) // 2} modules of agent.lora; their "
+                "LoRA output starts at zero"
             )
-        new = {n: torch.zeros_like(expected[n]) if "lora_B" in n else expected[n] for n in added}
-        set_peft_model_state_dict(self.network, {**tensors, **new})
+        zero = {n: torch.zeros_like(expected[n]) if "lora_B" in n else expected[n] for n in absent}
+        set_peft_model_state_dict(self.network, {**tensors, **zero})
+
+    def _check_scale(self, file: Path) -> None:
+        """Raise ValueError if PEFT's config in ``file`` scales LoRA outputs in another way."""
+        if not file.is_file():
+            return
+        stored = read_object(file, "Fetch the folder again, or train again.")
+        own = self.network.peft_config["default"]
+        for name in ("lora_alpha", "use_rslora", "use_dora"):
+            if name in stored and stored[name] != getattr(own, name):
+                raise ValueError(
+                    f"{name} in {file} is {stored[name]!r:.80}, but the agent has "
+                    f"{getattr(own, name)!r}. Copy alpha to agent.lora; other kinds of scaling are "
+                    "not supported."
+                )
 
     def _base(self) -> str:
         return bytes(self.base_sha256.tolist()).hex()
@@ -448,10 +465,11 @@ def likelihoods(network: Any, inputs: Mapping[str, Tensor], ids: Tensor, mask: T
     return (each * mask).sum(-1)
 
 
-def _partner(name: str) -> str:
-    """Return the name of a LoRA module's other matrix."""
-    other = {"lora_A": "lora_B", "lora_B": "lora_A"}
-    return re.sub("lora_[AB]", lambda match: other[match[0]], name)
+def _other_matrix(name: str) -> str:
+    """Return the name of the LoRA module's other matrix."""
+    if "lora_A" in name:
+        return name.replace("lora_A", "lora_B")
+    return name.replace("lora_B", "lora_A")
 
 
 def _with_lora(network: Any, lora: Mapping[str, Any]) -> nn.Module:

@@ -2,8 +2,8 @@
 
 Each check returns the reason to reject a change, or "" to accept it. A deletion removes whole
 clauses and does not reword the rest, so the only check is that an instruction remains. A rewrite
-must contain the same facts in the same order: turns, stops, landmarks, numbers, colours, relations
-and negations.
+must contain the same landmarks, numbers, colours, relations and negations, and the same turns and
+stops in the same order.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ _POLITE = re.compile(
     r"|\bbefore (?:you|too long|i forget)\b(?= (?:go|start|know))"
 )
 # "pass into a room", which the suite's styles write as "past into", means "enter a room"
-_ENTER = re.compile(r"\bpass(?:ing|es)? into\b|\bpast into\b")
-_LEAVE = re.compile(r"\b(?:exit|egress|depart|leave)(?:s|ing)?\b")
+_ENTER = re.compile(r"\bpass(?:ing|es)? into\b|\bpast into\b", re.IGNORECASE)
+_LEAVE = re.compile(r"\b(?:exit|egress|depart)(?:s|ing)?\b|\bleav(?:e|es|ing)\b")
 # "after this, turn left" means "then turn left"; "after this door" is a condition
 _NEXT = re.compile(
     r"\bafter (?:this|that|which|doing so)"

@@ -280,7 +280,7 @@ def test_load_rejects_adapters_of_another_base_or_other_modules(folder_of, model
         agent.load(tmp_path)
 
 
-def test_modules_without_weights_in_the_folder_start_without_an_effect(model, tmp_path, capfd):
+def test_load_starts_absent_modules_at_zero_and_rejects_another_alpha(model, tmp_path, capfd):
     agent = build(model)
     with torch.no_grad():
         for name, parameter in agent.named_parameters():
@@ -295,6 +295,8 @@ def test_modules_without_weights_in_the_folder_start_without_an_effect(model, tm
     assert "no LoRA weights for 13 modules" in capfd.readouterr().out
     with torch.no_grad():
         assert torch.equal(wider.logits(memory(3)), agent.logits(memory(3)))
+    with pytest.raises(ValueError, match="lora_alpha in .* is 4, but the agent has 8"):
+        VLMAgent(model, lora={**LORA, "alpha": 8}, history=2).load(tmp_path / "a")
     wider.save(tmp_path / "b")
     with pytest.raises(ValueError, match="does not fit agent.lora"):
         agent.load(tmp_path / "b")  # it would lose the weights of the image encoder

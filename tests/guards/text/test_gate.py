@@ -59,7 +59,7 @@ def test_rewrite_refused_distinguishes_after_this_from_after_a_landmark():
 
 
 def test_rewrite_refused_reads_pass_into_as_enter():
-    for text in ("And then pass into the office.", "Thereafter, proceed past into the office."):
+    for text in ("Pass into the office.", "Thereafter, proceed past into the office."):
         assert rewrite_refused(text, "Enter the office.") == ""
         assert "relation" in rewrite_refused(text, "Walk past the office.")
     assert "relation" in rewrite_refused("Walk past the office.", "Walk into the office.")
