@@ -11,7 +11,6 @@ from typing import Any
 
 import torch
 from torch import Tensor
-from torch.utils.checkpoint import checkpoint as recomputed
 
 from mitigate.core import checkpoint
 from mitigate.recipes.distil import feature_loss
@@ -58,15 +57,14 @@ class DistilImages(OnViews):
     def identity(self) -> dict[str, str]:
         return {"teacher_sha256": checkpoint.weights_sha(self.teacher)}
 
+    def micro_batches(self, batch: dict[str, Any]) -> list[dict[str, Any]]:
+        """Return one part per panorama, with the number of panoramas in the batch."""
+        pairs = zip(batch["frames"], batch["clean"], strict=True)
+        count = len(batch["frames"])
+        return [{"frames": frames, "clean": clean, "count": count} for frames, clean in pairs]
+
     def forward(self, batch: dict[str, Any]) -> dict[str, Tensor]:
-        losses = []
-        for frames, clean in zip(batch["frames"], batch["clean"], strict=True):
-            with torch.no_grad():
-                target = self.teacher.image_tokens(clean)
-            if self.agent.checkpointing and torch.is_grad_enabled():
-                tokens = recomputed(self.agent.image_tokens, frames, use_reentrant=False)
-            else:
-                tokens = self.agent.image_tokens(frames)
-            losses.append(feature_loss(tokens, target))
-        loss = torch.stack(losses).mean()
-        return {"loss": loss, "feat": loss.detach()}
+        with torch.no_grad():
+            target = self.teacher.image_tokens(batch["clean"])
+        tokens = self.agent.image_tokens(batch["frames"])
+        return {"loss": feature_loss(tokens, target) / batch["count"]}

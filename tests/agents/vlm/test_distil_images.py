@@ -63,7 +63,8 @@ def test_corrupted_views_come_closer_to_the_clean_image_tokens(folder_of, name, 
     before = {n: p.detach().clone() for n, p in agent.named_parameters()}
     unseen = objective(agent).batch(1000)
     with torch.no_grad():
-        first = objective(agent)(unseen)["feat"]
+        (part,) = objective(agent).micro_batches(unseen)
+        first = objective(agent)(part)["loss"]
     assert first > 0  # the teacher sees clean views, and the student corrupted ones
     train_images(agent, tmp_path, 12)
     moved = {n for n, p in agent.named_parameters() if not torch.equal(p, before[n])}
@@ -99,19 +100,6 @@ def test_resumed_training_gives_the_same_bits(folder_of, tmp_path):
     train_images(build(model), tmp_path / "parts", 2, stop=1)
     resumed = train_images(build(model), tmp_path / "parts", 2)
     assert checkpoint.weights_sha(resumed) == checkpoint.weights_sha(whole)
-
-
-@pytest.mark.slow
-def test_checkpointing_gives_the_same_gradients(folder_of):
-    gradients = []
-    for checkpointing in (True, False):
-        agent = build(folder_of("idefics3"), checkpointing=checkpointing)
-        recipe = objective(agent)
-        recipe(recipe.batch(0))["loss"].backward()
-        gradients.append([p.grad for p in agent.parameters() if p.requires_grad])
-    assert any(g.abs().sum() > 0 for g in gradients[0])
-    for first, second in zip(*gradients, strict=True):
-        torch.testing.assert_close(first, second)
 
 
 def test_missing_lora_weights_and_other_agents_are_rejected(folder_of):
