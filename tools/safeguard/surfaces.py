@@ -21,6 +21,7 @@ from mitigate.corruptions.instruction import corrupt_instruction
 from mitigate.evaluation.bootstrap import wilson
 from mitigate.guards.text.guard import Safeguard, open_safeguard
 from mitigate.guards.text.learning.data import read_texts
+from mitigate.guards.text.pieces import sentences
 
 FILLERS = ("um", "uh", "like", "you know,", "okay")
 
@@ -51,10 +52,6 @@ def swapped(text: str, rng: random.Random) -> str:
         place = rng.randrange(max(1, len(words) - 1))
         words[place : place + 2] = words[place : place + 2][::-1]
     return " ".join(words)
-
-
-def sentences(text: str) -> list[str]:
-    return re.split(r"(?<=[.!?])\s+", text)
 
 
 def corrupted(text: str, rng: random.Random, name: str) -> str:
