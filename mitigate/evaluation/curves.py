@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import METRICS, Grid
+from mitigate.evaluation.grid import COVERAGE, METRICS, Grid
 
 RESAMPLES = 2000  # number of bootstrap resamples for the interval of each point (heuristic)
 
@@ -33,6 +34,10 @@ class Curve:
 def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
     """Return the curve of each column that was measured under ``corruption``.
 
+    A curve averages the seeds that were measured at the column's lowest and highest severity. A
+    search for critical severities measures other severities with each seed. So the results of a
+    seed are interpolated linearly between its severities, separately for each episode.
+
     A column is left out if it was measured at fewer than ``least`` severities above 0, or if its
     severities have no seed or no episode in common.
     """
@@ -41,21 +46,15 @@ def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
 
 
 def _curve(grid: Grid, column: str, name: str, least: int) -> Curve | None:
-    key = METRICS["SR"]
-    severities = [
-        at for at in grid.severities if not np.isnan(grid.cell(column, name, at, key)).all()
-    ]
-    if len(severities) < least or not severities:
+    lines = _lines(grid, column, name)
+    severities = sorted(set().union(*lines))
+    if not severities or sum(at > 0 for at in severities) < least:
         return None
-    seeds = set.intersection(*(set(grid.seeds[column, at]) for at in severities))
-    if not seeds:
+    lines = [line for line in lines if {severities[0], severities[-1]} <= line.keys()]
+    if not lines:
         return None
-    pooled = [grid.over([column], sorted(seeds), at) for at in severities]
-    cells = [one.cell(column, name, at, key) for one, at in zip(pooled, severities, strict=True)]
-    clean = pooled[0].cell(column, "clean", severities[0], key)
-    if not np.isnan(clean).all():
-        cells, severities = [clean, *cells], [0.0, *severities]
-    values = np.stack(cells)
+    severities = sorted(set().union(*lines))
+    values = np.mean([_interpolated(line, severities) for line in lines], axis=0)
     common = ~np.isnan(values).any(axis=0)
     if not common.any():
         return None
@@ -64,3 +63,34 @@ def _curve(grid: Grid, column: str, name: str, least: int) -> Curve | None:
     )
     points = [estimate for estimate in estimates if estimate is not None]
     return Curve(column, int(common.sum()), severities, points)
+
+
+def _lines(grid: Grid, column: str, name: str) -> list[dict[float, np.ndarray]]:
+    """Return the successes of the N episodes at each severity, for each seed with corrupted rows.
+
+    A severity of a seed is left out if another seed has results of many more episodes.
+    """
+    lines = [
+        {
+            at: values
+            for (corruption, at, metric), values in run.items()
+            if metric == METRICS["SR"] and corruption in ("clean", name)
+        }
+        for run in grid.runs[column].values()
+    ]
+    lines = [line for line in lines if any(at > 0 for at in line)]
+    counts = [{at: int((~np.isnan(x)).sum()) for at, x in line.items()} for line in lines]
+    most = {at: max(count.get(at, 0) for count in counts) for at in set().union(*counts)}
+    return [
+        {at: x for at, x in line.items() if count[at] >= COVERAGE * most[at]}
+        for line, count in zip(lines, counts, strict=True)
+    ]
+
+
+def _interpolated(line: Mapping[float, np.ndarray], severities: Sequence[float]) -> np.ndarray:
+    """Return the values of a seed at ``severities`` [K, N]; NaN for episodes without all rows."""
+    measured = sorted(line)
+    values = np.stack([line[at] for at in measured])
+    weights = np.stack([np.interp(severities, measured, row) for row in np.eye(len(values))], 1)
+    missing = weights @ np.isnan(values) > 0
+    return np.where(missing, np.nan, weights @ np.nan_to_num(values))

@@ -47,3 +47,14 @@ def test_curve_points_share_seeds_and_episodes():
     (curve,) = curves(sections(rows)[0].grid, "missing_data")
     assert curve.count == 4 and curve.severities == [0.0, 0.3, 0.6]
     assert [estimate.value for estimate in curve.points] == [1.0, 1.0, 0.75]
+
+
+def test_curves_average_seeds_that_were_measured_at_other_severities():
+    rows = []
+    for seed, (at, falls) in enumerate([(0.4, 6), (0.6, 2)]):
+        rows += column(8, {"missing_data": falls}, at, seed=seed)
+        rows += cell(0, corruption="missing_data", severity=1.0, seed=seed)
+    (curve,) = curves(sections(rows)[0].grid, "missing_data")
+    assert curve.severities == [0.0, 0.4, 0.6, 1.0] and curve.count == 10
+    # seed 0 has 0.8, 0.6, 0.4 and 0; seed 1 has 0.8, 0.4, 0.2 and 0
+    assert [point.value for point in curve.points] == pytest.approx([0.8, 0.5, 0.3, 0.0])
