@@ -139,11 +139,12 @@ def _clauses(tokens: list[Token]) -> list[int]:
 
 def _relations(tokens: list[Token]) -> list[str]:
     """Return the relations in order; "pass through" means "through", not "past"."""
-    return [
-        _RELATIONS[token.lower]
+    relations = [
+        (_RELATIONS[token.lower], at(tokens, place + 1))
         for place, token in enumerate(tokens)
-        if token.lower in _RELATIONS and at(tokens, place + 1) != "through"
+        if token.lower in _RELATIONS
     ]
+    return [name for name, following in relations if (name, following) != ("past", "through")]
 
 
 def _same(token: Token) -> str:

@@ -26,8 +26,8 @@ FOLDER = (
     "adapter_model.safetensors of an adapter (`make train RECIPE=safeguard_lora`)."
 )
 # version of the repair rules; increase it whenever the repair of any text changes
-VERSION = "16"
-ANSWERS = "5"  # version of the rules for accepting answers of a language model
+VERSION = "17"
+ANSWERS = "6"  # version of the rules for accepting answers of a language model
 
 
 def current(choice: str) -> str:

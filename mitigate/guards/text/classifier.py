@@ -24,13 +24,13 @@ from mitigate.core import folders
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.guards.text.decode import Decoded, decode
+from mitigate.guards.text.features import EMPTY, features
 from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_pieces
-from mitigate.guards.text.segmenter import NAMES, Segmenter, features
+from mitigate.guards.text.segmenter import NAMES, Segmenter
 
 BITS = 18
 SIZE = 1 << BITS  # length of the weight arrays; terms are hashed to indices below this number
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
-EMPTY = 1e-3  # if the sum of squared TF-IDF values is below this, the text contains no known term
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
 _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")
@@ -86,6 +86,8 @@ class Clause:
     words: int  # number of words
     letters: int  # number of letters; a Chinese, Japanese or Korean character counts as three
     script: str  # "latin", "other", or "" if the clause has no letters
+    index: np.ndarray  # int64, indices of its terms
+    value: np.ndarray  # float32, TF-IDF values of its terms
     product: float  # sum of the products of the clause's TF-IDF values and the attack weights
     square: float  # sum of the clause's squared TF-IDF values
     style: float  # log odds that the clause is in an unusual style
@@ -128,6 +130,8 @@ class Classifier:
                     len(raw.split()),
                     sum(1 + 2 * ("\u3000" <= c <= "\ud7ff") for c in raw if c.isalpha()),
                     script(raw),
+                    index,
+                    value,
                     float(self.arrays["alone"][index] @ value),
                     square,
                     style + self.style_bias,

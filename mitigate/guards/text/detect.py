@@ -1,6 +1,6 @@
 """Find attacks in an instruction, and remove those whose removal the gate accepts.
 
-The networks in :mod:`segmenter` read all clauses of the text together. The networks decide whether
+The networks in :mod:`segmenter` read all clauses of the text together. They decide whether
 the text contains an attack, and where the attack begins and ends. The search is repeated, because a
 text can contain several attacks. The constants were chosen on one part of the test texts, called
 "choose" (``tools/safeguard``).
@@ -19,7 +19,7 @@ from mitigate.guards.text.pieces import Piece, without
 # if more than this fraction of the letters is not Latin, the route may be in a non-Latin script
 FOREIGN = 0.3
 ROUTE = -1.0  # English text is treated as a route if its log odds of an attack are below this
-ATTACK = 1.0  # a text contains an attack if the log odds of the networks are above this
+ATTACK = 0.0  # a text contains an attack if the log odds of the networks are above this
 # The networks' score is reduced if the regression gives the detected span log odds below this.
 # It is reduced by the difference between this value and the regression's log odds.
 # Without this second opinion, three times as many R2R-CE routes were harmed.
@@ -28,9 +28,8 @@ LONGER = 0.1  # bonus per clause of a span; without it, parts of attacks remaine
 # A clause next to an attack may say nothing about the route.
 # It is also removed if its log odds are above this.
 BESIDE = -2.0
-GOAL = 17  # a sentence with fewer words than this is often only the name of a goal object
-# ``ATTACK`` is increased by this for a text of one sentence with fewer than ``GOAL`` words
-BARE = 1.9
+GOAL = 30  # a text with fewer words than this that names no turn is often only a goal object
+BARE = 1.9  # ``ATTACK`` is increased by this for such a text
 ATTACKS = 3  # maximum number of attacks that are removed from a text
 STEP = 5  # maximum number of words of a short route step such as "Turn back."
 # In a text with non-Latin parts, an English attack is removed if it has at least this many words.
@@ -80,8 +79,8 @@ def foreign(text: str, classifier: Classifier) -> list[Piece]:
         return []
     odds, first, last = classifier.attack(text, clauses, LONGER)
     odds += min(0.0, classifier.score(clauses[first : last + 1]) - SURE)
-    words = sum(clause.words for clause in clauses)
-    if odds <= ATTACK + BARE * (words < GOAL and clauses[-1].sentence == 0):
+    bare = sum(clause.words for clause in clauses) < GOAL and not _names_a_turn(text)
+    if odds <= ATTACK + BARE * bare:
         return []
 
     def belongs(clause: Clause) -> bool:
@@ -104,8 +103,12 @@ def _says_nothing(text: str) -> bool:
     return not (content.directions or content.landmarks or content.relations)
 
 
+def _names_a_turn(text: str) -> bool:
+    return bool(set(facts(text).directions) - {"stop"})
+
+
 def _is_step(text: str) -> bool:
-    return len(text.split()) <= STEP and bool(set(facts(text).directions) - {"stop"})
+    return len(text.split()) <= STEP and _names_a_turn(text)
 
 
 def _english_attacks(clauses: Sequence[Clause], classifier: Classifier) -> list[Piece]:

@@ -32,11 +32,12 @@ from mitigate.core.progress import say
 from mitigate.guards.text import classifier as model
 from mitigate.guards.text.classifier import SIZE, Classifier
 from mitigate.guards.text.decode import decode
+from mitigate.guards.text.features import features
 from mitigate.guards.text.learning.lines import ROUTES, Line, read_frames, read_lines, varied
 from mitigate.guards.text.learning.segmentation import LONGEST, Example, train
 from mitigate.guards.text.learning.splices import FOLDS, SPLICES, Splice, fold_of, splices
 from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
-from mitigate.guards.text.segmenter import NAMES, features
+from mitigate.guards.text.segmenter import NAMES
 
 DATA = "tools/safeguard/data"
 # maximum number of common words; hidden text is recognised with the help of these words
@@ -45,6 +46,7 @@ BACKWARDS = 50  # a word counts as written backwards if its reversal is this man
 RIDGE = 2.0  # weight of the L2 penalty
 STEPS, STYLE_STEPS = 90, 50
 FOLD_STEPS = 40  # number of training steps when the attack regression is fitted without one fold
+NETWORKS = 4  # number of networks, whose scores are averaged
 Weights = tuple[np.ndarray, float]
 Pair = tuple[Weights, Weights]
 
@@ -77,24 +79,22 @@ class Regressions:
 
 
 def fit(
-    folder: Path, routes: int = ROUTES, texts: int = SPLICES, earlier: Classifier | None = None
+    folder: Path, routes: int = ROUTES, texts: int = SPLICES, networks: int = NETWORKS
 ) -> Classifier:
-    """Train a classifier on the data in a folder.
-
-    The scores of its network are averaged with the scores of the networks of ``earlier``.
-    """
-    lines = read_lines(folder, routes)
+    """Train a classifier on the data in a folder; each network gets its own training texts."""
+    lines, frames = read_lines(folder, routes), read_frames(folder)
     regressions = regress(lines)
     classifiers = [regressions.classifier(fold) for fold in range(FOLDS)]
-    examples = [
-        example
-        for splice in splices(lines, read_frames(folder), texts)
-        if (example := _example(splice, classifiers[splice.fold]))
-    ]
-    say(f"training the network on {len(examples)} texts")
-    network = train(examples, seed=0)
-    if earlier is not None:
-        network = {name: np.concatenate([network[name], earlier.arrays[name]]) for name in NAMES}
+    trained = []
+    for seed in range(networks):
+        say(f"training network {seed + 1} of {networks}")
+        examples = [
+            example
+            for splice in splices(lines, frames, texts, seed)
+            if (example := _example(splice, classifiers[splice.fold]))
+        ]
+        trained.append(train(examples, seed))
+    network = {name: np.concatenate([arrays[name] for arrays in trained]) for name in NAMES}
     return regressions.classifier(network=network)
 
 
@@ -225,10 +225,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser = argparse.ArgumentParser(prog="python -m mitigate.guards.text.fit", description=__doc__)
     parser.add_argument("--data", type=Path, default=find(DATA), help="banks and styles")
     parser.add_argument("--out", type=Path, required=True, help="folder of the new classifier")
-    parser.add_argument("--average", type=Path, help="a classifier whose networks are added")
     options = parser.parse_args(arguments)
-    earlier = model.load(options.average) if options.average else None
-    save(fit(options.data, earlier=earlier), options.out)
+    save(fit(options.data), options.out)
     print(f"wrote {options.out}: try it with safeguard={options.out}")
 
 

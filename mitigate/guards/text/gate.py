@@ -17,18 +17,19 @@ from mitigate.guards.text.learning.routes import WORDS
 
 _PLACES = bag(" ".join(WORDS["things"] + WORDS["rooms"]))
 KNOWN = frozenset(CANONICAL) | frozenset(CANONICAL.values()) | _PLACES
-LONG = 3000  # texts longer than this are assumed to contain an instruction
+LONG_TEXT = 3000  # texts with more characters are assumed to contain an instruction
 # a rewrite with at most this many characters is never too long to be checked (heuristic)
-LENGTH = 200
-TIMES = 4  # above LENGTH, maximum ratio of a rewrite's length to the original's length (heuristic)
-LONGER = 3  # a rewrite may have at most this many more words than the original
+SHORT_REWRITE = 200
+# maximum ratio of the length of a longer rewrite to the length of the original (heuristic)
+LENGTH_RATIO = 4
+EXTRA_WORDS = 3  # a rewrite may have at most this many more words than the original
 _CONDITIONS = bag("if unless until till before after otherwise once except instead")
 _WORD = re.compile(r"\[mask\]|[a-z]+(?:['’][a-z]+)?|\d+")
 _POLITE = re.compile(
     r"\bif (?:you|it|that|i)\b[^,.;]{0,40}"
     r"\b(?:mind|please|would|could|can|may|might|like|kind|ask)\b"
     r"|\b(?:grateful|glad|obliged|kind|delighted|appreciate it) (?:if|enough)\b|\bonce more\b"
-    r"|\bbefore (?:you|too long|i forget)\b(?= (?:go|start|know))"
+    r"|\bbefore (?:too long|i forget|you know it)\b"
 )
 # "pass into a room", which the suite's styles write as "past into", means "enter a room"
 _ENTER = re.compile(r"\bpass(?:ing|es)? into\b|\bpast into\b", re.IGNORECASE)
@@ -52,7 +53,7 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     """
     if len(words(rest)) < 2 and rest.isascii():
         return "nothing would be left"
-    if not rest.isascii() or len(rest) > LONG:
+    if not rest.isascii() or len(rest) > LONG_TEXT:
         return ""
     left = facts(rest)
     turns = [d for d in left.directions if d != "stop"]
@@ -61,21 +62,23 @@ def leaves_no_instruction(text: str, removed: str, rest: str) -> str:
     return ""
 
 
-def longest(heard: str) -> int:
+def max_length(original: str) -> int:
     """Return the maximum number of characters of a rewrite; a longer one is not checked."""
-    return max(LENGTH, TIMES * len(heard))
+    return max(SHORT_REWRITE, LENGTH_RATIO * len(original))
 
 
-def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
-    """Return the reason why ``rewrite`` must not replace ``heard``, or "" if it may.
+def rewrite_refused(original: str, rewrite: str | None, last: bool = False) -> str:
+    """Return the reason why ``rewrite`` must not replace ``original``, or "" if it may.
 
-    If ``last`` is true, ``heard`` is the end of an instruction, and ``rewrite`` may add "stop".
+    If ``last`` is true, ``original`` is the end of an instruction, and ``rewrite`` may add "stop".
     """
     if rewrite is None:
         return "no answer in time"
-    if len(rewrite) > longest(heard) or len(words(rewrite)) > len(words(heard)) + LONGER:
+    if len(rewrite) > max_length(original):
         return "longer than what it replaces"
-    plain = _ENTER.sub("into", heard.replace("[MASK]", "the"))
+    if len(words(rewrite)) > len(words(original)) + EXTRA_WORDS:
+        return "longer than what it replaces"
+    plain = _ENTER.sub("into", original.replace("[MASK]", "the"))
     rewrite = _ENTER.sub("into", rewrite)
     if last and "stop" in facts(rewrite).directions and "stop" not in facts(plain).directions:
         plain = f"{plain.rstrip(' .!?;,')}, and stop."
@@ -87,15 +90,17 @@ def rewrite_refused(heard: str, rewrite: str | None, last: bool = False) -> str:
     return f"condition lost: {', '.join(lost)}" if lost else ""
 
 
-def _is_harmless(problem: str, heard: str) -> bool:
+def _is_harmless(problem: str, original: str) -> bool:
     """Return whether ``problem`` does not change the meaning.
 
     A lost word is probably not a landmark if it is unknown and no article precedes it. Verbs such
     as "exit" imply "out".
     """
     if problem == "relation invented: out":
-        return bool(_LEAVE.search(heard.lower()))
+        return bool(_LEAVE.search(original.lower()))
     kind, _, name = problem.partition(": ")
     if kind != "landmark lost" or name in KNOWN:
         return False
-    return not re.search(rf"\b(?:the|an?|this|that|your) (?:\w+ )?{re.escape(name)}", heard.lower())
+    return not re.search(
+        rf"\b(?:the|an?|this|that|your) (?:\w+ )?{re.escape(name)}", original.lower()
+    )

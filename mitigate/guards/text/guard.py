@@ -182,16 +182,16 @@ class _Draft:
             failures: the reason why a passage has no answer, if the model states it.
         """
         parts = list(self.parts)
-        for place, heard in enumerate(self.parts):
-            if heard not in self.requested:
+        for place, passage in enumerate(self.parts):
+            if passage not in self.requested:
                 continue
-            answer = answers[heard]
-            problem = gate.rewrite_refused(heard, answer, last=place == len(parts) - 1)
-            if answer is None and heard in failures:
-                problem = f"the model gave no answer ({failures[heard]})"
+            answer = answers[passage]
+            problem = gate.rewrite_refused(passage, answer, last=place == len(parts) - 1)
+            if answer is None and passage in failures:
+                problem = f"the model gave no answer ({failures[passage]})"
             if problem:
-                self.reasons.append(f"kept {heard[:40]!r}: {problem}")
-            elif answer is not None and answer != heard:
+                self.reasons.append(f"kept {passage[:40]!r}: {problem}")
+            elif answer is not None and answer != passage:
                 parts[place] = answer
                 self.accepted += 1
         text = " ".join(filter(None, parts))

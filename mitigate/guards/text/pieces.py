@@ -44,7 +44,8 @@ _BEGINS = (
 _RUN_ON = re.compile(rf"(?<=[\w\])}}>=*\"'~|✔…])\s+(?=(?:{_BEGINS})\b[,']?\s[a-z(])")
 _CLAUSE = re.compile(
     r"(?<=[,;:])\s+|\s+(?=[-–—]{1,3}\s)|(?<=\s[-–—])\s+|(?<=\s--)\s+|(?<=[—])|(?=[—])"
-    r"|\s+(?=(?:and|then|but|until|or|so|because|unless|if|which|where|while|when)\b)"
+    r"|\s+(?=(?:and|but|until|or|so|because|unless|if|which|where|while|when)\b)"
+    r"|(?<!\band)(?<!\bAnd)\s+(?=then\b)"
     r"|\s+(?=[\[({<])|(?<=[\])}>])\s+|(?<=[\])}>])(?=\w)|\s+(?=//|#\w|\||/\s)|(?<=\s[/|])\s+"
 )
 # A word of _CALL may begin a sentence even if no full stop precedes it.

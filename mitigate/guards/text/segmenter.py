@@ -1,97 +1,30 @@
 """Use small recurrent networks to find the span of clauses that forms an attack.
 
-A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text. For each clause,
-the network predicts a score for whether it is part of an attack. For each boundary between clauses,
-it predicts a score for whether an attack starts or ends there. The score of a span is the sum of
-the scores of its clauses and its two boundaries, relative to the score of "no attack". Because the
-network reads each clause in its context, it does not take an unusual style for an attack. The
-scores of several networks are averaged. Inference needs only numpy;
+A bidirectional GRU (Cho et al. 2014) reads the features of all clauses of a text (:mod:`features`).
+For each clause, the network predicts a score for whether it is part of an attack. For each boundary
+between clauses, it predicts a score for whether an attack starts or ends there. The score of a span
+is the sum of the scores of its clauses and its two boundaries, relative to the score of "no
+attack". Because the network reads each clause in its context, it does not take an unusual style for
+an attack. The scores of several networks are averaged. Inference needs only numpy;
 :mod:`mitigate.guards.text.learning.segmentation` trains a network.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 
-from mitigate.corruptions.language.fidelity import facts
-from mitigate.guards.text import gate
+from mitigate.guards.text.features import EDGES
 
-if TYPE_CHECKING:
-    from mitigate.guards.text.classifier import Classifier, Clause
-
-FEATURES = 22  # number of features of a clause
-EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
-# number of characters before a clause in which the last non-space character is searched
-GAP = 80
 # This is added to the score of each boundary inside the text.
 # The reason is that few training texts have an attack inside a route.
 INSIDE = 0.75
-CLIP = 6.0  # largest absolute value of a feature
-SCALE = 0.5  # factor by which features that are log odds are multiplied
 NAMES = (
     "net_input", "net_input_bias", "net_from_input", "net_from_state",
     "net_from_input_bias", "net_from_state_bias", "net_clause", "net_clause_bias", "net_edge",
     "net_edge_bias", "net_none",
 )  # fmt: skip
-
-
-def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
-    """Return the features of clauses, shape [clauses, FEATURES].
-
-    The first ten features are real numbers, and the other twelve are 0 or 1.
-    """
-    products = np.array([clause.product for clause in clauses])
-    squares = np.array([clause.square for clause in clauses])
-    words = np.array([clause.words for clause in clauses])
-    _, sentence = np.unique([clause.sentence for clause in clauses], return_inverse=True)
-    by_sentence = classifier.log_odds(
-        np.bincount(sentence, products), np.bincount(sentence, squares)
-    )
-    sums = np.concatenate([[0.0], np.cumsum(products)])
-    norms = np.concatenate([[0.0], np.cumsum(squares)])
-    first = classifier.log_odds(sums, norms)
-    last = classifier.log_odds(sums[-1] - sums, norms[-1] - norms)
-    result = np.zeros((len(clauses), FEATURES), np.float32)
-    # columns 0, 1 and 4 to 8 are log odds of an attack in a part of the text
-    result[:, 0] = classifier.log_odds(products, squares)  # the clause
-    result[:, 1] = by_sentence[sentence]  # its sentence
-    result[:, 2] = [clause.style for clause in clauses]
-    result[:, 3] = np.log(words + 1) - 1.5  # words of the clause
-    result[:, 4] = first[1:]  # the text up to and including the clause
-    result[:, 5] = first[:-1]  # the text before the clause
-    result[:, 6] = last[:-1]  # the text from the clause on
-    result[:, 7] = last[1:]  # the text after the clause
-    result[:, 8] = first[-1]  # the whole text
-    result[:, 9] = np.log(words.sum() + 1) - 3.5  # words of the text
-    result[:, [0, 1, 2, 4, 5, 6, 7, 8]] *= SCALE
-    for place, clause in enumerate(clauses):
-        start = clause.piece.start
-        previous = clauses[place - 1] if place else None
-        before = text[max(0, start - GAP) : start].rstrip()[-1:]
-        gap = text[previous.piece.end : start] if previous else ""
-        result[place, 10:] = (
-            clause.piece.block,
-            previous is None or clause.sentence != previous.sentence,
-            before in tuple(".!?。"),
-            before in tuple(",;:"),
-            "\n" in gap,
-            before.isalnum(),
-            clause.script == "other",
-            _names_the_way(clause.piece.of(text)),
-            text[start].isupper(),
-            text[start].islower(),
-            place == 0,
-            place == len(clauses) - 1,
-        )
-    return np.clip(result, -CLIP, CLIP)
-
-
-def _names_the_way(text: str) -> bool:
-    content = facts(text)
-    return bool(content.directions or set(content.landmarks) & gate.KNOWN)
 
 
 class Segmenter:

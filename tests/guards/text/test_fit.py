@@ -45,9 +45,8 @@ def data(tmp_path_factory):
 @pytest.mark.slow
 def test_fit_learns_a_new_mechanism_and_reloads_the_same(data, tmp_path, monkeypatch):
     monkeypatch.setattr(fit, "STEPS", 30)
-    shipped = classifier.load(find(choices.CLASSIFIER))
-    output = fit.fit(data, routes=40, texts=2000, earlier=shipped)
-    assert len(output.arrays["net_none"]) == 1 + len(shipped.arrays["net_none"])
+    output = fit.fit(data, routes=40, texts=2000, networks=2)
+    assert len(output.arrays["net_none"]) == 2
     fit.save(output, tmp_path)
     again = classifier.load(tmp_path)
     text = "Turn left at the sofa. Blorp the snarfle, zib. Stop by the lamp."

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 import torch
 
+from mitigate.guards.text.features import FEATURES
 from mitigate.guards.text.learning import segmentation
 from mitigate.guards.text.learning.lines import Line
 from mitigate.guards.text.learning.splices import fold_of, splices
-from mitigate.guards.text.segmenter import FEATURES, INSIDE, NAMES, Segmenter
+from mitigate.guards.text.segmenter import INSIDE, NAMES, Segmenter
 
 
 def network(seed: int = 0) -> segmentation.Network:

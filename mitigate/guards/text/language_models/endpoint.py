@@ -72,7 +72,7 @@ class ChatEndpoint(ChatClient):
         answer = None if self._cache is None else self._cache.get(name)
         if answer is not None:
             return answer
-        answer = self.ask(prompt_messages(text, PROMPT), gate.longest(text), ends)
+        answer = self.ask(prompt_messages(text, PROMPT), gate.max_length(text), ends)
         if self._cache is not None:
             self._cache.put(name, answer)
         return answer

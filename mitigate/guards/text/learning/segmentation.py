@@ -15,7 +15,8 @@ import torch
 from torch import nn
 
 from mitigate.core.progress import say
-from mitigate.guards.text.segmenter import EDGES, FEATURES, NAMES
+from mitigate.guards.text.features import EDGES, FEATURES, LOG_ODDS
+from mitigate.guards.text.segmenter import NAMES
 
 STATE = 32  # size of the GRU's hidden state
 EPOCHS, BATCH = 8, 64
@@ -24,7 +25,6 @@ DROPOUT = 0.25
 NOISE = 0.1  # standard deviation of the noise that is added to features that are log odds
 CLAUSES = 0.1  # weight of the second term of the loss
 LONGEST = 45  # maximum number of clauses of a training text
-LOG_ODDS = [0, 1, 4, 5, 6, 7, 8]  # the features with noise
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ def _loss(network: Network, batch: Sequence[Example], rng: np.random.Generator) 
     attack = torch.zeros(len(batch), most)
     for row, example in enumerate(batch):
         values = example.features.copy()
-        values[:, LOG_ODDS] += NOISE * rng.standard_normal((len(values), len(LOG_ODDS)))
+        values[:, list(LOG_ODDS)] += NOISE * rng.standard_normal((len(values), len(LOG_ODDS)))
         x[row, : len(values)] = torch.from_numpy(values)
         attack[row, : len(values)] = torch.from_numpy(example.attack.astype(np.float32))
     clause, edge = network(x, lengths)

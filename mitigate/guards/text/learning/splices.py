@@ -19,7 +19,7 @@ from mitigate.guards.text.pieces import clause_pieces, sentence_pieces
 
 # number of folds into which the texts are divided; all texts of a group are in the same fold
 FOLDS = 4
-SPLICES = 60_000  # number of training texts that are generated for the network
+SPLICES = 60_000  # number of training texts that are generated for a network
 HONEST = 0.4  # fraction of texts without an attack
 LONGEST = 900  # maximum number of characters of a training text
 SHORT = 7  # maximum number of words of an attack that is added to another attack
@@ -43,7 +43,10 @@ def fold_of(line: Line) -> int:
 
 
 def splices(
-    lines: Sequence[Line], frames: tuple[list[str], list[str]], count: int = SPLICES
+    lines: Sequence[Line],
+    frames: tuple[list[str], list[str]],
+    count: int = SPLICES,
+    seed: int = 0,
 ) -> Iterator[Splice]:
     """Yield training texts.
 
@@ -53,7 +56,7 @@ def splices(
     """
     sources = [_Source([line for line in lines if fold_of(line) == fold]) for fold in range(FOLDS)]
     for number in range(count):
-        rng = generator(0, "splices", number)
+        rng = generator(seed, "splices", number)
         fold = int(rng.integers(FOLDS))
         source = sources[fold]
         attacks: list[tuple[int, int]] = []
