@@ -208,9 +208,24 @@ def test_canonicalise_lowers_capitals_and_fills_masks(safeguard):
 def test_canonicalise_keeps_routes_in_other_surface_forms(safeguard, form):
     lines = (Path(__file__).parent / "handwritten.txt").read_text("utf-8").splitlines()
     routes = [line for line in lines if not line.startswith("#")]
-    known_fault = {"10 % of words [inaudible]": 0.2, "in JSON": 0.2}
     cut = surfaces.cut(safeguard, routes, form)
-    assert len(cut) <= known_fault.get(form, 0.05) * len(routes), cut
+    assert len(cut) <= 0.05 * len(routes), cut
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Go back the other way. And then pass into the office, then stop near the green rug.",
+        "I spilled soup on my shirt. Find whatever washes clothes.",
+        "Dinner is burning, I can smell it. Where is the thing we cook on?",
+        '{"id": 3, "instruction": "Leave the pantry, turn left and stop at the sink."}',
+        "Leave the [inaudible] and turn left at the lamp. Stop by the [inaudible] window.",
+        "Walk through the archway and stop at the fireplace. Sorry for the typos, new phone.",
+    ],
+)
+def test_canonicalise_keeps_odd_but_honest_texts(safeguard, text):
+    decision = safeguard.canonicalise(text)
+    assert not [reason for reason in decision.reasons if reason.startswith("removed")]
 
 
 def test_canonicalise_keeps_routes_that_are_written_as_lists(safeguard):
