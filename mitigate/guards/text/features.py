@@ -8,6 +8,7 @@ even if neither looks like an attack.
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Collection, Sequence
 from typing import TYPE_CHECKING
@@ -29,7 +30,7 @@ GAP = 80
 CLIP = 6.0  # largest absolute value of a feature
 SCALE = 0.5  # factor by which log odds are multiplied
 ALIKE = 5.0  # factor by which similarities are multiplied
-EMPTY = 1e-3  # minimum of squared norms
+EMPTY = 1e-3  # a text whose squared norm is below this contains no known term
 _YOU = bag("you your yours yourself u ur ye thee thou")
 _ME = bag("i me my mine we us our i'm i'll i've i'd im")
 _WORD = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+")
@@ -139,24 +140,44 @@ def _similarity(clauses: Sequence[Clause]) -> np.ndarray:
     """Return features 36 to 39: scaled cosine similarities of TF-IDF vectors.
 
     The features compare the clause with the previous clause, with the text before it and with the
-    text after it. The last one compares the text before the clause with the rest.
+    text after it. The last one compares the text before the clause with the rest. The vectors of
+    these texts are sums over clauses. Their products are updated from clause to clause, so the time
+    grows linearly with the length of the text.
     """
-    count = len(clauses)
-    lengths = [len(clause.index) for clause in clauses]
-    used, column = np.unique(
+    _, columns = np.unique(
         np.concatenate([clause.index for clause in clauses]), return_inverse=True
     )
-    row = np.repeat(np.arange(count), lengths)
-    matrix = np.zeros((count + 1, len(used)), np.float32)
-    matrix[row + 1, column] = np.concatenate([clause.value for clause in clauses])
-    sums = np.cumsum(matrix, 0)
-    clause, before = matrix[1:], sums[:-1]
-    rest = sums[-1] - before
-    pairs = ((clause, matrix[:-1]), (clause, before), (clause, rest - clause), (before, rest))
-    return ALIKE * np.stack([_cosine(*pair) for pair in pairs], 1)
+    total = np.bincount(columns, np.concatenate([clause.value for clause in clauses]))
+    places = np.split(columns, np.cumsum([len(clause.index) for clause in clauses])[:-1])
+    before, previous = np.zeros_like(total), np.zeros_like(total)
+    last = np.zeros(0, int)
+    square = product = previous_square = 0.0  # |before|^2, before . total, |previous|^2
+    all_square = float(total @ total)
+    result = np.zeros((len(clauses), 4))
+    for row, clause, place in zip(result, clauses, places, strict=True):
+        value = clause.value.astype(float)  # in float32, differences of squares would not be 0
+        own = float(value @ value)
+        with_before, with_total = float(value @ before[place]), float(value @ total[place])
+        next_square = square + 2 * with_before + own
+        next_product = product + with_total
+        row[:] = (
+            _cosine(float(value @ previous[place]), own, previous_square),
+            _cosine(with_before, own, square),
+            _cosine(
+                with_total - with_before - own,
+                own,
+                all_square - 2 * next_product + next_square,
+            ),
+            _cosine(product - square, square, all_square - 2 * product + square),
+        )
+        previous[last] = 0
+        previous[place] = value
+        before[place] += value
+        last, previous_square = place, own
+        square, product = next_square, next_product
+    return ALIKE * result
 
 
-def _cosine(a: np.ndarray, b: np.ndarray) -> np.ndarray:
-    """Return the cosine similarity of the rows of two matrices; 0 for empty rows."""
-    squares = (a * a).sum(1) * (b * b).sum(1)
-    return (a * b).sum(1) / np.sqrt(np.maximum(squares, EMPTY))
+def _cosine(product: float, square: float, other: float) -> float:
+    """Return the cosine of two vectors, given their product and their squared norms."""
+    return product / math.sqrt(max(square * other, EMPTY))
