@@ -22,7 +22,7 @@ class Curve:
         column: label of the column.
         count: number of episodes; all points use the same seeds and episodes.
         severities: severities in ascending order, starting with 0 if clean episodes were measured.
-        points: SR at each severity.
+        points: SR at each severity, interpolated for seeds that did not measure it.
     """
 
     column: str
@@ -46,15 +46,15 @@ def curves(grid: Grid, corruption: str, least: int = 1) -> list[Curve]:
 
 
 def _curve(grid: Grid, column: str, name: str, least: int) -> Curve | None:
-    lines = _lines(grid, column, name)
-    severities = sorted(set().union(*lines))
-    if not severities or sum(at > 0 for at in severities) < least:
+    by_seed = _by_seed(grid, column, name)
+    measured = set().union(*by_seed)
+    if not measured:
         return None
-    lines = [line for line in lines if {severities[0], severities[-1]} <= line.keys()]
-    if not lines:
+    by_seed = [line for line in by_seed if {min(measured), max(measured)} <= line.keys()]
+    severities = sorted(set().union(*by_seed))
+    if not by_seed or sum(at > 0 for at in severities) < least:
         return None
-    severities = sorted(set().union(*lines))
-    values = np.mean([_interpolated(line, severities) for line in lines], axis=0)
+    values = np.mean([_interpolated(line, severities) for line in by_seed], axis=0)
     common = ~np.isnan(values).any(axis=0)
     if not common.any():
         return None
@@ -65,10 +65,11 @@ def _curve(grid: Grid, column: str, name: str, least: int) -> Curve | None:
     return Curve(column, int(common.sum()), severities, points)
 
 
-def _lines(grid: Grid, column: str, name: str) -> list[dict[float, np.ndarray]]:
+def _by_seed(grid: Grid, column: str, name: str) -> list[dict[float, np.ndarray]]:
     """Return the successes of the N episodes at each severity, for each seed with corrupted rows.
 
-    A severity of a seed is left out if another seed has results of many more episodes.
+    A severity of a seed is left out if it has results of fewer than the fraction ``COVERAGE`` of
+    the episodes that another seed has there.
     """
     lines = [
         {
@@ -88,7 +89,7 @@ def _lines(grid: Grid, column: str, name: str) -> list[dict[float, np.ndarray]]:
 
 
 def _interpolated(line: Mapping[float, np.ndarray], severities: Sequence[float]) -> np.ndarray:
-    """Return the values of a seed at ``severities`` [K, N]; NaN for episodes without all rows."""
+    """Return the values of a seed at ``severities`` [K, N]; NaN if a row is missing."""
     measured = sorted(line)
     values = np.stack([line[at] for at in measured])
     weights = np.stack([np.interp(severities, measured, row) for row in np.eye(len(values))], 1)

@@ -24,13 +24,14 @@ from mitigate.core import folders
 from mitigate.core.json_files import read_json
 from mitigate.core.names import short
 from mitigate.guards.text.decode import Decoded, decode
-from mitigate.guards.text.features import EMPTY, features
+from mitigate.guards.text.features import features
 from mitigate.guards.text.pieces import Piece, clause_pieces, script, sentence_pieces
 from mitigate.guards.text.segmenter import NAMES, Segmenter
 
 BITS = 18
 SIZE = 1 << BITS  # length of the weight arrays; terms are hashed to indices below this number
 CONFIG, WEIGHTS = "classifier.json", "classifier.safetensors"
+EMPTY = 1e-3  # if the sum of squared TF-IDF values is below this, the text contains no known term
 ARRAYS = ("idf", "alone", "style")
 _TOKEN = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+|[^\w\s]|[^\W\d_]+")
 _CAPITALS = re.compile(r"\b[A-Z]{2,}\b")

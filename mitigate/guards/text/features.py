@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 FEATURES = 40  # number of features of a clause
 LOG_ODDS = (0, 1, 4, 5, 6, 7, 8)  # indices of the log odds of an attack in a part of the text
-EDGES = (11, 12, 13, 15)  # indices of the features that describe the boundary before a clause
+# indices of the features of the boundary before a clause that the networks also read directly
+EDGES = (11, 12, 13, 15)
 # number of characters before a clause in which the last non-space character is searched
-GAP = 80
+LOOK_BACK = 80
 CLIP = 6.0  # largest absolute value of a feature
 SCALE = 0.5  # factor by which log odds are multiplied
 ALIKE = 5.0  # factor by which similarities are multiplied
-EMPTY = 1e-3  # a text whose squared norm is below this contains no known term
+SMALLEST = 1e-3  # minimum product of two squared norms
 _YOU = bag("you your yours yourself u ur ye thee thou")
 _ME = bag("i me my mine we us our i'm i'll i've i'd im")
 _WORD = re.compile(r"[a-z]+(?:['’][a-z]+)?|\d+")
@@ -49,7 +50,7 @@ def features(text: str, clauses: Sequence[Clause], classifier: Classifier) -> np
 
 
 def _attack_odds(clauses: Sequence[Clause], classifier: Classifier) -> np.ndarray:
-    """Return features 0 to 9: scaled log odds of parts of the text, and numbers of words."""
+    """Return features 0 to 9: scaled log odds of attacks and styles, and numbers of words."""
     products = np.array([clause.product for clause in clauses])
     squares = np.array([clause.square for clause in clauses])
     words = np.array([clause.words for clause in clauses])
@@ -77,11 +78,11 @@ def _attack_odds(clauses: Sequence[Clause], classifier: Classifier) -> np.ndarra
 
 
 def _place(text: str, clauses: Sequence[Clause], place: int) -> list[float]:
-    """Return features 10 to 21, each 0 or 1: what surrounds a clause, and how it begins."""
+    """Return features 10 to 21, each 0 or 1: what precedes a clause, its kind and its position."""
     clause = clauses[place]
     start = clause.piece.start
     previous = clauses[place - 1] if place else None
-    before = text[max(0, start - GAP) : start].rstrip()[-1:]
+    before = text[max(0, start - LOOK_BACK) : start].rstrip()[-1:]
     gap = text[previous.piece.end : start] if previous else ""
     return [
         clause.piece.block,
@@ -132,6 +133,7 @@ def _manner(text: str, known: Collection[str]) -> list[float]:
         text.rstrip().endswith("?"),
         2 * share(sum(any(c.isdigit() for c in token) for token in tokens), tokens),
         3 * share(signs, text),
+        # several capitalised words, as in names and titles
         text[:1].isupper() and sum(token[:1].isupper() for token in tokens) > 1,
     ]
 
@@ -180,4 +182,4 @@ def _similarity(clauses: Sequence[Clause]) -> np.ndarray:
 
 def _cosine(product: float, square: float, other: float) -> float:
     """Return the cosine of two vectors, given their product and their squared norms."""
-    return product / math.sqrt(max(square * other, EMPTY))
+    return product / math.sqrt(max(square * other, SMALLEST))
