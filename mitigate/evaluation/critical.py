@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike
 
 from mitigate.corruptions import CLEAN, Corruption
 from mitigate.evaluation.bootstrap import LEVEL, ROUNDING, Estimate, resampled_means
-from mitigate.evaluation.grid import COVERAGE, METRICS, Grid, grids
+from mitigate.evaluation.grid import COVERAGE, Grid, grids
 from mitigate.evaluation.rows import Row
 from mitigate.evaluation.sections import references
 from mitigate.worlds.seeded import RETURN
@@ -270,11 +270,7 @@ class Scores:
         The curve is empty if there are no clean successes or if severity 1 was not measured. The
         curve omits a severity if the fraction of episodes with results is below :data:`COVERAGE`.
         """
-        curve = {
-            at: values
-            for (corruption, at, metric), values in self.grid.runs[column][seed].items()
-            if metric == METRICS["SR"] and corruption in ("clean", name)
-        }
+        curve = self.grid.by_severity(column, name, seed)
         if not {0.0, 1.0} <= curve.keys():
             return {}
         ends = ~np.isnan(curve[0.0] + curve[1.0])

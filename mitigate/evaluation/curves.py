@@ -9,7 +9,7 @@ import numpy as np
 
 from mitigate.evaluation import bootstrap
 from mitigate.evaluation.bootstrap import Estimate
-from mitigate.evaluation.grid import COVERAGE, METRICS, Grid
+from mitigate.evaluation.grid import COVERAGE, Grid
 
 RESAMPLES = 2000  # number of bootstrap resamples for the interval of each point (heuristic)
 
@@ -71,14 +71,7 @@ def _by_seed(grid: Grid, column: str, name: str) -> list[dict[float, np.ndarray]
     A severity of a seed is left out if it has results of fewer than the fraction ``COVERAGE`` of
     the episodes that another seed has there.
     """
-    lines = [
-        {
-            at: values
-            for (corruption, at, metric), values in run.items()
-            if metric == METRICS["SR"] and corruption in ("clean", name)
-        }
-        for run in grid.runs[column].values()
-    ]
+    lines = [grid.by_severity(column, name, seed) for seed in grid.runs[column]]
     lines = [line for line in lines if any(at > 0 for at in line)]
     counts = [{at: int((~np.isnan(x)).sum()) for at, x in line.items()} for line in lines]
     most = {at: max(count.get(at, 0) for count in counts) for at in set().union(*counts)}

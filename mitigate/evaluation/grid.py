@@ -233,6 +233,14 @@ class Grid:
         empty = np.full(len(self.episodes), np.nan)
         return self.cells.get((label, corruption, severity, metric), empty)
 
+    def by_severity(self, label: str, corruption: str, seed: int) -> dict[float, np.ndarray]:
+        """Return the successes [N] of a seed at each severity; clean episodes have severity 0."""
+        return {
+            at: values
+            for (name, at, metric), values in self.runs[label][seed].items()
+            if metric == METRICS["SR"] and name in ("clean", corruption)
+        }
+
     def over(self, labels: Iterable[str], seeds: Iterable[int], severity: float) -> Grid:
         """Return the grid of the columns ``labels`` at ``severity``, restricted to ``seeds``.
 
